@@ -1,0 +1,13 @@
+# Program, library, headers and CMake package: find_package(musclesim) gives the target musclesim::musclesim.
+include(CMakePackageConfigHelpers)
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/musclesim)
+
+install(TARGETS musclesim_core musclesim EXPORT musclesimTargets)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/musclesim ${PROJECT_BINARY_DIR}/include/musclesim
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
+install(EXPORT musclesimTargets NAMESPACE musclesim:: DESTINATION ${package_dir})
+configure_package_config_file(cmake/musclesimConfig.cmake.in ${PROJECT_BINARY_DIR}/musclesimConfig.cmake INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/musclesimConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/musclesimConfig.cmake ${PROJECT_BINARY_DIR}/musclesimConfigVersion.cmake cmake/FindODE.cmake
+        DESTINATION ${package_dir})
+install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})

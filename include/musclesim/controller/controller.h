@@ -1,0 +1,56 @@
+/// Controllers decide the command: pressures from the robot's state.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "musclesim/parameters.h"
+#include "musclesim/robot/state.h"
+
+namespace musclesim {
+
+/// What a controller is built from. The controller keeps no reference to it.
+struct ControllerRequest {
+  Parameters& parameters;            ///< named numbers of the controller are declared here
+  int muscle_count = 0;              ///< dimension of the action
+  double step_s = 0.01;              ///< time between two calls of output()
+  double decision_interval_s = 6.0;  ///< time between two decisions, rounded to whole steps, at least one
+  std::uint64_t seed = 1;            ///< seed of the run; each controller derives its own streams
+  std::string task = "height";       ///< "height" or "reach"
+  std::optional<Vector> target_mm;   ///< overrides the task's own target
+};
+
+/// A controller is asked once per control step for the pressures of all muscles. It draws and logs nothing.
+///
+/// A user's controller overrides output() and is registered by name:
+///     Controller::registerController("mine", "what it does", [](const ControllerRequest& r) { return std::make_unique<Mine>(r); });
+class Controller {
+ public:
+  virtual ~Controller() = default;
+
+  /// Pressures to command now, one per muscle, each in 0..1. Called once per control step, in order of time.
+  virtual Action output(const State& state) = 0;
+
+  /// Activity at the last decision, for the log and the figure; none if the controller has no such notion.
+  virtual std::optional<double> activity() const { return std::nullopt; }
+  /// Target of the hand in mm, for the log, the figure and the window; none if there is no target.
+  virtual std::optional<Vector> targetMm() const { return std::nullopt; }
+  /// True when only the height (y) of the target counts.
+  virtual bool targetIsHeight() const { return false; }
+
+  using Factory = std::function<std::unique_ptr<Controller>(const ControllerRequest&)>;
+  /// Registers a controller under a name; a later registration of the same name replaces the earlier one.
+  static void registerController(const std::string& name, const std::string& description, Factory factory);
+  /// Builds a registered controller. Throws BadParameter with the nearest name if there is none of that name.
+  static std::unique_ptr<Controller> make(const std::string& name, const ControllerRequest& request);
+  /// Names of all registered controllers, in alphabetical order.
+  static std::vector<std::string> names();
+  /// The controller of the calling thread's current simulation, as in the paper's run loop. Throws BadParameter if there is none.
+  static Controller* getActiveController();
+};
+
+}  // namespace musclesim

@@ -1,0 +1,26 @@
+/// The figure of a run: the paper's Figure 11 as a self-contained SVG.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "musclesim/log/recording.h"
+
+namespace musclesim {
+
+/// An RGB colour, each component 0..1, with the name people use for it.
+struct Color {
+  double red = 0.8, green = 0.8, blue = 0.8;
+  std::string name;
+};
+
+/// Figure 11: above, the hand's height (red), the target (orange) and the activity (green, axis on the right); below, the pressures
+/// (or, without measured pressures, the commands) of all muscles in their colours. Recordings without a hand show the angles or lengths
+/// above. `muscle_colors` may be shorter than the number of muscles; further muscles get distinguishable colours.
+std::string runFigureSvg(const Recording& recording, const std::vector<Color>& muscle_colors, const std::string& title);
+
+/// Writes runFigureSvg to a file. Throws IoError.
+void writeRunFigure(const Recording& recording, const std::vector<Color>& muscle_colors, const std::string& title,
+                    const std::string& svg_file);
+
+}  // namespace musclesim

@@ -1,0 +1,80 @@
+/// Recordings: what was commanded and what was measured on one plant in one run, real or simulated.
+///
+/// Two files with one stem: NAME.csv (one row per sample) and NAME.json (the sidecar). Format `musclesim-recording-1`.
+#pragma once
+
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "musclesim/parameters.h"
+
+namespace musclesim {
+
+/// One signal over time. Values are in the canonical unit of the quantity; NaN means "not measured at that sample".
+struct Signal {
+  std::string name;  ///< canonical column name, for example "length_0_mm", "command_3", "angle_elbow_deg", "hand_y_mm", "activity"
+  std::vector<double> values;
+};
+
+/// An effect that the simulator must include when it replays the recording (part of the model, not of the gap).
+struct ActiveEffect {
+  std::string id;
+  std::string component = "all";
+  std::map<std::string, double> parameters;
+};
+
+/// The sidecar. Only `format` and `robot` are required in the file.
+struct RecordingInfo {
+  std::string robot;
+  std::optional<std::string> physics;                        ///< "si" or "original"
+  std::optional<std::string> initial_state;                  ///< "settled" or "built"
+  std::map<std::string, Parameter::Value> robot_parameters;  ///< nested objects are flattened with a dot
+  std::string description, trial, repeat_of, program;
+  std::optional<double> pressure_full_scale_kPa, command_full_scale_V;
+  std::map<std::string, double> noise_std;
+  std::vector<ActiveEffect> active_effects;
+  std::optional<std::uint64_t> seed;
+  std::optional<double> step_s;
+  /// Further members of the sidecar as JSON text, one object; kept when the recording is written again.
+  std::string extra_json = "{}";
+};
+
+/// A recording is a value; simulated and measured runs are the same type.
+struct Recording {
+  std::string file;  ///< where it came from, for messages; empty if it was made in memory
+  RecordingInfo info;
+  std::vector<double> time_s;      ///< strictly increasing
+  std::vector<Signal> signals;     ///< all of the length of time_s
+  std::vector<std::string> notes;  ///< what the reader converted, skipped or found odd, in words for the user
+
+  /// Number of commanded muscles.
+  int muscleCount() const;
+  /// The signal of that name, or null.
+  const Signal* find(const std::string& name) const;
+};
+
+struct ReadOptions {
+  std::vector<std::string> ignore_columns;
+};
+
+/// Reads NAME.csv and, beside it, NAME.json. Strict: throws BadFile naming file, line, column and what is allowed; IoError if a file cannot
+/// be opened. Units named in the header are converted to the canonical ones (mm, deg, N, fraction of full scale).
+Recording readRecording(const std::string& csv_file, const ReadOptions& options = {});
+
+/// The same from text already in memory; the names are used in messages only.
+Recording parseRecording(const std::string& csv_text, const std::string& csv_name, const std::string& json_text,
+                         const std::string& json_name, const ReadOptions& options = {});
+
+/// Writes both files, each to a temporary name first, then renamed. Throws IoError.
+void writeRecording(const Recording& recording, const std::string& csv_file);
+
+/// The sidecar as indented JSON text.
+std::string sidecarText(const RecordingInfo& info);
+
+/// The sidecar's path for a recording's CSV path ("a/b.csv" -> "a/b.json").
+std::string sidecarPath(const std::string& csv_file);
+
+}  // namespace musclesim

@@ -1,0 +1,70 @@
+/// Named numbers of the model: declared where they are used, overridden by name from outside.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace musclesim {
+
+/// One declared parameter with everything a user needs to know about it.
+struct Parameter {
+  using Value = std::variant<double, std::string>;
+  std::string name;  ///< "group.name_unit", for example "muscle.bead_mass_g"
+  Value value;       ///< in force
+  Value default_value;
+  std::string unit;  ///< empty for pure numbers and choices
+  double minimum = 0, maximum = 0;
+  std::vector<std::string> choices;  ///< empty for numbers
+  bool integer = false;
+  std::string description;
+};
+
+/// A set of overrides (from --set, --config, a recording's sidecar) and the record of all parameters declared so far.
+///
+/// A component declares and reads in one call, so name, unit, default, range and meaning stand in exactly one place:
+///     bead_mass_g = parameters.number("muscle.bead_mass_g", 10, "g", 0.01, 1e4, "mass of one bead");
+/// Declaring the same name again returns the value already in force.
+/// number, integer and choice throw BadParameter when the override is not a number, not finite, out of range or not among the choices.
+class Parameters {
+ public:
+  /// Overrides one parameter. `source` is named in errors ("--set", "model.toml:12").
+  /// A later call replaces an earlier one. Throws BadParameter for an empty name or, once declared, for a value out of range.
+  void set(const std::string& name, const Parameter::Value& value, const std::string& source);
+  /// "name=value" as given to --set; the value is a number where it reads as one. Throws BadParameter if there is no "=".
+  void setFromText(const std::string& assignment, const std::string& source);
+  /// All keys of a TOML file; tables become groups. Throws BadFile with line and column, IoError if it cannot be read.
+  void readToml(const std::string& file);
+
+  double number(const std::string& name, double default_value, const std::string& unit, double minimum, double maximum,
+                const std::string& description);
+  int integer(const std::string& name, int default_value, int minimum, int maximum, const std::string& description);
+  std::string choice(const std::string& name, const std::string& default_value, const std::vector<std::string>& choices,
+                     const std::string& description);
+
+  /// All parameters declared so far, in order of declaration.
+  const std::vector<Parameter>& declared() const { return declared_; }
+  /// Throws BadParameter naming the first override that nothing has declared, with the nearest declared name.
+  void requireAllKnown() const;
+  /// The declared parameters as a TOML file that readToml accepts, with unit, range and meaning as comments.
+  std::string toToml() const;
+
+ private:
+  struct Override {
+    std::string name;
+    Parameter::Value value;
+    std::string source;
+  };
+  const Parameter* find(const std::string& name) const;
+  const Override* overrideOf(const std::string& name) const;
+  void requireAllowed(const Parameter& parameter, const Parameter::Value& value, const std::string& source) const;
+  const Parameter& declare(Parameter parameter);
+
+  std::vector<Override> overrides_;
+  std::vector<Parameter> declared_;
+};
+
+/// The entry of `names` with the smallest edit distance to `name`; empty if none is close (more than half of the letters differ).
+std::string nearestName(const std::string& name, const std::vector<std::string>& names);
+
+}  // namespace musclesim

@@ -1,0 +1,30 @@
+/// Every conversion of units, and the only file that holds such factors.
+///
+/// The ODE world and the building API use mm, g, s and degrees; forces cross the API in N, pressures as fractions of full scale (0..1).
+#pragma once
+
+#include <numbers>
+
+namespace musclesim {
+
+inline constexpr double mm_per_m = 1000.0;
+inline constexpr double mm_per_cm = 10.0;
+inline constexpr double g_per_kg = 1000.0;
+inline constexpr double kPa_per_bar = 100.0;
+inline constexpr double kPa_per_MPa = 1000.0;
+inline constexpr double rad_per_deg = std::numbers::pi / 180.0;
+inline constexpr double deg_per_rad = 180.0 / std::numbers::pi;
+
+/// Standard acceleration of a falling body as the original program rounds it.
+inline constexpr double gravity_m_per_s2 = 9.81;
+/// One kilogram-force in newton, in the same rounding: the loads of the paper's experiment are masses in kg.
+inline constexpr double newton_per_kgf = 9.81;
+
+/// 1 N in g mm/s^2: the unit of force of a world in mm, g, s.
+inline constexpr double world_force_per_N = mm_per_m * g_per_kg;
+/// 1 kg m^2 in g mm^2.
+inline constexpr double g_mm2_per_kg_m2 = g_per_kg * mm_per_m * mm_per_m;
+/// The original program used forces and gravity that are this factor too small for mm, g and s, so it ran sqrt(1000) times too slowly.
+inline constexpr double original_force_deficit_ratio = 1000.0;
+
+}  // namespace musclesim
