@@ -4,15 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "musclesim/color.h"
 #include "musclesim/log/recording.h"
 
 namespace musclesim {
-
-/// An RGB colour, each component 0..1, with the name people use for it.
-struct Color {
-  double red = 0.8, green = 0.8, blue = 0.8;
-  std::string name;
-};
 
 /// Figure 11: above, the hand's height (red), the target (orange) and the activity (green, axis on the right); below, the pressures
 /// (or, without measured pressures, the commands) of all muscles in their colours. Recordings without a hand show the angles or lengths
