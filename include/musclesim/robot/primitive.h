@@ -1,0 +1,137 @@
+/// Bones: boxes, spheres and capped cylinders, alone or joined to composites.
+///
+/// World frame: right-handed, x to the side, y up, z to the front. Lengths in mm, masses in g, angles in degrees.
+/// Primitives are created with `new` as in the paper and owned by the simulation whose world they are built in; do not delete them.
+#pragma once
+
+#include <ode/ode.h>
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "musclesim/color.h"
+#include "musclesim/robot/joint.h"
+#include "musclesim/robot/state.h"
+
+namespace musclesim {
+
+class Simulation;
+class Primitive;
+
+/// The form of a primitive, for whoever draws it.
+struct Shape {
+  enum class Kind { box, sphere, capped_cylinder };
+  Kind kind;
+  Vector size_mm;  ///< box: edges along x, y, z; sphere: radius, 0, 0; capped cylinder: radius, length without the caps (along z), 0
+};
+
+/// A rigid body of ODE with the primitives that form it.
+struct Body {
+  dBodyID id = nullptr;
+  std::vector<Primitive*> parts;
+  bool has_joint = false;
+};
+
+/// Limits of one joint axis in degrees.
+struct Limits {
+  double low_deg, high_deg;
+};
+
+/// One part of a robot's skeleton.
+///
+/// All functions throw BadParameter for values that are not finite or out of range.
+class Primitive {
+ public:
+  virtual ~Primitive();
+  Primitive(const Primitive&) = delete;
+  Primitive& operator=(const Primitive&) = delete;
+
+  /// Turns the whole body about its centre of mass by a right-handed angle about an axis of the world.
+  void rotate(double angle_deg, const Vector& axis);
+  /// Pins the body to the environment.
+  void fix();
+  /// Replaces the moments of inertia about the body's own axes, g mm^2. Throws BadParameter unless all are positive.
+  void setInertia(const Vector& moments_g_mm2);
+  /// Moves the body (with all its parts) to a position of its centre of mass and an orientation, at rest. Joints keep their reference.
+  void place(const Vector& position_mm, const Eigen::Matrix3d& rotation);
+  void setColor(double red, double green, double blue);
+  void setName(const std::string& name) { name_ = name; }
+
+  /// Ball joint to `other` (null: the environment) at a point of the world.
+  Joint* attachBall(Primitive* other, const Vector& anchor);
+  /// Ball joint with limits on the three Euler angles of `this` against `other`: about the first axis (fixed to `this`), the second
+  /// (across both) and the third (fixed to `other`).
+  Joint* attachBall(Primitive* other, const Vector& anchor, const Vector& axis1, const Vector& axis3, Limits limits1, Limits limits2,
+                    Limits limits3);
+  /// Hinge with one axis.
+  Joint* attachHinge(Primitive* other, const Vector& anchor, const Vector& axis);
+  Joint* attachHinge(Primitive* other, const Vector& anchor, const Vector& axis, double low_deg, double high_deg);
+  /// Hinge with two axes (ODE's hinge-2): the first fixed to `this`, the second to `other`, which must not be the environment.
+  Joint* attachHinge(Primitive* other, const Vector& anchor, const Vector& axis1, const Vector& axis2);
+  Joint* attachHinge(Primitive* other, const Vector& anchor, const Vector& axis1, const Vector& axis2, Limits limits1, Limits limits2);
+  /// Universal joint with two axes, which must be perpendicular.
+  Joint* attachUniversal(Primitive* other, const Vector& anchor, const Vector& axis1, const Vector& axis2);
+  Joint* attachUniversal(Primitive* other, const Vector& anchor, const Vector& axis1, const Vector& axis2, Limits limits1, Limits limits2);
+  /// Universal joint with one axis: the second is perpendicular to it and locked.
+  Joint* attachUniversal(Primitive* other, const Vector& anchor, const Vector& axis);
+  Joint* attachUniversal(Primitive* other, const Vector& anchor, const Vector& axis, double low_deg, double high_deg);
+
+  /// Slider along an axis of the world; it also keeps the body from turning.
+  Joint* attachSlider(Primitive* other, const Vector& axis);
+
+  /// Makes `other` (with all it is composed of) a part of this primitive's body, which keeps this primitive's orientation.
+  /// Throws BadParameter if either already has a joint or is fixed.
+  void compositeWithPrimitive(Primitive* other);
+  /// Joins all parts to one body at their common centre of mass, oriented like `parent` (default: the last part).
+  static void compositePrimitives(const std::vector<Primitive*>& parts, Primitive* parent = nullptr);
+
+  const std::string& name() const { return name_; }
+  const Color& color() const { return color_; }
+  const Shape& shape() const { return shape_; }
+  dGeomID geom() const { return geom_; }
+  Body& body() const { return *body_; }
+  double massG() const { return mass_g_; }
+  /// Centre of mass of the body this primitive belongs to, world frame, mm.
+  Vector getPosition() const;
+  /// Orientation of that body: columns are its axes in the world frame.
+  Eigen::Matrix3d getRotation() const;
+
+ protected:
+  /// `mass` in g; if it is 0, the mass follows from `density` in g/mm^3 and the volume.
+  Primitive(dWorldID world, dSpaceID space, const Vector& position, double mass, double density, Shape shape);
+
+ private:
+  friend class Simulation;
+  Joint* addJoint(Joint::Kind kind, dJointID joint, Primitive* other, const std::string& what);
+  void requireComposable() const;
+  static void merge(Body& target, const std::vector<Body*>& bodies, Primitive& parent);
+
+  dWorldID world_;
+  Shape shape_;
+  double mass_g_;
+  dGeomID geom_ = nullptr;
+  Body* body_ = nullptr;
+  Color color_;
+  std::string name_;
+};
+
+/// A box with edges x, y, z (mm).
+class Box : public Primitive {
+ public:
+  Box(dWorldID world, dSpaceID space, const Vector& position, double mass, double density, double x, double y, double z);
+};
+
+/// A sphere.
+class Sphere : public Primitive {
+ public:
+  Sphere(dWorldID world, dSpaceID space, const Vector& position, double mass, double density, double radius);
+};
+
+/// A cylinder along z with half spheres at both ends; `length` without them.
+class CappedCylinder : public Primitive {
+ public:
+  CappedCylinder(dWorldID world, dSpaceID space, const Vector& position, double mass, double density, double radius, double length);
+};
+
+}  // namespace musclesim

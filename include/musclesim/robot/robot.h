@@ -1,0 +1,99 @@
+/// Robots: primitives and actuators that report a state and take an action.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "musclesim/parameters.h"
+#include "musclesim/robot/actuator.h"
+#include "musclesim/robot/primitive.h"
+#include "musclesim/robot/state.h"
+
+namespace musclesim {
+
+class Simulation;
+
+/// A user's robot is a subclass that builds its parts in the constructor:
+///     class MyJoint : public Robot { public: explicit MyJoint(Simulation& simulation) : Robot(simulation) { ... } };
+///     Robot::registerRobot<MyJoint>("my-joint", "what it is");
+class Robot {
+ public:
+  explicit Robot(Simulation& simulation) : simulation_(simulation) {}
+  virtual ~Robot() = default;
+  Robot(const Robot&) = delete;
+  Robot& operator=(const Robot&) = delete;
+
+  /// Sensor stage: the readings at present. Lengths, angles and positions are those of the time; pressures and forces those after the last
+  /// command began to act.
+  virtual State getState() const;
+  /// Command stage: sets the pressures that hold until the next call. Throws BadParameter for a wrong number of them or one outside 0..1,
+  /// Diverged for one that is not finite.
+  virtual void step(const Action& action);
+
+  /// Puts the robot at rest at its frictionless equilibrium for a command. The default throws BadParameter: not every robot can.
+  virtual void settle(const Action& first_command);
+  /// How runs begin unless told otherwise: "built" or "settled".
+  virtual std::string initialState() const { return "built"; }
+
+  const std::vector<Actuator*>& actuators() const { return actuators_; }
+  int actuatorCount() const { return static_cast<int>(actuators_.size()); }
+  /// Columns of a recording of this robot, without time: command_<i>, pressure_<i>, force_<i>_N, length_<i>_mm, angle_<joint>_deg,
+  /// hand_<axis>_mm.
+  std::vector<std::string> signalNames() const;
+  /// The values of a state in the order of signalNames().
+  std::vector<double> signalValues(const State& state) const;
+  const std::string& name() const { return name_; }
+
+  /// Registers a robot class under a name; a later registration of the same name replaces the earlier one.
+  template <class RobotType>
+  static void registerRobot(const std::string& name, const std::string& description) {
+    registerFactory(name, description, [](Simulation& simulation) { return std::make_unique<RobotType>(simulation); });
+  }
+  /// Builds a registered robot in a simulation's world. Throws BadParameter with the nearest name if there is none of that name.
+  static std::unique_ptr<Robot> make(const std::string& name, Simulation& simulation);
+  /// Names and descriptions of all registered robots, by name.
+  static std::vector<std::pair<std::string, std::string>> registered();
+  /// The robot of the calling thread's current simulation, as in the paper's run loop. Throws BadParameter if there is none.
+  static Robot* getActiveRobot();
+
+ protected:
+  Simulation& simulation() const { return simulation_; }
+  dWorldID world() const;
+  dSpaceID space() const;
+  /// A parameter of this robot; see Parameters::number.
+  double parameter(const std::string& name, double default_value, const std::string& unit, double minimum, double maximum,
+                   const std::string& description) const;
+  /// Actuators in the order of the action's entries.
+  void addActuator(Actuator* actuator);
+  /// A joint whose angle is reported as angle_<name>_deg.
+  void addAngle(const std::string& name, const Joint* joint, int axis = 0);
+  /// The reported point: a point of a primitive's body, given in the body's frame relative to its centre of mass, mm.
+  void setHand(const Primitive* primitive, const Vector& offset_mm = Vector::Zero());
+
+ private:
+  struct Angle {
+    std::string name;
+    const Joint* joint;
+    int axis;
+  };
+  using Factory = std::function<std::unique_ptr<Robot>(Simulation&)>;
+  struct Registered {
+    std::string description;
+    Factory build;
+  };
+  static std::map<std::string, Registered>& registry();
+  static void registerFactory(const std::string& name, const std::string& description, Factory factory);
+
+  Simulation& simulation_;
+  std::vector<Actuator*> actuators_;
+  std::vector<Angle> angles_;
+  const Primitive* hand_ = nullptr;
+  Vector hand_offset_mm_ = Vector::Zero();
+  std::string name_ = "robot";
+};
+
+}  // namespace musclesim

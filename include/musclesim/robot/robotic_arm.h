@@ -1,0 +1,16 @@
+/// The paper's RoboticArm: humerus, ulna, radius and hand, ribs and scapula, ten muscles (up to thirty).
+#pragma once
+
+#include "musclesim/robot/robot.h"
+
+namespace musclesim {
+
+/// Built from the table in robotic_arm_table.h. Signals: angle_elbow_deg, angle_wrist_deg, the hand = centre of mass of the composite hand.
+/// Parameters: arm.muscle_count (1..30, default 10: the first that many), arm.composite_inertia.
+/// Source: Braun 2007, Section 4; numbers of the published program.
+class RoboticArm : public Robot {
+ public:
+  explicit RoboticArm(Simulation& simulation);
+};
+
+}  // namespace musclesim

@@ -1,0 +1,150 @@
+/// A simulation: one ODE world with a robot in it, moved step by step.
+#pragma once
+
+#include <ode/ode.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "musclesim/controller/controller.h"
+#include "musclesim/parameters.h"
+#include "musclesim/robot/actuator.h"
+#include "musclesim/robot/joint.h"
+#include "musclesim/robot/primitive.h"
+#include "musclesim/robot/robot.h"
+#include "musclesim/simulation/physics.h"
+#include "musclesim/simulation/stepper.h"
+
+namespace musclesim {
+
+class Contacts;
+
+struct SimulationOptions {
+  PhysicsKind physics = PhysicsKind::si;
+  StepperKind stepper = StepperKind::automatic;
+  double step_s = 0.01;  ///< control and logging step
+  int substeps = 0;      ///< internal steps per control step; 0: as many as the stepper needs
+  bool plane = false;    ///< a ground plane at the height of the parameter "world.plane_height_mm"
+  std::uint64_t seed = 1;
+  Parameters parameters;  ///< overrides by name
+};
+
+/// The largest distance by which a joint is torn.
+struct JointGap {
+  double gap_mm = 0;
+  std::string joint;
+};
+
+/// An ordinary object: many can live in one process and in different threads, each used by one thread at a time.
+///
+/// It owns the world, everything built in it, the robot and the controller. Time is counted in control steps.
+/// A run that leaves the numbers a physical system can have ends in Diverged: nothing is reset.
+class Simulation {
+ public:
+  /// Throws BadParameter for a step or a number of internal steps that cannot be.
+  explicit Simulation(SimulationOptions options = {});
+  ~Simulation();
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  /// Builds a registered robot in this simulation's world. Throws BadParameter if it already has one.
+  Robot& build(const std::string& robot_name);
+  /// Builds a robot of a class that need not be registered.
+  template <class RobotType>
+  RobotType& build() {
+    return static_cast<RobotType&>(adopt(std::make_unique<RobotType>(*this)));
+  }
+  Controller& control(std::unique_ptr<Controller> controller);
+
+  /// Puts the robot into its initial state for the first command and sets the time to 0.
+  /// "built": the pose as built, at rest. "settled": at rest at the frictionless equilibrium for the command, then 0.5 s with the command
+  /// held. Throws BadParameter for another name or a robot that cannot settle.
+  void start(const std::string& initial_state, const Action& first_command);
+
+  /// One control step: pressures, forces, then the bodies, in as many internal steps as were set at construction.
+  /// Throws Diverged with time, place and cause; the world is then frozen as it was.
+  void step();
+  /// The same for any duration, in equal internal steps no longer than those of step(). Throws BadParameter unless it is positive.
+  void advance(double duration_s);
+
+  double time_s() const { return start_time_s_ + static_cast<double>(step_count_) * step_s_; }
+  long stepCount() const { return step_count_; }
+  double stepS() const { return step_s_; }
+  int substeps() const { return substeps_; }
+  double internalStepS() const { return step_s_ / substeps_; }
+  std::uint64_t seed() const { return seed_; }
+  const PhysicsSettings& physics() const { return physics_; }
+  const Stepper& stepper() const { return *stepper_; }
+  Parameters& parameters() { return parameters_; }
+  /// How composites built from now on get their inertia: "exact" or "summed".
+  void setCompositeInertia(const std::string& how) { physics_.composite_inertia = how; }
+
+  dWorldID world() const { return world_; }
+  dSpaceID space() const { return space_; }
+  Robot& robot();
+  Controller* controller() { return controller_.get(); }
+
+  const std::vector<std::unique_ptr<Primitive>>& primitives() const { return primitives_; }
+  const std::vector<std::unique_ptr<Actuator>>& actuators() const { return actuators_; }
+  const std::vector<std::unique_ptr<Joint>>& joints() const { return joints_; }
+  const std::vector<std::unique_ptr<Body>>& bodies() const { return bodies_; }
+  int contactCount() const;
+  /// Number of messages from ODE's solver ("LCP internal error") during this simulation's steps.
+  long solverMessageCount() const { return solver_message_count_; }
+
+  /// The joint that is torn furthest at present.
+  JointGap largestGap() const;
+  /// The largest gap seen at the end of any control step so far.
+  const JointGap& worstGap() const { return worst_gap_; }
+  /// Sum of kinetic energy and of potential energy against y = 0, in J (true seconds only in `si` and `scaled`).
+  double mechanicalEnergyJ() const;
+  /// Sets all velocities to 0.
+  void stop();
+
+  /// The simulation in whose world something is built.
+  static Simulation& of(dWorldID world);
+  /// The calling thread's current simulation: the last one that was constructed or made current. Throws BadParameter if there is none.
+  static Simulation& current();
+  void makeCurrent();
+  /// The paper's run loop: steps the calling thread's current simulation.
+  static void doStep() { current().step(); }
+
+ private:
+  friend class Primitive;
+  friend class Actuator;
+  Robot& adopt(std::unique_ptr<Robot> robot);
+  Body& addBody(dBodyID id, Primitive& part);
+  void removeBody(Body& body);
+  Joint& addJoint(Joint::Kind kind, dJointID id, const std::string& name);
+  void internalStep(double h_s);
+  void requireFinite();
+  void requireWhole();
+  std::string labelOf(dBodyID body) const;
+
+  Parameters parameters_;
+  PhysicsSettings physics_;
+  double step_s_;
+  int substeps_ = 1;
+  std::uint64_t seed_;
+  double start_time_s_ = 0, internal_time_s_ = 0;
+  long step_count_ = 0;
+  bool faulted_ = false;
+  long solver_message_count_ = 0;
+  JointGap worst_gap_;
+
+  dWorldID world_ = nullptr;
+  dSpaceID space_ = nullptr;
+  std::vector<std::unique_ptr<Body>> bodies_;
+  std::vector<std::unique_ptr<Joint>> joints_;
+  std::vector<std::unique_ptr<Primitive>> primitives_;
+  std::vector<std::unique_ptr<Actuator>> actuators_;
+  std::unique_ptr<Contacts> contacts_;
+  std::unique_ptr<Stepper> stepper_;
+  std::unique_ptr<Robot> robot_;
+  std::unique_ptr<Controller> controller_;
+};
+
+}  // namespace musclesim

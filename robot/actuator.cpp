@@ -1,0 +1,208 @@
+#include "musclesim/robot/actuator.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "musclesim/error.h"
+#include "musclesim/robot/primitive.h"
+#include "musclesim/simulation/simulation.h"
+#include "musclesim/units.h"
+#include "ode_vector.h"
+
+namespace musclesim {
+
+MuscleSettings::MuscleSettings(Parameters& p)
+    : bead_radius_mm(p.number("muscle.bead_radius_mm", 7.5, "mm", 0.1, 100, "radius of a bead; a link holds two")),
+      bead_mass_g(p.number("muscle.bead_mass_g", 10, "g", 1e-3, 1e5, "mass of one bead")),
+      slider_friction_N(p.number("muscle.slider_friction_N", 1, "N", 0, 1e3, "dry friction of each link's slider")),
+      hinge_friction_Nm(p.number("muscle.hinge_friction_Nm", 0.008, "N m", 0, 10, "dry friction of each hinge between links")),
+      hinge_limit_deg(p.number("muscle.hinge_limit_deg", 60, "deg", 0, 180, "stops of the hinges at full length")),
+      hinge_bounce_ratio(p.number("muscle.hinge_bounce_ratio", 0.2, "", 0, 1, "restitution of the hinges' stops")) {}
+
+namespace {
+
+/// Axis of the hinge after a link of direction d: up x d, or x where the link is vertical.
+Vector hingeAxisAfter(const Vector& d) {
+  const Vector axis(d.z(), 0, -d.x());
+  return axis.norm() > 0 ? axis : Vector::UnitX();
+}
+
+dBodyID makeBead(dWorldID world, const Vector& position, const MuscleSettings& settings) {
+  const dBodyID bead = dBodyCreate(world);
+  dMass mass;
+  dMassSetSphereTotal(&mass, settings.bead_mass_g, settings.bead_radius_mm);
+  dBodySetMass(bead, &mass);
+  dBodySetPosition(bead, position.x(), position.y(), position.z());
+  return bead;
+}
+
+}  // namespace
+
+Actuator::Actuator(dWorldID world, dSpaceID space, const std::vector<Vector>& points, double given_minimum_length_mm,
+                   double minimum_length_mm, double maximum_length_mm)
+    : simulation_(Simulation::of(world)),
+      settings_(simulation_.parameters()),
+      minimum_length_mm_(minimum_length_mm),
+      maximum_length_mm_(maximum_length_mm),
+      start_mm_(points.front()),
+      end_mm_(points.back()),
+      name_(fmt::format("muscle_{}", simulation_.actuators().size())) {
+  double start_length_mm = 0;
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const double link_mm = (points[i + 1] - points[i]).norm();
+    if (!std::isfinite(link_mm)) throw BadParameter(name_ + ": a control point is not finite");
+    if (link_mm < 2 * settings_.bead_radius_mm)
+      throw BadParameter(fmt::format("length of link {} of {}", i, name_), fmt::format("{:.4g} mm", link_mm),
+                         fmt::format("be at least two bead radii, {} mm", 2 * settings_.bead_radius_mm));
+    start_length_mm += link_mm;
+  }
+  if (!(start_length_mm >= given_minimum_length_mm && start_length_mm <= maximum_length_mm))
+    throw BadParameter("start length of " + name_ + " along its curve", fmt::format("{:.4g} mm", start_length_mm),
+                       fmt::format("lie between its minimum and maximum length, {} .. {} mm", given_minimum_length_mm, maximum_length_mm));
+  law_ = std::make_unique<BraunForceLaw>(minimum_length_mm_, maximum_length_mm_, BraunConstants(simulation_.parameters()));
+  buildLinks(dSimpleSpaceCreate(space), points);
+  simulation_.actuators_.emplace_back(this);
+  updateTension();
+}
+
+Actuator::~Actuator() = default;
+
+void Actuator::buildLinks(dSpaceID beads, const std::vector<Vector>& points) {
+  const dWorldID world = simulation_.world();
+  const double force_per_N = simulation_.physics().force_per_N;
+  const int count = static_cast<int>(points.size()) - 1;
+  for (int i = 0; i < count; ++i) {
+    const Vector along = points[i + 1] - points[i];
+    const double length_mm = along.norm();
+    const Vector d = along / length_mm;
+    Link link;
+    const Vector centers[2] = {points[i] + settings_.bead_radius_mm * d, points[i + 1] - settings_.bead_radius_mm * d};
+    for (int end = 0; end < 2; ++end) {
+      link.bead[end] = makeBead(world, centers[end], settings_);
+      link.geom[end] = dCreateSphere(beads, settings_.bead_radius_mm);
+      dGeomSetBody(link.geom[end], link.bead[end]);
+    }
+    const dJointID slider = dJointCreateSlider(world, nullptr);
+    dJointAttach(slider, link.bead[0], link.bead[1]);
+    dJointSetSliderAxis(slider, d.x(), d.y(), d.z());
+    dJointSetSliderParam(slider, dParamLoStop, length_mm - maximum_length_mm_ / count);
+    dJointSetSliderParam(slider, dParamHiStop, length_mm - 2 * settings_.bead_radius_mm);
+    dJointSetSliderParam(slider, dParamVel, 0);
+    dJointSetSliderParam(slider, dParamFMax, settings_.slider_friction_N * force_per_N);
+    link.slider = &simulation_.addJoint(Joint::Kind::slider, slider, fmt::format("slider {} of {}", i, name_));
+    if (i > 0) {
+      const Vector axis = hingeAxisAfter((points[i] - points[i - 1]).normalized());
+      const dJointID hinge = dJointCreateHinge(world, nullptr);
+      dJointAttach(hinge, links_.back().bead[1], link.bead[0]);
+      dJointSetHingeAnchor(hinge, points[i].x(), points[i].y(), points[i].z());
+      dJointSetHingeAxis(hinge, axis.x(), axis.y(), axis.z());
+      dJointSetHingeParam(hinge, dParamVel, 0);
+      dJointSetHingeParam(hinge, dParamFMax, settings_.hinge_friction_Nm * mm_per_m * force_per_N);
+      dJointSetHingeParam(hinge, dParamBounce, settings_.hinge_bounce_ratio);
+      hinges_.push_back(&simulation_.addJoint(Joint::Kind::hinge, hinge, fmt::format("hinge {} of {}", i - 1, name_)));
+    }
+    links_.push_back(link);
+  }
+}
+
+Joint* Actuator::connect(dBodyID bead, const Vector& anchor, Primitive* primitive, const std::string& which) {
+  const dJointID ball = dJointCreateBall(simulation_.world(), nullptr);
+  dJointAttach(ball, bead, primitive ? primitive->body().id : nullptr);
+  dJointSetBallAnchor(ball, anchor.x(), anchor.y(), anchor.z());
+  if (primitive) primitive->body().has_joint = true;
+  return &simulation_.addJoint(Joint::Kind::ball, ball, which + " of " + name_);
+}
+
+void Actuator::connectStartTo(Primitive* primitive) {
+  if (start_joint_) throw BadParameter("the start of " + name_ + " is already connected");
+  start_joint_ = connect(links_.front().bead[0], start_mm_, primitive, "start");
+}
+
+void Actuator::connectEndTo(Primitive* primitive) {
+  if (end_joint_) throw BadParameter("the end of " + name_ + " is already connected");
+  end_joint_ = connect(links_.back().bead[1], end_mm_, primitive, "end");
+}
+
+double Actuator::calculateForce(double pressure_ratio, double length_mm) const {
+  return law_->tensionN(pressure_ratio, length_mm);
+}
+
+void Actuator::setPressure(double command_ratio) {
+  if (!(command_ratio >= 0 && command_ratio <= 1))
+    throw BadParameter("command of " + name_, fmt::format("{}", command_ratio), "lie in 0 .. 1");
+  command_ratio_ = command_ratio;
+}
+
+void Actuator::setColor(double red, double green, double blue, const std::string& name) {
+  color_ = {red, green, blue, name};
+}
+
+void Actuator::setName(const std::string& name) {
+  name_ = name;
+}
+
+double Actuator::lengthMm() const {
+  double sum_mm = 0;
+  for (const Link& link : links_) sum_mm += (positionOf(link.bead[0]) - positionOf(link.bead[1])).norm();
+  return sum_mm + static_cast<double>(links_.size()) * 2 * settings_.bead_radius_mm;
+}
+
+double Actuator::lengthRatio() const {
+  return (lengthMm() - minimum_length_mm_) / (maximum_length_mm_ - minimum_length_mm_);
+}
+
+double Actuator::massG() const {
+  return 2 * static_cast<double>(links_.size()) * settings_.bead_mass_g;
+}
+
+Actuator::LengthRange Actuator::straightLengthRange() const {
+  return {static_cast<double>(links_.size()) * 2 * settings_.bead_radius_mm, maximum_length_mm_};
+}
+
+void Actuator::placeStraight(const Vector& start_mm, const Vector& end_mm) {
+  const double radius = settings_.bead_radius_mm;
+  const auto count = static_cast<double>(links_.size());
+  const Vector along = end_mm - start_mm;
+  const double length_mm = along.norm();
+  if (!(length_mm >= count * 2 * radius && std::isfinite(length_mm)))
+    throw BadParameter("straight length of " + name_, fmt::format("{:.4g} mm", length_mm),
+                       fmt::format("be at least its beads' diameters, {} mm", count * 2 * radius));
+  // The beads keep their orientation against the chain, so all hinges stay at their reference where the chain was built straight.
+  const Vector built = end_mm_ - start_mm_;
+  const Eigen::Matrix3d turn = Eigen::Quaterniond::FromTwoVectors(built, along).toRotationMatrix();
+  const Vector d = along / length_mm;
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const Vector first = start_mm + along * (static_cast<double>(i) / count) + radius * d;
+    const Vector second = start_mm + along * (static_cast<double>(i + 1) / count) - radius * d;
+    for (int end = 0; end < 2; ++end) {
+      const Vector& center = end == 0 ? first : second;
+      dBodySetPosition(links_[i].bead[end], center.x(), center.y(), center.z());
+      setRotation(links_[i].bead[end], turn);
+      dBodySetLinearVel(links_[i].bead[end], 0, 0, 0);
+      dBodySetAngularVel(links_[i].bead[end], 0, 0, 0);
+    }
+  }
+  updateTension();
+}
+
+void Actuator::updatePressure(double) {
+  pressure_ratio_ = command_ratio_;
+}
+
+void Actuator::updateTension() {
+  tension_N_ = calculateForce(pressure_ratio_, lengthMm());
+}
+
+void Actuator::applyForces() {
+  const double force = tension_N_ * simulation_.physics().force_per_N;
+  for (const Link& link : links_) dJointAddSliderForce(link.slider->id(), force);
+  const double stop_rad = settings_.hinge_limit_deg * rad_per_deg * lengthRatio();
+  for (const Joint* hinge : hinges_) {
+    dJointSetHingeParam(hinge->id(), dParamLoStop, -stop_rad);
+    dJointSetHingeParam(hinge->id(), dParamHiStop, stop_rad);
+  }
+}
+
+}  // namespace musclesim

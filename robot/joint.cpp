@@ -1,0 +1,62 @@
+#include "musclesim/robot/joint.h"
+
+#include "musclesim/error.h"
+#include "musclesim/units.h"
+#include "ode_vector.h"
+
+namespace musclesim {
+
+Joint::Joint(Kind kind, dJointID id, std::string name) : kind_(kind), id_(id), name_(std::move(name)), reference_(Vector::Zero()) {
+  if (kind_ == Kind::slider || kind_ == Kind::fixed) reference_ = separation();
+}
+
+double Joint::angleDeg(int axis) const {
+  if (kind_ == Kind::hinge && axis == 0) return dJointGetHingeAngle(id_) * deg_per_rad;
+  if (kind_ == Kind::hinge2 && axis == 0) return dJointGetHinge2Angle1(id_) * deg_per_rad;
+  if (kind_ == Kind::hinge2 && axis == 1) return dJointGetHinge2Angle2(id_) * deg_per_rad;
+  if (kind_ == Kind::universal && axis == 0) return dJointGetUniversalAngle1(id_) * deg_per_rad;
+  if (kind_ == Kind::universal && axis == 1) return dJointGetUniversalAngle2(id_) * deg_per_rad;
+  throw BadParameter("joint " + name_ + " has no angle about axis " + std::to_string(axis));
+}
+
+Vector Joint::separation() const {
+  const dBodyID first = dJointGetBody(id_, 0), second = dJointGetBody(id_, 1);
+  if (!first) return rotationOf(second).transpose() * -positionOf(second);
+  const Vector other = second ? positionOf(second) : Vector::Zero();
+  return rotationOf(first).transpose() * (other - positionOf(first));
+}
+
+double Joint::gapMm() const {
+  dVector3 on_first, on_second;
+  switch (kind_) {
+    case Kind::ball:
+      dJointGetBallAnchor(id_, on_first);
+      dJointGetBallAnchor2(id_, on_second);
+      break;
+    case Kind::hinge:
+      dJointGetHingeAnchor(id_, on_first);
+      dJointGetHingeAnchor2(id_, on_second);
+      break;
+    case Kind::hinge2:
+      dJointGetHinge2Anchor(id_, on_first);
+      dJointGetHinge2Anchor2(id_, on_second);
+      break;
+    case Kind::universal:
+      dJointGetUniversalAnchor(id_, on_first);
+      dJointGetUniversalAnchor2(id_, on_second);
+      break;
+    case Kind::slider: {
+      dVector3 axis_world;
+      dJointGetSliderAxis(id_, axis_world);
+      const dBodyID first = dJointGetBody(id_, 0);
+      const Vector axis = rotationOf(first ? first : dJointGetBody(id_, 1)).transpose() * fromOde(axis_world);
+      const Vector moved = separation() - reference_;
+      return (moved - axis * axis.dot(moved)).norm();
+    }
+    case Kind::fixed:
+      return (separation() - reference_).norm();
+  }
+  return (fromOde(on_first) - fromOde(on_second)).norm();
+}
+
+}  // namespace musclesim

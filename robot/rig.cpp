@@ -1,0 +1,39 @@
+#include "musclesim/robot/rig.h"
+
+#include <algorithm>
+
+#include "equilibrium.h"
+#include "musclesim/robot/muscle.h"
+#include "musclesim/simulation/simulation.h"
+#include "musclesim/units.h"
+
+namespace musclesim {
+
+Rig::Rig(Simulation& simulation) : Robot(simulation) {
+  const double minimum_mm = parameter("rig.minimum_length_mm", 120, "mm", 15, 1e4, "muscle: shortest length");
+  const double maximum_mm = parameter("rig.maximum_length_mm", 300, "mm", 15, 1e4, "muscle: longest length");
+  load_kg_ = parameter("rig.load_kg", 2.0, "kg", 1e-4, 1e3, "mass hanging from the muscle");
+  const Vector top(0, 0, 0), bottom(0, -(minimum_mm + maximum_mm) / 2, 0);
+  muscle_ = new Muscle(world(), space(), top, top + (bottom - top) / 3, top + (bottom - top) * 2 / 3, bottom, minimum_mm, maximum_mm);
+  constexpr double drawn_radius_mm = 20;
+  load_ = new Sphere(world(), nullptr, bottom, load_kg_ * g_per_kg, 0, drawn_radius_mm);
+  load_->setName("load");
+  load_->attachSlider(nullptr, Vector::UnitY());
+  muscle_->connectStartTo(nullptr);
+  muscle_->connectEndTo(load_);
+  addActuator(muscle_);
+}
+
+void Rig::settle(const Action& first_command) {
+  step(first_command);
+  const double gravity = simulation().physics().gravity_mm_per_s2 / simulation().physics().force_per_N;  // N/g
+  const double weight_N = (load_kg_ * g_per_kg + muscle_->massG() / 2) * gravity;
+  const auto stops = muscle_->straightLengthRange();
+  const double length_mm = rootBetween([&](double l) { return muscle_->calculateForce(muscle_->pressure(), l) - weight_N; },
+                                       stops.shortest_mm, stops.longest_mm);
+  const Vector bottom(0, -length_mm, 0);
+  load_->place(bottom, Eigen::Matrix3d::Identity());
+  muscle_->placeStraight(Vector::Zero(), bottom);
+}
+
+}  // namespace musclesim

@@ -1,0 +1,134 @@
+#include "musclesim/robot/robot.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "musclesim/error.h"
+#include "musclesim/robot/elbow.h"
+#include "musclesim/robot/rig.h"
+#include "musclesim/robot/robotic_arm.h"
+#include "musclesim/simulation/simulation.h"
+
+namespace musclesim {
+
+std::map<std::string, Robot::Registered>& Robot::registry() {
+  static std::map<std::string, Registered> robots = {
+      {"arm",
+       {"the paper's RoboticArm: shoulder, elbow, wrist and ten muscles (up to 30)",
+        [](Simulation& s) { return std::make_unique<RoboticArm>(s); }}},
+      {"rig", {"the paper's load frame: one hanging muscle with a load", [](Simulation& s) { return std::make_unique<Rig>(s); }}},
+      {"elbow", {"an antagonistic pair of muscles on one hinge", [](Simulation& s) { return std::make_unique<Elbow>(s); }}},
+  };
+  return robots;
+}
+
+void Robot::registerFactory(const std::string& name, const std::string& description, Factory factory) {
+  registry()[name] = {description, std::move(factory)};
+}
+
+std::unique_ptr<Robot> Robot::make(const std::string& name, Simulation& simulation) {
+  const auto found = registry().find(name);
+  if (found == registry().end()) {
+    std::vector<std::string> names;
+    for (const auto& [known, entry] : registry()) names.push_back(known);
+    const std::string nearest = nearestName(name, names);
+    throw BadParameter(fmt::format("there is no robot \"{}\"{}; registered: {}", name,
+                                   nearest.empty() ? "" : ", did you mean \"" + nearest + "\"?", fmt::join(names, ", ")));
+  }
+  auto robot = found->second.build(simulation);
+  robot->name_ = name;
+  return robot;
+}
+
+std::vector<std::pair<std::string, std::string>> Robot::registered() {
+  std::vector<std::pair<std::string, std::string>> result;
+  for (const auto& [name, entry] : registry()) result.emplace_back(name, entry.description);
+  return result;
+}
+
+Robot* Robot::getActiveRobot() {
+  return &Simulation::current().robot();
+}
+
+dWorldID Robot::world() const {
+  return simulation_.world();
+}
+
+dSpaceID Robot::space() const {
+  return simulation_.space();
+}
+
+double Robot::parameter(const std::string& name, double default_value, const std::string& unit, double minimum, double maximum,
+                        const std::string& description) const {
+  return simulation_.parameters().number(name, default_value, unit, minimum, maximum, description);
+}
+
+void Robot::addActuator(Actuator* actuator) {
+  actuators_.push_back(actuator);
+}
+
+void Robot::addAngle(const std::string& name, const Joint* joint, int axis) {
+  angles_.push_back({name, joint, axis});
+}
+
+void Robot::setHand(const Primitive* primitive, const Vector& offset_mm) {
+  hand_ = primitive;
+  hand_offset_mm_ = offset_mm;
+}
+
+void Robot::settle(const Action&) {
+  throw BadParameter("initial_state = settled: this robot has no settled start; use built");
+}
+
+State Robot::getState() const {
+  State state;
+  state.time_s = simulation_.time_s();
+  for (const Actuator* actuator : actuators_) {
+    state.command.push_back(actuator->command());
+    state.pressure.push_back(actuator->pressure());
+    state.force_N.push_back(actuator->tensionN());
+    state.length_mm.push_back(actuator->lengthMm());
+  }
+  for (const Angle& angle : angles_) state.angle_deg.push_back(angle.joint->angleDeg(angle.axis));
+  if (hand_) state.hand_mm = hand_->getPosition() + hand_->getRotation() * hand_offset_mm_;
+  return state;
+}
+
+void Robot::step(const Action& action) {
+  if (action.size() != actuators_.size())
+    throw BadParameter("number of commanded pressures", fmt::format("{}", action.size()),
+                       fmt::format("be {}, one per muscle", actuators_.size()));
+  for (std::size_t i = 0; i < action.size(); ++i)
+    if (!std::isfinite(action[i]))
+      throw Diverged(simulation_.time_s(), fmt::format("command_{}", i), fmt::format("the commanded pressure is {}", action[i]));
+  for (std::size_t i = 0; i < action.size(); ++i) {
+    actuators_[i]->setPressure(action[i]);
+    actuators_[i]->updatePressure(0);
+    actuators_[i]->updateTension();
+  }
+}
+
+std::vector<std::string> Robot::signalNames() const {
+  std::vector<std::string> names;
+  for (const char* form : {"command_{}", "pressure_{}", "force_{}_N", "length_{}_mm"})
+    for (std::size_t i = 0; i < actuators_.size(); ++i) names.push_back(fmt::format(fmt::runtime(form), i));
+  for (const Angle& angle : angles_) names.push_back("angle_" + angle.name + "_deg");
+  if (hand_)
+    for (const char* axis : {"x", "y", "z"}) names.push_back(fmt::format("hand_{}_mm", axis));
+  return names;
+}
+
+std::vector<double> Robot::signalValues(const State& state) const {
+  std::vector<double> values;
+  for (const auto* quantity : {&state.command, &state.pressure, &state.force_N, &state.length_mm, &state.angle_deg})
+    values.insert(values.end(), quantity->begin(), quantity->end());
+  if (hand_) {
+    const Vector hand = state.hand_mm.value_or(Vector::Constant(std::numeric_limits<double>::quiet_NaN()));
+    values.insert(values.end(), {hand.x(), hand.y(), hand.z()});
+  }
+  return values;
+}
+
+}  // namespace musclesim

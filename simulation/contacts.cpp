@@ -1,0 +1,38 @@
+#include "contacts.h"
+
+namespace musclesim {
+
+Contacts::Contacts(dWorldID world, dSpaceID space, double friction_limit)
+    : world_(world), space_(space), friction_limit_(friction_limit), joints_(dJointGroupCreate(0)) {}
+
+Contacts::~Contacts() {
+  dJointGroupDestroy(joints_);
+}
+
+void Contacts::collide() {
+  dJointGroupEmpty(joints_);
+  count_ = 0;
+  dSpaceCollide(space_, this, &Contacts::onNear);
+}
+
+void Contacts::onNear(void* contacts, dGeomID first, dGeomID second) {
+  // A muscle's beads share one space; its members are not tested against each other.
+  if (dGeomIsSpace(first) || dGeomIsSpace(second)) return dSpaceCollide2(first, second, contacts, &Contacts::onNear);
+  static_cast<Contacts*>(contacts)->add(first, second);
+}
+
+void Contacts::add(dGeomID first, dGeomID second) {
+  const dBodyID first_body = dGeomGetBody(first), second_body = dGeomGetBody(second);
+  if (first_body == second_body) return;
+  // Contact joints made earlier in this step count: one contact per pair of bodies.
+  if (first_body && second_body && dAreConnected(first_body, second_body)) return;
+  dContact contact = {};
+  contact.surface.mode = 0;
+  contact.surface.mu = friction_limit_;
+  if (dCollide(first, second, 1, &contact.geom, sizeof(dContact)) == 0) return;
+  const dJointID joint = dJointCreateContact(world_, joints_, &contact);
+  dJointAttach(joint, first_body, second_body);
+  ++count_;
+}
+
+}  // namespace musclesim

@@ -1,0 +1,282 @@
+#include "musclesim/simulation/simulation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "../robot/ode_vector.h"
+#include "contacts.h"
+#include "musclesim/error.h"
+#include "musclesim/units.h"
+#include "ode_runtime.h"
+
+namespace musclesim {
+
+namespace {
+
+thread_local Simulation* current_simulation = nullptr;
+
+constexpr double torn_mm = 7.5;            ///< a joint torn further than this ends the run
+constexpr double farthest_mm = 1e5;        ///< a body farther out than 100 m ends the run
+constexpr double fastest_m_per_s = 1000;   ///< in true seconds
+constexpr double settle_duration_s = 0.5;  ///< of `si` time
+constexpr const char* advice = "; try a smaller --step or more --substeps, and look at the last rows of the recording";
+
+double requireStep(double step_s) {
+  if (!(step_s >= 1e-7 && step_s <= 10)) throw BadParameter("step", fmt::format("{} s", step_s), "be a number in 1e-7 .. 10 s");
+  return step_s;
+}
+
+}  // namespace
+
+Simulation::Simulation(SimulationOptions options)
+    : parameters_(std::move(options.parameters)),
+      physics_(options.physics, parameters_),
+      step_s_(requireStep(options.step_s)),
+      seed_(options.seed) {
+  ode_runtime::prepareThread();
+  if (options.substeps < 0 || options.substeps > 1000000)
+    throw BadParameter("substeps", fmt::format("{}", options.substeps), "be a whole number in 1 .. 1000000, or 0 for automatic");
+  substeps_ = options.substeps > 0 ? options.substeps
+                                   : static_cast<int>(std::max(1.0, std::ceil(step_s_ / physics_.longest_internal_step_s - 1e-9)));
+  world_ = dWorldCreate();
+  dWorldSetData(world_, this);
+  dWorldSetGravity(world_, 0, -physics_.gravity_mm_per_s2, 0);
+  dWorldSetERP(world_, physics_.errorReductionPerStep(internalStepS()));
+  dWorldSetCFM(world_, physics_.constraint_force_mixing);
+  space_ = dHashSpaceCreate(nullptr);
+  if (options.plane)
+    dCreatePlane(space_, 0, 1, 0, parameters_.number("world.plane_height_mm", -500, "mm", -1e4, 1e4, "height of the ground plane"));
+  contacts_ = std::make_unique<Contacts>(world_, space_, physics_.contact_friction_N * physics_.force_per_N);
+  if (options.stepper == StepperKind::quick)
+    stepper_ = std::make_unique<QuickStepper>(
+        world_, parameters_.integer("physics.quick_iteration_count", 20, 1, 100000, "sweeps of dWorldQuickStep per internal step"),
+        static_cast<unsigned long>(seed_));
+  else
+    stepper_ = std::make_unique<OdeStepper>(world_);
+  makeCurrent();
+}
+
+Simulation::~Simulation() {
+  if (current_simulation == this) current_simulation = nullptr;
+  controller_.reset();
+  robot_.reset();
+  // After a caught fault ODE's world may still be locked; destroying it would raise another.
+  if (faulted_) {
+    (void)contacts_.release();
+    for (auto& primitive : primitives_) (void)primitive.release();
+    return;
+  }
+  contacts_.reset();
+  primitives_.clear();
+  dSpaceDestroy(space_);
+  dWorldDestroy(world_);
+}
+
+Simulation& Simulation::of(dWorldID world) {
+  auto* simulation = world ? static_cast<Simulation*>(dWorldGetData(world)) : nullptr;
+  if (!simulation) throw BadParameter("this world does not belong to a Simulation");
+  return *simulation;
+}
+
+Simulation& Simulation::current() {
+  if (!current_simulation) throw BadParameter("this thread has no current simulation");
+  return *current_simulation;
+}
+
+void Simulation::makeCurrent() {
+  current_simulation = this;
+}
+
+Robot& Simulation::robot() {
+  if (!robot_) throw BadParameter("this simulation has no robot yet");
+  return *robot_;
+}
+
+Robot& Simulation::build(const std::string& robot_name) {
+  if (robot_) throw BadParameter("this simulation already has a robot");
+  return adopt(Robot::make(robot_name, *this));
+}
+
+Robot& Simulation::adopt(std::unique_ptr<Robot> robot) {
+  if (robot_) throw BadParameter("this simulation already has a robot");
+  robot_ = std::move(robot);
+  return *robot_;
+}
+
+Controller& Simulation::control(std::unique_ptr<Controller> controller) {
+  controller_ = std::move(controller);
+  return *controller_;
+}
+
+Controller* Controller::getActiveController() {
+  Controller* controller = Simulation::current().controller();
+  if (!controller) throw BadParameter("the current simulation has no controller");
+  return controller;
+}
+
+void Simulation::start(const std::string& initial_state, const Action& first_command) {
+  if (initial_state == "settled") {
+    robot().settle(first_command);
+    stop();
+    robot().step(first_command);
+    // In `original` units the same number of true seconds lasts sqrt(1000) times longer.
+    const double slowness = std::sqrt(world_force_per_N / physics_.force_per_N);
+    advance(settle_duration_s * slowness);
+  } else if (initial_state == "built") {
+    robot().step(first_command);
+  } else {
+    throw BadParameter("initial_state", initial_state, "be one of built, settled");
+  }
+  start_time_s_ = internal_time_s_ = 0;
+  step_count_ = 0;
+  worst_gap_ = largestGap();
+}
+
+void Simulation::step() {
+  makeCurrent();
+  for (int i = 0; i < substeps_; ++i) internalStep(internalStepS());
+  ++step_count_;
+  internal_time_s_ = time_s();
+  requireWhole();
+}
+
+void Simulation::advance(double duration_s) {
+  if (!(duration_s > 0 && std::isfinite(duration_s)))
+    throw BadParameter("duration", fmt::format("{} s", duration_s), "be positive and finite");
+  makeCurrent();
+  const double whole_steps = std::round(duration_s / step_s_);
+  if (whole_steps >= 1 && std::abs(whole_steps * step_s_ - duration_s) < 1e-9 * std::max(1.0, duration_s)) {
+    for (long i = 0; i < static_cast<long>(whole_steps); ++i) step();
+    return;
+  }
+  const auto count = static_cast<long>(std::max(1.0, std::ceil(duration_s / internalStepS() - 1e-6)));
+  const double h_s = duration_s / static_cast<double>(count);
+  for (long i = 0; i < count; ++i) internalStep(h_s);
+  start_time_s_ += duration_s;
+  internal_time_s_ = time_s();
+  requireWhole();
+}
+
+void Simulation::internalStep(double h_s) {
+  // A sample's way: command -> pressure -> force -> body. (The sensor stage is Robot::getState.)
+  for (const auto& actuator : actuators_) actuator->updatePressure(h_s);
+  for (const auto& actuator : actuators_) {
+    actuator->updateTension();
+    if (!std::isfinite(actuator->tensionN()))
+      throw Diverged(
+          internal_time_s_, actuator->name(),
+          fmt::format("its tension is {} N at {} mm and pressure {}", actuator->tensionN(), actuator->lengthMm(), actuator->pressure()));
+    actuator->applyForces();
+  }
+  auto& messages = ode_runtime::messagesOfThread();
+  const long messages_before = messages.count;
+  try {
+    contacts_->collide();
+    stepper_->step(h_s);
+  } catch (const OdeFault& fault) {
+    faulted_ = true;
+    throw Diverged(internal_time_s_, "the solver", std::string(fault.what()) + advice);
+  }
+  solver_message_count_ += messages.count - messages_before;
+  internal_time_s_ += h_s;
+  requireFinite();
+}
+
+void Simulation::requireFinite() {
+  const double slowness = std::sqrt(world_force_per_N / physics_.force_per_N);
+  const double fastest_mm_per_s = fastest_m_per_s * mm_per_m / slowness;
+  auto check = [&](dBodyID body) {
+    const double distance_mm = positionOf(body).cwiseAbs().maxCoeff();
+    const double speed_mm_per_s = fromOde(dBodyGetLinearVel(body)).cwiseAbs().maxCoeff();
+    // Written so that NaN fails.
+    if (!(distance_mm <= farthest_mm))
+      throw Diverged(internal_time_s_, labelOf(body), fmt::format("it is {:.3g} mm away from the origin{}", distance_mm, advice));
+    if (!(speed_mm_per_s <= fastest_mm_per_s))
+      throw Diverged(internal_time_s_, labelOf(body), fmt::format("it moves at {:.3g} mm/s{}", speed_mm_per_s, advice));
+  };
+  for (const auto& body : bodies_) check(body->id);
+  for (const auto& actuator : actuators_)
+    for (const Link& link : actuator->links())
+      for (const dBodyID bead : link.bead) check(bead);
+}
+
+void Simulation::requireWhole() {
+  const JointGap gap = largestGap();
+  if (!(gap.gap_mm <= worst_gap_.gap_mm)) worst_gap_ = gap;
+  if (!(gap.gap_mm <= torn_mm)) throw Diverged(internal_time_s_, gap.joint, fmt::format("it is torn by {:.3g} mm{}", gap.gap_mm, advice));
+}
+
+JointGap Simulation::largestGap() const {
+  JointGap largest;
+  for (const auto& joint : joints_) {
+    const double gap_mm = joint->gapMm();
+    if (!(gap_mm <= largest.gap_mm)) largest = {gap_mm, joint->name()};
+  }
+  return largest;
+}
+
+std::string Simulation::labelOf(dBodyID id) const {
+  for (const auto& body : bodies_)
+    if (body->id == id) return body->parts.empty() ? "body" : body->parts.front()->name();
+  for (const auto& actuator : actuators_)
+    for (std::size_t i = 0; i < actuator->links().size(); ++i)
+      for (int end = 0; end < 2; ++end)
+        if (actuator->links()[i].bead[end] == id)
+          return fmt::format("bead {} of {}", 2 * i + static_cast<std::size_t>(end), actuator->name());
+  return "environment";
+}
+
+int Simulation::contactCount() const {
+  return contacts_->count();
+}
+
+namespace {
+
+double energyOf(dBodyID body, double gravity) {
+  dMass mass;
+  dBodyGetMass(body, &mass);
+  const Vector v = fromOde(dBodyGetLinearVel(body)), w = fromOde(dBodyGetAngularVel(body));
+  const Vector w_body = rotationOf(body).transpose() * w;
+  return 0.5 * mass.mass * v.squaredNorm() + 0.5 * w_body.dot(matrixFromOde(mass.I) * w_body) + mass.mass * gravity * positionOf(body).y();
+}
+
+}  // namespace
+
+double Simulation::mechanicalEnergyJ() const {
+  double energy = 0;
+  for (const auto& body : bodies_) energy += energyOf(body->id, physics_.gravity_mm_per_s2);
+  for (const auto& actuator : actuators_)
+    for (const Link& link : actuator->links())
+      for (const dBodyID bead : link.bead) energy += energyOf(bead, physics_.gravity_mm_per_s2);
+  return energy / (world_force_per_N * mm_per_m);
+}
+
+void Simulation::stop() {
+  auto halt = [](dBodyID body) {
+    dBodySetLinearVel(body, 0, 0, 0);
+    dBodySetAngularVel(body, 0, 0, 0);
+  };
+  for (const auto& body : bodies_) halt(body->id);
+  for (const auto& actuator : actuators_)
+    for (const Link& link : actuator->links())
+      for (const dBodyID bead : link.bead) halt(bead);
+}
+
+Body& Simulation::addBody(dBodyID id, Primitive& part) {
+  bodies_.push_back(std::make_unique<Body>(Body{id, {&part}, false}));
+  return *bodies_.back();
+}
+
+void Simulation::removeBody(Body& body) {
+  dBodyDestroy(body.id);
+  std::erase_if(bodies_, [&](const auto& b) { return b.get() == &body; });
+}
+
+Joint& Simulation::addJoint(Joint::Kind kind, dJointID id, const std::string& name) {
+  joints_.push_back(std::make_unique<Joint>(kind, id, name));
+  return *joints_.back();
+}
+
+}  // namespace musclesim

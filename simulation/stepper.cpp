@@ -1,0 +1,30 @@
+#include "musclesim/simulation/stepper.h"
+
+#include "musclesim/error.h"
+
+namespace musclesim {
+
+StepperKind stepperFromName(const std::string& name) {
+  if (name == "auto") return StepperKind::automatic;
+  if (name == "chain") return StepperKind::chain;
+  if (name == "ode") return StepperKind::ode;
+  if (name == "quick") return StepperKind::quick;
+  throw BadParameter("stepper", name, "be one of auto, chain, ode, quick");
+}
+
+void OdeStepper::step(double h_s) {
+  if (!dWorldStep(world_, h_s)) throw OdeFault("dWorldStep ran out of memory");
+}
+
+QuickStepper::QuickStepper(dWorldID world, int iteration_count, unsigned long seed) : world_(world), random_state_(seed) {
+  dWorldSetQuickStepNumIterations(world_, iteration_count);
+}
+
+void QuickStepper::step(double h_s) {
+  // ODE's generator belongs to the process; with the state put back before every step, simulations do not disturb each other.
+  dRandSetSeed(random_state_);
+  if (!dWorldQuickStep(world_, h_s)) throw OdeFault("dWorldQuickStep ran out of memory");
+  random_state_ = dRandGetSeed();
+}
+
+}  // namespace musclesim
