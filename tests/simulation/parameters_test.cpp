@@ -7,19 +7,10 @@
 #include <fstream>
 
 #include "musclesim/error.h"
+#include "support/support.h"
 
 namespace musclesim {
 namespace {
-
-template <class Exception>
-std::string messageOf(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Exception& error) {
-    return error.what();
-  }
-  return "nothing was thrown";
-}
 
 double beadMass(Parameters& parameters) {
   return parameters.number("muscle.bead_mass_g", 10, "g", 0.01, 1e4, "mass of one bead");
