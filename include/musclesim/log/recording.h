@@ -3,8 +3,8 @@
 /// Two files with one stem: NAME.csv (one row per sample) and NAME.json (the sidecar). Format `musclesim-recording-1`.
 #pragma once
 
+#include <cstdint>
 #include <map>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,6 +38,7 @@ struct RecordingInfo {
   std::vector<ActiveEffect> active_effects;
   std::optional<std::uint64_t> seed;
   std::optional<double> step_s;
+  std::optional<bool> complete;  ///< false while a run is being recorded and after one that stopped early; absent: not known
   /// Further members of the sidecar as JSON text, one object; kept when the recording is written again.
   std::string extra_json = "{}";
 };
@@ -60,19 +61,24 @@ struct ReadOptions {
   std::vector<std::string> ignore_columns;
 };
 
-/// Reads NAME.csv and, beside it, NAME.json. Strict: throws BadFile naming file, line, column and what is allowed; IoError if a file cannot
-/// be opened. Units named in the header are converted to the canonical ones (mm, deg, N, fraction of full scale).
+/// Reads NAME.csv and, beside it, NAME.json. Strict: throws BadFile naming file, line, column and what is allowed (also if there is no
+/// sidecar); IoError if the CSV file cannot be read. Units named in the header are converted to the canonical ones (mm, deg, N, fraction of
+/// full scale). If the sidecar says "complete": false, a last line without line end is dropped with a note: its writer was stopped.
 Recording readRecording(const std::string& csv_file, const ReadOptions& options = {});
 
 /// The same from text already in memory; the names are used in messages only.
 Recording parseRecording(const std::string& csv_text, const std::string& csv_name, const std::string& json_text,
                          const std::string& json_name, const ReadOptions& options = {});
 
-/// Writes both files, each to a temporary name first, then renamed. Throws IoError.
+/// Writes both files, each to a temporary name first, then renamed; reading them again gives the same bits.
+/// Throws IoError; BadParameter, before anything is written, for a recording that readRecording would refuse.
 void writeRecording(const Recording& recording, const std::string& csv_file);
 
-/// The sidecar as indented JSON text.
+/// The sidecar as indented JSON text. Throws BadParameter if its contents would be refused when read.
 std::string sidecarText(const RecordingInfo& info);
+
+/// The canonical unit of a signal: "s", "N", "mm", "deg"; empty for fractions, pure numbers and unknown names.
+std::string signalUnit(const std::string& signal_name);
 
 /// The sidecar's path for a recording's CSV path ("a/b.csv" -> "a/b.json").
 std::string sidecarPath(const std::string& csv_file);

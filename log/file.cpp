@@ -1,0 +1,83 @@
+#include "musclesim/log/file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <memory>
+
+#include "musclesim/error.h"
+
+namespace musclesim {
+
+namespace {
+
+[[noreturn]] void failed(const std::string& file, const std::string& what, int reason) {
+  throw IoError(fmt::format("{}: cannot be {}: {}", file, what, std::strerror(reason)));
+}
+
+/// Unique among all processes of this machine and all threads of this process.
+std::string temporaryName(const std::string& file) {
+  static std::atomic<unsigned> counter{0};
+  return fmt::format("{}.{}-{}.tmp", file, getpid(), counter++);
+}
+
+}  // namespace
+
+std::string readTextFile(const std::string& file, std::size_t limit_bytes) {
+  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) failed(file, "opened for reading", errno);
+  const auto close_at_end = [](const int* opened) { close(*opened); };
+  const std::unique_ptr<const int, decltype(close_at_end)> closer(&descriptor, close_at_end);
+  std::string text;
+  std::string block(std::size_t{1} << 16, '\0');
+  while (true) {
+    const ssize_t count = read(descriptor, block.data(), block.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) failed(file, "read", errno);
+    if (count == 0) return text;
+    text.append(block, 0, static_cast<std::size_t>(count));
+    if (text.size() > limit_bytes) throw BadFile(file, fmt::format("is larger than the {} MiB that are allowed", limit_bytes >> 20));
+  }
+}
+
+std::size_t writeAll(int descriptor, std::string_view bytes) {
+  std::size_t written = 0;
+  while (written < bytes.size()) {
+    const ssize_t count = write(descriptor, bytes.data() + written, bytes.size() - written);
+    if (count < 0 && errno == EINTR) continue;
+    if (count == 0) errno = ENOSPC;
+    if (count <= 0) break;
+    written += static_cast<std::size_t>(count);
+  }
+  return written;
+}
+
+FileReplacement::FileReplacement(std::string file, std::string_view text) : file_(std::move(file)), temporary_file_(temporaryName(file_)) {
+  const int descriptor = open(temporary_file_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor < 0) failed(file_, "opened for writing", errno);
+  int reason = 0;
+  if (writeAll(descriptor, text) != text.size() || fsync(descriptor) != 0) reason = errno;
+  if (close(descriptor) != 0 && reason == 0) reason = errno;
+  if (reason == 0) return;
+  unlink(temporary_file_.c_str());
+  failed(file_, "written", reason);
+}
+
+FileReplacement::~FileReplacement() {
+  if (!committed_) unlink(temporary_file_.c_str());
+}
+
+void FileReplacement::commit() {
+  if (rename(temporary_file_.c_str(), file_.c_str()) != 0) failed(file_, "replaced", errno);
+  committed_ = true;
+}
+
+void replaceFile(const std::string& file, std::string_view text) {
+  FileReplacement(file, text).commit();
+}
+
+}  // namespace musclesim

@@ -1,0 +1,246 @@
+#include "sidecar.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "columns.h"
+#include "musclesim/error.h"
+#include "musclesim/log/csv.h"
+#include "musclesim/log/json_document.h"
+
+namespace musclesim {
+
+namespace {
+
+using nlohmann::json;
+
+const std::vector<std::string>& knownMembers() {
+  static const std::vector<std::string> names = {"format",
+                                                 "robot",
+                                                 "physics",
+                                                 "initial_state",
+                                                 "robot_parameters",
+                                                 "description",
+                                                 "trial",
+                                                 "pressure_full_scale_kPa",
+                                                 "command_full_scale_V",
+                                                 "noise_std",
+                                                 "active_effects",
+                                                 "repeat_of",
+                                                 "seed",
+                                                 "step_s",
+                                                 "program",
+                                                 "complete"};
+  return names;
+}
+
+bool isKnown(const std::string& member) {
+  return std::find(knownMembers().begin(), knownMembers().end(), member) != knownMembers().end();
+}
+
+/// A JSON value as it may stand in a message.
+std::string shortText(const json& value) {
+  constexpr std::size_t longest = 40;
+  if (value.is_object()) return "{...}";
+  if (value.is_array()) return "[...]";
+  const std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
+  return text.size() > longest ? text.substr(0, longest) + "..." : text;
+}
+
+/// Reads the members one by one; each function refuses a wrong type or value at its place.
+class SidecarReader {
+ public:
+  SidecarReader(const std::string& text, const std::string& file, const std::vector<std::string>& ignore_columns)
+      : document_(text, file), ignore_columns_(ignore_columns) {}
+
+  RecordingInfo read(std::vector<std::string>& notes);
+
+ private:
+  [[noreturn]] void refuse(const std::string& member, const std::string& path, const json& value, const std::string& allowed) const {
+    document_.refuse(member, fmt::format("{} = {}: must {}", path, shortText(value), allowed));
+  }
+  void requireFormat() const;
+  std::string text(const std::string& member, bool required = false) const;
+  std::optional<std::string> choice(const std::string& member, const std::string& first, const std::string& second) const;
+  std::optional<double> positive(const std::string& member, const std::string& unit) const;
+  std::optional<std::uint64_t> seed() const;
+  std::optional<bool> complete() const;
+  void readRobotParameters(const json& values, const std::string& prefix, std::map<std::string, Parameter::Value>& parameters) const;
+  void readNoise(RecordingInfo& info) const;
+  std::vector<ActiveEffect> effects() const;
+  ActiveEffect effect(const json& value, const std::string& path) const;
+  void readEffectParameters(const json& values, const std::string& path, ActiveEffect& effect) const;
+  void keepFurtherMembers(RecordingInfo& info, std::vector<std::string>& notes) const;
+
+  JsonDocument document_;
+  const std::vector<std::string>& ignore_columns_;
+};
+
+RecordingInfo SidecarReader::read(std::vector<std::string>& notes) {
+  requireFormat();
+  RecordingInfo info;
+  info.robot = text("robot", true);
+  info.physics = choice("physics", "si", "original");
+  info.initial_state = choice("initial_state", "settled", "built");
+  if (const json* values = document_.find("robot_parameters")) readRobotParameters(*values, "", info.robot_parameters);
+  info.description = text("description");
+  info.trial = text("trial");
+  info.repeat_of = text("repeat_of");
+  info.program = text("program");
+  info.pressure_full_scale_kPa = positive("pressure_full_scale_kPa", "kPa");
+  info.command_full_scale_V = positive("command_full_scale_V", "V");
+  info.step_s = positive("step_s", "s");
+  info.seed = seed();
+  info.complete = complete();
+  readNoise(info);
+  info.active_effects = effects();
+  keepFurtherMembers(info, notes);
+  return info;
+}
+
+void SidecarReader::requireFormat() const {
+  const json* value = document_.find("format");
+  const std::string allowed = fmt::format("be \"{}\"", recording_format);
+  if (!value) document_.refuse("format", fmt::format("member \"format\" is missing: must {}", allowed));
+  if (*value != recording_format) refuse("format", "format", *value, allowed);
+}
+
+std::string SidecarReader::text(const std::string& member, bool required) const {
+  const json* value = document_.find(member);
+  if (!value && !required) return "";
+  if (!value)
+    document_.refuse(member,
+                     fmt::format("member \"{}\" is missing: must be the robot's name, for example \"rig\", \"elbow\" or \"arm\"", member));
+  if (!value->is_string()) refuse(member, member, *value, "be a string (leave the member out if it is not known)");
+  auto word = value->get<std::string>();
+  if (required && word.empty()) refuse(member, member, *value, "not be empty");
+  return word;
+}
+
+std::optional<std::string> SidecarReader::choice(const std::string& member, const std::string& first, const std::string& second) const {
+  const json* value = document_.find(member);
+  if (!value) return std::nullopt;
+  if (*value != first && *value != second) refuse(member, member, *value, fmt::format("be \"{}\" or \"{}\"", first, second));
+  return value->get<std::string>();
+}
+
+std::optional<double> SidecarReader::positive(const std::string& member, const std::string& unit) const {
+  const json* value = document_.find(member);
+  if (!value) return std::nullopt;
+  if (!value->is_number() || !(value->get<double>() > 0)) refuse(member, member, *value, fmt::format("be a number above 0 {}", unit));
+  return value->get<double>();
+}
+
+std::optional<std::uint64_t> SidecarReader::seed() const {
+  const json* value = document_.find("seed");
+  if (!value) return std::nullopt;
+  if (!value->is_number_unsigned())
+    refuse("seed", "seed", *value, fmt::format("be a whole number in 0 .. {}", std::numeric_limits<std::uint64_t>::max()));
+  return value->get<std::uint64_t>();
+}
+
+std::optional<bool> SidecarReader::complete() const {
+  const json* value = document_.find("complete");
+  if (!value) return std::nullopt;
+  if (!value->is_boolean()) refuse("complete", "complete", *value, "be true or false");
+  return value->get<bool>();
+}
+
+void SidecarReader::readRobotParameters(const json& values, const std::string& prefix,
+                                        std::map<std::string, Parameter::Value>& parameters) const {
+  if (!values.is_object()) refuse("robot_parameters", "robot_parameters", values, "be an object: {\"name\": value, ...}");
+  for (const auto& [key, value] : values.items()) {
+    const std::string name = prefix + key;
+    const std::string path = "robot_parameters." + name;
+    if (key.empty()) refuse("robot_parameters", path, value, "have a name");
+    if (value.is_object()) {
+      readRobotParameters(value, name + ".", parameters);
+      continue;
+    }
+    if (!value.is_number() && !value.is_string()) refuse("robot_parameters", path, value, "be a number, a string, or an object of these");
+    const Parameter::Value parameter =
+        value.is_number() ? Parameter::Value(value.get<double>()) : Parameter::Value(value.get<std::string>());
+    if (!parameters.emplace(name, parameter).second) refuse("robot_parameters", path, value, "be given once");
+  }
+}
+
+void SidecarReader::readNoise(RecordingInfo& info) const {
+  const json* values = document_.find("noise_std");
+  if (!values) return;
+  if (!values->is_object()) refuse("noise_std", "noise_std", *values, "be an object: {\"column\": number, ...}");
+  for (const auto& [key, value] : values->items()) {
+    const std::string path = "noise_std." + key;
+    if (std::find(ignore_columns_.begin(), ignore_columns_.end(), key) != ignore_columns_.end()) continue;
+    if (!value.is_number() || !(value.get<double>() >= 0))
+      refuse("noise_std", path, value, "be a number, 0 or more, in the unit of its column");
+    try {
+      const Column column = parseColumnName(key);
+      const double deviation = value.get<double>() * column.factor / fullScale(column, info);
+      if (!info.noise_std.emplace(column.name, deviation).second) refuse("noise_std", path, value, "be given once per quantity");
+    } catch (const BadParameter& error) {
+      document_.refuse("noise_std", std::string("noise_std: ") + error.what());
+    }
+  }
+}
+
+std::vector<ActiveEffect> SidecarReader::effects() const {
+  std::vector<ActiveEffect> list;
+  const json* values = document_.find("active_effects");
+  if (!values) return list;
+  if (!values->is_array())
+    refuse("active_effects", "active_effects", *values, "be a list: [{\"id\": ..., \"component\": ..., \"parameters\": {...}}, ...]");
+  for (const auto& value : *values) list.push_back(effect(value, fmt::format("active_effects[{}]", list.size())));
+  return list;
+}
+
+ActiveEffect SidecarReader::effect(const json& value, const std::string& path) const {
+  if (!value.is_object()) refuse("active_effects", path, value, "be an object with the members id, component, parameters");
+  ActiveEffect effect;
+  for (const auto& [key, entry] : value.items()) {
+    const std::string entry_path = path + "." + key;
+    if (key == "parameters") {
+      readEffectParameters(entry, entry_path, effect);
+    } else if (key == "id" || key == "component") {
+      if (!entry.is_string() || entry.get<std::string>().empty())
+        refuse("active_effects", entry_path, entry, "be a string that is not empty");
+      (key == "id" ? effect.id : effect.component) = entry.get<std::string>();
+    } else {
+      refuse("active_effects", entry_path, entry, "be one of the members id, component, parameters");
+    }
+  }
+  if (effect.id.empty()) refuse("active_effects", path, value, "have the member \"id\"");
+  return effect;
+}
+
+void SidecarReader::readEffectParameters(const json& values, const std::string& path, ActiveEffect& effect) const {
+  if (!values.is_object()) refuse("active_effects", path, values, "be an object: {\"name\": number, ...}");
+  for (const auto& [name, value] : values.items()) {
+    const bool is_infinite = value == "inf";
+    if (!value.is_number() && !is_infinite) refuse("active_effects", path + "." + name, value, "be a number or \"inf\"");
+    effect.parameters[name] = is_infinite ? std::numeric_limits<double>::infinity() : value.get<double>();
+  }
+}
+
+void SidecarReader::keepFurtherMembers(RecordingInfo& info, std::vector<std::string>& notes) const {
+  json further = json::object();
+  std::string names;
+  for (const auto& [member, value] : document_.root().items()) {
+    if (isKnown(member)) continue;
+    further[member] = value;
+    names += (names.empty() ? "" : ", ") + inQuotes(member);
+  }
+  info.extra_json = further.dump();
+  if (!names.empty()) notes.push_back("further members of the sidecar, kept as they are: " + names);
+}
+
+}  // namespace
+
+RecordingInfo parseSidecar(const std::string& text, const std::string& file, const std::vector<std::string>& ignore_columns,
+                           std::vector<std::string>& notes) {
+  return SidecarReader(text, file, ignore_columns).read(notes);
+}
+
+}  // namespace musclesim

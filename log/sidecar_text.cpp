@@ -1,0 +1,105 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "musclesim/error.h"
+#include "musclesim/log/csv.h"
+#include "musclesim/log/json_document.h"
+#include "sidecar.h"
+
+namespace musclesim {
+
+namespace {
+
+using OrderedJson = nlohmann::ordered_json;
+
+void requireNumber(const std::string& name, double value, bool infinity_allowed = false) {
+  if (std::isfinite(value) || (infinity_allowed && value == std::numeric_limits<double>::infinity())) return;
+  throw BadParameter(name, fmt::format("{}", value), infinity_allowed ? "be a number or infinity" : "be a finite number");
+}
+
+OrderedJson jsonOf(const std::string& name, const Parameter::Value& value) {
+  if (const auto* word = std::get_if<std::string>(&value)) return *word;
+  requireNumber(name, std::get<double>(value));
+  return std::get<double>(value);
+}
+
+OrderedJson jsonOf(const ActiveEffect& effect) {
+  OrderedJson parameters = OrderedJson::object();
+  for (const auto& [name, value] : effect.parameters) {
+    requireNumber("active_effects." + effect.id + "." + name, value, true);
+    if (std::isinf(value))
+      parameters[name] = "inf";
+    else
+      parameters[name] = value;
+  }
+  return {{"id", effect.id}, {"component", effect.component}, {"parameters", parameters}};
+}
+
+void addNumber(OrderedJson& object, const std::string& name, const std::optional<double>& value) {
+  if (!value) return;
+  requireNumber(name, *value);
+  object[name] = *value;
+}
+
+void addText(OrderedJson& object, const std::string& name, const std::string& value) {
+  if (!value.empty()) object[name] = value;
+}
+
+OrderedJson sidecarJson(const RecordingInfo& info) {
+  OrderedJson object = {{"format", recording_format}, {"robot", info.robot}};
+  addText(object, "physics", info.physics.value_or(""));
+  addText(object, "initial_state", info.initial_state.value_or(""));
+  for (const auto& [name, value] : info.robot_parameters) object["robot_parameters"][name] = jsonOf("robot_parameters." + name, value);
+  addText(object, "description", info.description);
+  addText(object, "trial", info.trial);
+  addText(object, "repeat_of", info.repeat_of);
+  addNumber(object, "pressure_full_scale_kPa", info.pressure_full_scale_kPa);
+  addNumber(object, "command_full_scale_V", info.command_full_scale_V);
+  for (const auto& [name, value] : info.noise_std) addNumber(object["noise_std"], name, value);
+  for (const auto& effect : info.active_effects) object["active_effects"].push_back(jsonOf(effect));
+  if (info.seed) object["seed"] = *info.seed;
+  addNumber(object, "step_s", info.step_s);
+  addText(object, "program", info.program);
+  if (info.complete) object["complete"] = *info.complete;
+  if (info.extra_json.empty()) return object;
+  const JsonDocument further(info.extra_json, "extra_json");
+  for (const auto& [member, value] : further.root().items()) object[member] = value;
+  return object;
+}
+
+/// Runs `action`; what is wrong with text that the caller made is the caller's fault, not a file's.
+template <class Action>
+auto asBadParameter(const Action& action) {
+  try {
+    return action();
+  } catch (const BadFile& error) {
+    throw BadParameter(error.what());
+  }
+}
+
+}  // namespace
+
+RecordingInfo withMember(const RecordingInfo& info, const std::string& member, const std::string& json_value) {
+  OrderedJson object = asBadParameter([&] { return sidecarJson(info); });
+  try {
+    object[member] = OrderedJson::parse(json_value);
+  } catch (const OrderedJson::exception&) {
+    throw BadParameter(fmt::format("sidecar member {} = {}: must be JSON", inQuotes(member), inQuotes(json_value)));
+  }
+  std::vector<std::string> notes;
+  return asBadParameter([&] { return parseSidecar(object.dump(-1, ' ', false, OrderedJson::error_handler_t::replace), "sidecar", {}, notes); });
+}
+
+std::string sidecarText(const RecordingInfo& info) {
+  constexpr int indent = 2;
+  return asBadParameter([&] {
+    const std::string text = sidecarJson(info).dump(indent, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
+    std::vector<std::string> notes;
+    parseSidecar(text, "sidecar", {}, notes);
+    return text;
+  });
+}
+
+}  // namespace musclesim
