@@ -95,6 +95,10 @@ void Parameters::set(const std::string& name, const Parameter::Value& value, con
   overrides_.push_back({name, value, source});
 }
 
+void Parameters::setAll(const Parameters& others) {
+  for (const auto& given : others.overrides_) set(given.name, given.value, given.source);
+}
+
 void Parameters::setFromText(const std::string& assignment, const std::string& source) {
   const auto equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0)

@@ -1,3 +1,70 @@
-int main() {
-  return 0;
+/// The program `musclesim`: reads the command line, runs one command, turns errors into exit statuses.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+
+#include "commands.h"
+#include "interrupt.h"
+#include "musclesim/error.h"
+#include "musclesim/version.h"
+
+namespace {
+
+using namespace musclesim;
+using namespace musclesim::program;
+
+int complain(const std::exception& error, ExitStatus status) {
+  std::fprintf(stderr, "musclesim: error: %s\n", error.what());
+  return status;
+}
+
+int parseAndRun(int argument_count, char** arguments) {
+  CLI::App app(
+      "Simulator of robots driven by pneumatic artificial muscles.\n"
+      "Without a sub-command it is `run`: the RoboticArm finds its height under attractor selection.");
+  app.name("musclesim");
+  app.set_version_flag("--version", "musclesim " MUSCLESIM_VERSION);
+  app.footer(
+      "Exit status: 0 done, 1 internal error, 2 usage, 3 bad input file, 4 simulation diverged,\n"
+      "5 input/output error, 6 incomplete sweep, 130/143 interrupted (files complete up to then).");
+  app.require_subcommand(0, 1);
+
+  ModelOptions model;
+  const program::Action run = addRun(app, model);
+  CLI::App* replay_command = app.add_subcommand("replay", "Plays a recording's commands through the model and compares");
+  const program::Action replay = addReplay(*replay_command, model);
+  try {
+    app.parse(argument_count, arguments);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    std::fprintf(stderr, "musclesim: error: %s\nmusclesim --help lists the options\n", error.what());
+    return bad_usage;
+  }
+  return replay_command->parsed() ? replay() : run();
+}
+
+}  // namespace
+
+int main(int argument_count, char** arguments) {
+  watchInterrupts();
+  try {
+    const int status = parseAndRun(argument_count, arguments);
+    if (std::fflush(stdout) != 0) throw IoError("standard output: cannot be written");
+    // After a caught fault of ODE its own cleanup may not run: leave without it.
+    std::_Exit(status);
+  } catch (const BadParameter& error) {
+    std::_Exit(complain(error, bad_usage));
+  } catch (const BadFile& error) {
+    std::_Exit(complain(error, bad_input));
+  } catch (const Diverged& error) {
+    std::_Exit(complain(error, diverged));
+  } catch (const IoError& error) {
+    std::_Exit(complain(error, io_error));
+  } catch (const std::filesystem::filesystem_error& error) {
+    std::_Exit(complain(error, io_error));
+  } catch (const std::exception& error) {
+    std::_Exit(complain(error, internal_error));
+  }
 }

@@ -31,6 +31,8 @@ class Parameters {
   /// Overrides one parameter. `source` is named in errors ("--set", "model.toml:12").
   /// A later call replaces an earlier one. Throws BadParameter for an empty name or, once declared, for a value out of range.
   void set(const std::string& name, const Parameter::Value& value, const std::string& source);
+  /// All overrides of another set, each as with set().
+  void setAll(const Parameters& others);
   /// "name=value" as given to --set; the value is a number where it reads as one. Throws BadParameter if there is no "=".
   void setFromText(const std::string& assignment, const std::string& source);
   /// All keys of a TOML file; tables become groups. Throws BadFile with line and column, IoError if it cannot be read.

@@ -1,0 +1,51 @@
+/// Plays a recording's commands through the model and compares what the model measures with what was recorded.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "musclesim/log/recording.h"
+#include "musclesim/simulation/simulation.h"
+
+namespace musclesim {
+
+/// What replaces the sidecar's word where it is given.
+struct ReplayOptions {
+  std::optional<std::string> robot, initial_state;
+  std::optional<PhysicsKind> physics;
+  std::optional<double> step_s;
+  StepperKind stepper = StepperKind::automatic;
+  int substeps = 0;
+  bool plane = false;
+  std::uint64_t seed = 1;
+  Parameters parameters;  ///< wins over the sidecar's robot_parameters
+};
+
+/// Difference of one signal, simulated minus recorded, over the samples where both are numbers.
+struct SignalError {
+  std::string name;
+  double rmse = 0, largest = 0;
+  long sample_count = 0;
+};
+
+struct ReplayResult {
+  Recording simulated;              ///< at the recording's times; shorter if the simulation diverged
+  std::vector<SignalError> errors;  ///< of every signal that both have, commands excepted
+  JointGap worst_gap;
+  int substeps = 1;
+  std::string stepper;
+  std::optional<std::string> divergence;  ///< the message, if it diverged
+};
+
+/// Options for a simulation of the recording's plant: physics, step, parameters of the robot.
+SimulationOptions simulationOptionsFor(const RecordingInfo& info, const std::string& source, const ReplayOptions& options = {});
+
+/// Simulates the plant of a recording under its commands, each held until the next row.
+/// Throws BadParameter if the robot has another number of muscles than the recording has commands, or for parameters unknown to the model.
+ReplayResult replayRecording(const Recording& recording, const ReplayOptions& options = {});
+
+/// Error of every signal of `simulated` that `measured` also has, row by row; commands are not compared.
+std::vector<SignalError> compareSignals(const Recording& simulated, const Recording& measured);
+
+}  // namespace musclesim

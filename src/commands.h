@@ -1,0 +1,21 @@
+/// The sub-commands. Each adds itself to the command line and returns what to do when it is chosen.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+#include "options.h"
+
+namespace musclesim::program {
+
+/// What the program ends with; see the table in docs/getting_started.md.
+enum ExitStatus { done = 0, internal_error = 1, bad_usage = 2, bad_input = 3, diverged = 4, io_error = 5, interrupted_base = 128 };
+
+/// Runs a chosen command and returns the exit status; errors are thrown.
+using Action = std::function<int()>;
+
+/// `run`, also the command without a name: the options are added to both.
+Action addRun(CLI::App& app, ModelOptions& model);
+Action addReplay(CLI::App& command, ModelOptions& model);
+
+}  // namespace musclesim::program

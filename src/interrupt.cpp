@@ -1,0 +1,27 @@
+#include "interrupt.h"
+
+#include <csignal>
+
+namespace musclesim::program {
+
+namespace {
+
+volatile std::sig_atomic_t received = 0;
+
+void note(int signal) {
+  received = signal;
+  std::signal(signal, SIG_DFL);
+}
+
+}  // namespace
+
+void watchInterrupts() {
+  std::signal(SIGINT, note);
+  std::signal(SIGTERM, note);
+}
+
+int interruptSignal() {
+  return received;
+}
+
+}  // namespace musclesim::program

@@ -1,0 +1,46 @@
+#include "options.h"
+
+#include <cstdio>
+
+namespace musclesim::program {
+
+void addModelOptions(CLI::App& command, ModelOptions& options) {
+  const std::string model = "Model";
+  command.add_option("--robot", options.robot, "Robot: arm, rig, elbow or a registered name (default arm)")->group(model);
+  command
+      .add_option("--physics", options.physics,
+                  "si: true seconds (default); original: the published program's units; scaled: its constants in true units")
+      ->group(model);
+  command
+      .add_option("--initial-state", options.initial_state, "built: the pose as built; settled: at equilibrium (default: the robot's own)")
+      ->group(model);
+  command.add_option("--stepper", options.stepper, "auto, chain, ode (dWorldStep) or quick (dWorldQuickStep)")
+      ->group(model)
+      ->capture_default_str();
+  command.add_option("--step", options.step_s, "Control and logging step in s (default 0.01)")->group(model);
+  command.add_option("--substeps", options.substeps, "Internal steps per control step (default: as many as the stepper needs)")
+      ->group(model);
+  command.add_option("--muscles", options.muscle_count, "Number of muscles of the arm, 1 .. 30 (default 10)")->group(model);
+  command.add_flag("--plane", options.plane, "Add a ground plane")->group(model);
+  command.add_option("--seed", options.seed, "Seed of everything random")->group(model)->capture_default_str();
+  command.add_option("--set", options.set, "name=value: override one named parameter; may be repeated")
+      ->group(model)
+      ->allow_extra_args(false);
+  command.add_option("--config", options.config, "TOML file with named parameters")->group(model);
+  command.add_flag("--quiet", options.quiet, "No messages on standard error except errors")->group(model);
+  command.add_flag("--json", options.json, "Print the verdict as one JSON object, the last line of standard output")->group(model);
+}
+
+Parameters parametersFrom(const ModelOptions& options) {
+  Parameters parameters;
+  if (options.config) parameters.readToml(*options.config);
+  if (options.muscle_count) parameters.set("arm.muscle_count", static_cast<double>(*options.muscle_count), "--muscles");
+  for (const auto& assignment : options.set) parameters.setFromText(assignment, "--set");
+  return parameters;
+}
+
+void say(const ModelOptions& options, const std::string& message) {
+  if (!options.quiet) std::fprintf(stderr, "musclesim: %s\n", message.c_str());
+}
+
+}  // namespace musclesim::program

@@ -1,0 +1,36 @@
+/// Options that several sub-commands share: which model runs, on which physics, with which numbers.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "musclesim/simulation/simulation.h"
+
+namespace musclesim::program {
+
+/// As given on the command line; empty optionals mean "not given".
+struct ModelOptions {
+  std::optional<std::string> robot, physics, initial_state;
+  std::string stepper = "auto";
+  std::optional<double> step_s;
+  std::optional<int> substeps, muscle_count;
+  bool plane = false;
+  std::uint64_t seed = 1;
+  std::vector<std::string> set;
+  std::optional<std::string> config;
+  bool quiet = false, json = false;
+};
+
+/// Adds the model options to a command; all commands write into the same ModelOptions, so their place among the arguments is free.
+void addModelOptions(CLI::App& command, ModelOptions& options);
+
+/// The named parameters: --config first, then --muscles, then --set.
+Parameters parametersFrom(const ModelOptions& options);
+
+/// One line to standard error, unless --quiet.
+void say(const ModelOptions& options, const std::string& message);
+
+}  // namespace musclesim::program

@@ -1,0 +1,367 @@
+/// `musclesim run`: the paper's program without its window. A robot, a controller, a log and a figure.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "commands.h"
+#include "interrupt.h"
+#include "musclesim/error.h"
+#include "musclesim/log/figure.h"
+#include "musclesim/log/recorder.h"
+#include "musclesim/units.h"
+#include "musclesim/version.h"
+#include "progress.h"
+
+namespace musclesim::program {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RunOptions {
+  bool simple = false, verbose = false, print_config = false;
+  std::string controller = "asm", task = "height";
+  std::vector<double> target_mm;
+  std::optional<double> decision_interval_s, record_interval_s;
+  double duration_s = 300;
+  std::optional<std::string> record, out;
+};
+
+/// In the original's units the paper's 6 s; in true seconds the time the arm takes to settle (docs/parameters.md).
+double defaultDecisionIntervalS(const PhysicsSettings& physics) {
+  constexpr double original_s = 6.0, si_s = 1.0;
+  if (physics.kind == PhysicsKind::si) return si_s;
+  return physics.kind == PhysicsKind::original ? original_s : original_s / std::sqrt(original_force_deficit_ratio);
+}
+
+ControllerRequest controllerRequest(Simulation& simulation, const RunOptions& options) {
+  const double interval_s = options.decision_interval_s.value_or(defaultDecisionIntervalS(simulation.physics()));
+  if (!(interval_s > 0 && std::isfinite(interval_s)))
+    throw BadParameter("decision-interval", fmt::format("{} s", interval_s), "be positive and finite");
+  ControllerRequest request{
+      simulation.parameters(), simulation.robot().actuatorCount(), simulation.stepS(), interval_s, simulation.seed(), options.task, {}};
+  if (!options.target_mm.empty()) request.target_mm = Vector(options.target_mm[0], options.target_mm[1], options.target_mm[2]);
+  return request;
+}
+
+/// log/runs/<date-time>-<task>-<seed>, with a number appended if that exists.
+fs::path freshRunFolder(const RunOptions& options, std::uint64_t seed) {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  char stamp[32];
+  std::strftime(stamp, sizeof stamp, "%Y-%m-%d-%H%M%S", &local);
+  const fs::path first = fs::path("log") / "runs" / fmt::format("{}-{}-{}", stamp, options.task, seed);
+  fs::path folder = first;
+  for (int i = 2; fs::exists(folder); ++i) folder = fmt::format("{}-{}", first.string(), i);
+  return folder;
+}
+
+fs::path recordingPath(const RunOptions& options, std::uint64_t seed) {
+  const fs::path file =
+      options.record ? fs::path(*options.record) : (options.out ? fs::path(*options.out) : freshRunFolder(options, seed)) / "run.csv";
+  if (file.extension() != ".csv") throw BadParameter("record", file.string(), "end in .csv");
+  if (file.has_parent_path()) {
+    std::error_code error;
+    fs::create_directories(file.parent_path(), error);
+    if (error) throw IoError(fmt::format("{}: the folder cannot be made: {}", file.parent_path().string(), error.message()));
+  }
+  return file;
+}
+
+nlohmann::json toJson(const Parameter::Value& value) {
+  if (const auto* number = std::get_if<double>(&value)) return *number;
+  return std::get<std::string>(value);
+}
+
+/// What a replay needs to rebuild the robot: its own parameters, and all others of the model that differ from their defaults.
+std::map<std::string, Parameter::Value> robotParameters(Simulation& simulation) {
+  std::map<std::string, Parameter::Value> result;
+  const std::string own = simulation.robot().name() + ".";
+  for (const Parameter& p : simulation.parameters().declared()) {
+    if (p.name.starts_with(own))
+      result[p.name.substr(own.size())] = p.value;
+    else if (p.value != p.default_value)
+      result[p.name] = p.value;
+  }
+  return result;
+}
+
+RecordingInfo describe(Simulation& simulation, const RunOptions& options, const std::string& initial_state) {
+  RecordingInfo info;
+  info.robot = simulation.robot().name();
+  info.physics = nameOf(simulation.physics().kind);
+  info.initial_state = initial_state;
+  info.robot_parameters = robotParameters(simulation);
+  info.description = fmt::format("{} under {}, {} task", info.robot, options.controller, options.task);
+  info.seed = simulation.seed();
+  info.step_s = simulation.stepS();
+  info.program = "musclesim " MUSCLESIM_VERSION;
+  nlohmann::json extra;
+  extra["controller"] = options.controller;
+  extra["task"] = options.task;
+  extra["stepper"] = simulation.stepper().name();
+  extra["substeps"] = simulation.substeps();
+  for (const Parameter& p : simulation.parameters().declared()) extra["parameters"][p.name] = toJson(p.value);
+  info.extra_json = extra.dump();
+  return info;
+}
+
+/// The listing of the paper's --verbose: all primitives and actuators.
+void list(Simulation& simulation) {
+  for (const auto& primitive : simulation.primitives()) {
+    const Vector p = primitive->getPosition();
+    fmt::print("primitive {}: {} g, centre of mass of its body at ({:.3f}, {:.3f}, {:.3f}) mm\n", primitive->name(), primitive->massG(),
+               p.x(), p.y(), p.z());
+  }
+  for (const auto& actuator : simulation.actuators())
+    fmt::print("actuator {}: {} links, {:.3f} mm, {} .. {} mm{}{}\n", actuator->name(), actuator->links().size(), actuator->lengthMm(),
+               actuator->minimumLengthMm(), actuator->maximumLengthMm(), actuator->color().name.empty() ? "" : ", ",
+               actuator->color().name);
+}
+
+/// How well a target was reached: the figures of the verdict.
+class Score {
+ public:
+  void add(double time_s, const State& state, const Controller& controller) {
+    const auto target = controller.targetMm();
+    if (!target || !state.hand_mm) return;
+    error_mm_ = controller.targetIsHeight() ? std::abs(state.hand_mm->y() - target->y()) : (*state.hand_mm - *target).norm();
+    const bool near = *error_mm_ <= near_mm;
+    if (near && !reached_at_s_) reached_at_s_ = time_s;
+    if (!reached_at_s_) return;
+    ++samples_since_;
+    near_since_ += near;
+  }
+  nlohmann::json verdict() const {
+    nlohmann::json json;
+    if (!error_mm_) return json;
+    json["final_error_mm"] = *error_mm_;
+    json["reached_within_mm"] = near_mm;
+    json["reached_at_s"] = reached_at_s_ ? nlohmann::json(*reached_at_s_) : nlohmann::json(nullptr);
+    json["held_share"] = samples_since_ ? static_cast<double>(near_since_) / static_cast<double>(samples_since_) : 0.0;
+    return json;
+  }
+
+ private:
+  static constexpr double near_mm = 20;
+  std::optional<double> error_mm_, reached_at_s_;
+  long samples_since_ = 0, near_since_ = 0;
+};
+
+std::vector<Color> muscleColors(const Robot& robot) {
+  std::vector<Color> colors;
+  for (const Actuator* actuator : robot.actuators())
+    if (!actuator->color().name.empty()) colors.push_back(actuator->color());
+  return colors;
+}
+
+/// One run from the first command to the last row.
+class Run {
+ public:
+  Run(const ModelOptions& model, const RunOptions& options) : model_(model), options_(options), simulation_(simulationOptions(model)) {
+    simulation_.build(model.robot.value_or("arm"));
+    controller_ = &simulation_.control(Controller::make(options.controller, controllerRequest(simulation_, options)));
+    simulation_.parameters().requireAllKnown();
+    requireDuration();
+  }
+
+  Simulation& simulation() { return simulation_; }
+
+  int execute() {
+    const std::string initial_state = model_.initial_state.value_or(simulation_.robot().initialState());
+    // The first decision comes before the files: what the controller reports by then decides the columns.
+    const musclesim::Action first_action = controller_->output(robot().getState());
+    const fs::path csv = recordingPath(options_, simulation_.seed());
+    Recorder recorder(csv.string(), describe(simulation_, options_, initial_state), columns());
+    say(model_, fmt::format("{} physics, stepper {}, {} internal steps of {:.4g} s per step of {:g} s, seed {}",
+                            nameOf(simulation_.physics().kind), simulation_.stepper().name(), simulation_.substeps(),
+                            simulation_.internalStepS(), simulation_.stepS(), simulation_.seed()));
+    std::optional<Diverged> divergence;
+    Progress progress(options_.duration_s, model_.quiet);
+    try {
+      simulation_.start(initial_state, first_action);
+      loop(recorder, progress);
+    } catch (const Diverged& error) {
+      divergence = error;
+    }
+    const nlohmann::json verdict = conclude(divergence, progress.wallS());
+    recorder.note("verdict", verdict.dump());
+    recorder.close(!divergence && interruptSignal() == 0);
+    const fs::path svg = fs::path(csv).replace_extension(".svg");
+    const Recording recording = readRecording(csv.string());
+    writeRunFigure(recording, muscleColors(simulation_.robot()), recording.info.description, svg.string());
+    return report(verdict, csv, svg, divergence);
+  }
+
+ private:
+  static SimulationOptions simulationOptions(const ModelOptions& model) {
+    SimulationOptions options;
+    options.physics = physicsFromName(model.physics.value_or("si"));
+    options.stepper = stepperFromName(model.stepper);
+    options.step_s = model.step_s.value_or(options.step_s);
+    options.substeps = model.substeps.value_or(0);
+    if (model.substeps && *model.substeps < 1) throw BadParameter("substeps", std::to_string(*model.substeps), "be at least 1");
+    options.plane = model.plane;
+    options.seed = model.seed;
+    options.parameters = parametersFrom(model);
+    return options;
+  }
+
+  void requireDuration() const {
+    if (!(options_.duration_s >= simulation_.stepS() && options_.duration_s <= 1e7))
+      throw BadParameter("duration", fmt::format("{} s", options_.duration_s),
+                         fmt::format("lie between one step, {} s, and 1e7 s", simulation_.stepS()));
+    if (options_.record_interval_s && !(*options_.record_interval_s > 0 && std::isfinite(*options_.record_interval_s)))
+      throw BadParameter("record-interval", fmt::format("{} s", *options_.record_interval_s), "be positive and finite");
+  }
+
+  std::vector<std::string> columns() const {
+    std::vector<std::string> names = robot().signalNames();
+    if (controller_->targetMm())
+      for (const char* axis : {"x", "y", "z"})
+        if (!controller_->targetIsHeight() || *axis == 'y') names.push_back(fmt::format("target_{}_mm", axis));
+    if (controller_->activity()) names.push_back("activity");
+    return names;
+  }
+
+  std::vector<double> row(const State& state) const {
+    std::vector<double> values = robot().signalValues(state);
+    if (const auto target = controller_->targetMm()) {
+      if (controller_->targetIsHeight())
+        values.push_back(target->y());
+      else
+        values.insert(values.end(), target->data(), target->data() + 3);
+    }
+    if (const auto activity = controller_->activity()) values.push_back(*activity);
+    return values;
+  }
+
+  /// The paper's run loop: state, output, step; with a row of the log before the world moves. The first action already acts.
+  void loop(Recorder& recorder, Progress& progress) {
+    const long step_count = std::lround(options_.duration_s / simulation_.stepS());
+    const long record_every = std::max(1L, std::lround(options_.record_interval_s.value_or(simulation_.stepS()) / simulation_.stepS()));
+    for (long i = 0; i < step_count && interruptSignal() == 0; ++i) {
+      if (i > 0) robot().step(controller_->output(robot().getState()));
+      record(recorder, progress, i % record_every == 0);
+      simulation_.step();
+      warnOfGap();
+    }
+    record(recorder, progress, true);
+  }
+
+  void record(Recorder& recorder, Progress& progress, bool due) {
+    const State state = robot().getState();
+    score_.add(state.time_s, state, *controller_);
+    if (due) recorder.append(state.time_s, row(state));
+    progress.show(state.time_s, state.hand_mm ? fmt::format("height {:.0f} mm", state.hand_mm->y()) : "");
+  }
+
+  void warnOfGap() {
+    constexpr double warning_mm = 1.0;
+    const JointGap& gap = simulation_.worstGap();
+    if (gap_warned_ || gap.gap_mm <= warning_mm) return;
+    gap_warned_ = true;
+    say(model_, fmt::format("warning: {} is torn by {:.2g} mm at {:.4g} s; a smaller --step or more --substeps would be more accurate",
+                            gap.joint, gap.gap_mm, simulation_.time_s()));
+  }
+
+  nlohmann::json conclude(const std::optional<Diverged>& divergence, double wall_s) const {
+    nlohmann::json verdict = score_.verdict();
+    verdict["status"] = divergence ? "diverged" : interruptSignal() ? "interrupted" : "done";
+    if (divergence) verdict["message"] = divergence->what();
+    verdict["simulated_s"] = simulation_.time_s();
+    verdict["worst_joint_gap_mm"] = simulation_.worstGap().gap_mm;
+    verdict["worst_joint"] = simulation_.worstGap().joint;
+    verdict["solver_messages"] = simulation_.solverMessageCount();
+    verdict["wall_s"] = wall_s;
+    verdict["wall_per_simulated_s"] = simulation_.time_s() > 0 ? wall_s / simulation_.time_s() : 0.0;
+    return verdict;
+  }
+
+  int report(nlohmann::json verdict, const fs::path& csv, const fs::path& svg, const std::optional<Diverged>& divergence) const {
+    if (divergence) std::fprintf(stderr, "musclesim: error: %s\n", divergence->what());
+    if (interruptSignal()) say(model_, "interrupted; the files are complete up to then");
+    const double ratio = verdict["wall_per_simulated_s"];
+    say(model_,
+        fmt::format("{:g} s simulated in {:.3g} s of wall time: r = {:.3g}", simulation_.time_s(), verdict["wall_s"].get<double>(), ratio));
+    if (verdict.contains("reached_at_s") && !verdict["reached_at_s"].is_null())
+      say(model_, fmt::format("target reached (within {:g} mm) at {:.2f} s, held for {:.0f} % of the time since",
+                              verdict["reached_within_mm"].get<double>(), verdict["reached_at_s"].get<double>(),
+                              100 * verdict["held_share"].get<double>()));
+    fmt::print("log     {}\nfigure  {}\n", csv.string(), svg.string());
+    if (model_.json) {
+      verdict["command"] = "run";
+      verdict["log"] = csv.string();
+      verdict["figure"] = svg.string();
+      fmt::print("{}\n", verdict.dump());
+    }
+    if (divergence) return ExitStatus::diverged;
+    return interruptSignal() ? interrupted_base + interruptSignal() : done;
+  }
+
+  Robot& robot() { return simulation_.robot(); }
+  const Robot& robot() const { return const_cast<Simulation&>(simulation_).robot(); }
+
+  const ModelOptions& model_;
+  const RunOptions& options_;
+  Simulation simulation_;
+  Controller* controller_ = nullptr;
+  Score score_;
+  bool gap_warned_ = false;
+};
+
+int run(const ModelOptions& model, const RunOptions& options) {
+  Run run(model, options);
+  if (options.verbose) list(run.simulation());
+  if (options.print_config) {
+    fmt::print("{}", run.simulation().parameters().toToml());
+    return done;
+  }
+  if (!options.simple) throw BadParameter("this build has no window: use --simple for a batch run");
+  return run.execute();
+}
+
+void addOptions(CLI::App& command, RunOptions& options) {
+  const std::string group = "Run";
+  command.add_flag("--simple", options.simple, "Batch run without display or interaction")->group(group);
+  command.add_flag("--verbose", options.verbose, "List all primitives and actuators on standard output")->group(group);
+  command.add_option("--controller", options.controller, "Controller: " + fmt::format("{}", fmt::join(Controller::names(), ", ")))
+      ->group(group)
+      ->capture_default_str();
+  command.add_option("--task", options.task, "height: bring the hand to a height; reach: to a point")->group(group)->capture_default_str();
+  command.add_option("--target", options.target_mm, "X,Y,Z of the target in mm (for the height task only Y counts)")
+      ->group(group)
+      ->delimiter(',')
+      ->expected(3);
+  command
+      .add_option("--decision-interval", options.decision_interval_s,
+                  "Time between decisions in s (default: 6 in original physics, 1 in si)")
+      ->group(group);
+  command.add_option("--duration", options.duration_s, "Simulated time in s")->group(group)->capture_default_str();
+  command.add_option("--record", options.record, "Recording to write, FILE.csv (default: run.csv in the run's folder)")->group(group);
+  command
+      .add_option("--record-interval", options.record_interval_s,
+                  "Time between recorded rows in s, rounded to whole steps (default: every step)")
+      ->group(group);
+  command.add_option("--out", options.out, "Folder of the run (default: log/runs/<date-time>-<task>-<seed>)")->group(group);
+  command.add_flag("--print-config", options.print_config, "Print all parameters as TOML and exit")->group(group);
+}
+
+}  // namespace
+
+Action addRun(CLI::App& app, ModelOptions& model) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* named = app.add_subcommand("run", "Runs a robot under a controller, with a log and a figure (the default)");
+  for (CLI::App* command : {&app, named}) {
+    addOptions(*command, *options);
+    addModelOptions(*command, model);
+  }
+  return [&model, options] { return run(model, *options); };
+}
+
+}  // namespace musclesim::program

@@ -1,0 +1,92 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "musclesim/log/recording.h"
+#include "src/program.h"
+
+namespace musclesim {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ReplayCommand : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("musclesim_replay_test_" + std::to_string(getpid()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  void record(const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"--simple", "--quiet",    "--robot", "elbow",    "--controller", "random", "--decision-interval",
+                                          "0.1",      "--duration", "0.4",     "--record", "run.csv"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramResult result = runProgram(arguments, folder_);
+    ASSERT_EQ(result.status, 0) << result.err;
+  }
+  nlohmann::json replay(std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"replay", "run.csv", "--json", "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramResult result = runProgram(arguments, folder_);
+    EXPECT_EQ(result.status, 0) << result.err;
+    std::istringstream lines(result.out);
+    std::string line, last;
+    while (std::getline(lines, line)) last = line;
+    return nlohmann::json::parse(last);
+  }
+  void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
+
+  fs::path folder_;
+};
+
+TEST_F(ReplayCommand, ReproducesItsOwnRunsBitForBit) {
+  record({"--set", "elbow.forearm_kg=0.7", "--set", "muscle.slider_friction_N=0.5"});
+  const auto verdict = replay({"--out", "again.csv"});
+  ASSERT_EQ(verdict.at("status"), "done");
+  ASSERT_TRUE(verdict.at("signals").contains("angle_elbow_deg"));
+  for (const auto& [name, error] : verdict.at("signals").items()) EXPECT_EQ(error.at("largest"), 0.0) << name;
+  const Recording again = readRecording((folder_ / "again.csv").string());
+  EXPECT_EQ(again.time_s, readRecording((folder_ / "run.csv").string()).time_s);
+}
+
+TEST_F(ReplayCommand, ShowsTheGapOfAnotherModel) {
+  record({});
+  const auto verdict = replay({"--set", "elbow.forearm_kg=0.9"});
+  EXPECT_GT(verdict.at("signals").at("angle_elbow_deg").at("rmse"), 0.1);
+}
+
+TEST_F(ReplayCommand, PrintsATableForPeople) {
+  record({});
+  const ProgramResult result = runProgram({"replay", "run.csv"}, folder_);
+  EXPECT_EQ(result.status, 0);
+  for (const char* word : {"RMSE", "angle_elbow_deg", "length_1_mm", "deg"}) EXPECT_NE(result.out.find(word), std::string::npos) << word;
+}
+
+TEST_F(ReplayCommand, RefusesBadInput) {
+  auto expectRefused = [&](const std::vector<std::string>& arguments, int status, const std::string& word) {
+    const ProgramResult result = runProgram(arguments, folder_);
+    EXPECT_EQ(result.status, status) << result.err;
+    EXPECT_NE(result.err.find(word), std::string::npos) << word << " is missing in: " << result.err;
+  };
+  expectRefused({"replay"}, 2, "recording");
+  expectRefused({"replay", "missing.csv"}, 5, "missing.csv");
+  write("rig.json", R"({"format": "musclesim-recording-1", "robot": "rig"})");
+  write("rig.csv", "time_s,command_0,length_0_mm\n0,0.5,200\n0.01,1.5,200\n");
+  expectRefused({"replay", "rig.csv"}, 3, "rig.csv:3:");
+  write("rig.csv", "time_s,command_0,command_1,length_0_mm\n0,0.5,0.5,200\n0.01,0.5,0.5,200\n");
+  expectRefused({"replay", "rig.csv"}, 2, "command");
+  write("rig.csv", "time_s,command_0,length_0_mm\n0,0.5,200\n0.01,0.5,200\n");
+  expectRefused({"replay", "rig.csv", "--set", "rig.lod_kg=2"}, 2, "rig.load_kg");
+  expectRefused({"replay", "rig.csv", "--out", "no/such/folder/x.csv"}, 5, "no/such/folder");
+  write("rig.json", R"({"format": "musclesim-recording-1", "robot": "rigg"})");
+  expectRefused({"replay", "rig.csv"}, 2, "rigg");
+}
+
+}  // namespace
+}  // namespace musclesim
