@@ -130,7 +130,7 @@ constexpr std::array<OperationRow, 52> operation_rows{{
     hinge("pollex", "radius", {-190, -150, 0}, 'x', -60, 60),
 }};
 
-constexpr std::array<MuscleRow, 10> muscle_rows{{
+constexpr std::array<MuscleRow, 30> muscle_rows{{
     // The ten muscles of the published program.
     {.color_name = "gray", .cap_rgb = {0.75, 0.75, 0.75},  // 0
      .start_mm = {-197, 310, 0}, .start_control_mm = {-137, 310, 20},
@@ -180,6 +180,110 @@ constexpr std::array<MuscleRow, 10> muscle_rows{{
     {.color_name = "purple", .cap_rgb = {0.73, 0, 0.96},  // 9
      .start_mm = {-190, -35, -6}, .start_control_mm = {-190, -35, -46},
      .end_control_mm = {-205, -125, -35}, .end_mm = {-205, -165, -25},
+     .minimum_length_mm = 60, .maximum_length_mm = 200,
+     .connect_start_to = "ulna", .connect_end_to = "medius_rest"},
+
+    // Ten more with the roles of the first ten: muscle 10 + k spans the joints that muscle k spans.
+    {.color_name = "olive", .cap_rgb = {0.5, 0.5, 0},  // 10
+     .start_mm = {-201.6, 346.8, 10}, .start_control_mm = {-159, 346, 43},
+     .end_control_mm = {-132, 392, 159}, .end_mm = {-52.5, 395.3, 124.3},
+     .minimum_length_mm = 75, .maximum_length_mm = 300,
+     .connect_start_to = "humerus", .connect_end_to = "rib_3_4"},
+    {.color_name = "rose", .cap_rgb = {1, 0, 0.5},  // 11
+     .start_mm = {-203.5, 278.4, 11.3}, .start_control_mm = {-192, 280, 78},
+     .end_control_mm = {-171, 273, 163}, .end_mm = {-101.5, 272.8, 136.5},
+     .minimum_length_mm = 75, .maximum_length_mm = 300,
+     .connect_start_to = "humerus", .connect_end_to = "rib_9_10"},
+    {.color_name = "sienna", .cap_rgb = {0.63, 0.32, 0.18},  // 12
+     .start_mm = {-216.3, 313.5, -11.4}, .start_control_mm = {-260, 313, -49},
+     .end_control_mm = {-269, 273, -125}, .end_mm = {-219.5, 274.9, -136.7},
+     .minimum_length_mm = 75, .maximum_length_mm = 200,
+     .connect_start_to = "humerus", .connect_end_to = "scapula"},
+    {.color_name = "salmon", .cap_rgb = {0.98, 0.5, 0.45},  // 13
+     .start_mm = {-220.5, 256.9, 7.6}, .start_control_mm = {-275, 277, 33},
+     .end_control_mm = {-308, 430, -8}, .end_mm = {-258.3, 430.2, -64.5},
+     .minimum_length_mm = 75, .maximum_length_mm = 300,
+     .connect_start_to = "humerus", .connect_end_to = "scapula"},
+    {.color_name = "chocolate", .cap_rgb = {0.82, 0.41, 0.12},  // 14
+     .start_mm = {-213.4, 220.9, -12.6}, .start_control_mm = {-248, 181, -54},
+     .end_control_mm = {-265, 132, -86}, .end_mm = {-219.8, 76.4, -57},
+     .minimum_length_mm = 75, .maximum_length_mm = 300,
+     .connect_start_to = "humerus", .connect_end_to = "ulna_rest"},
+    {.color_name = "gold", .cap_rgb = {1, 0.84, 0},  // 15
+     .start_mm = {-197.2, 270.8, 2.4}, .start_control_mm = {-165, 245, 26},
+     .end_control_mm = {-148, 79, 34}, .end_mm = {-187.9, 48.2, 5.6},
+     .minimum_length_mm = 90, .maximum_length_mm = 300,
+     .connect_start_to = "humerus", .connect_end_to = "ulna"},
+    {.color_name = "forest", .cap_rgb = {0.13, 0.55, 0.13},  // 16
+     .start_mm = {-227, 120.5, 1.3}, .start_control_mm = {-259, 104, -9},
+     .end_control_mm = {-269, 5, -11}, .end_mm = {-235.6, -1.9, 2.1},
+     .minimum_length_mm = 60, .maximum_length_mm = 200,
+     .connect_start_to = "elbow", .connect_end_to = "radius"},
+    {.color_name = "mint", .cap_rgb = {0.6, 1, 0.6},  // 17
+     .start_mm = {-222.9, 176.8, -1.4}, .start_control_mm = {-269, 156, 25},
+     .end_control_mm = {-260, -62, 14}, .end_mm = {-236, -61, -0.2},
+     .minimum_length_mm = 60, .maximum_length_mm = 350,
+     .connect_start_to = "humerus", .connect_end_to = "radius"},
+    {.color_name = "azure", .cap_rgb = {0, 0.5, 1},  // 18
+     .start_mm = {-184, -48.1, 0}, .start_control_mm = {-163, -59, 34},
+     .end_control_mm = {-172, -137, 34}, .end_mm = {-196.7, -172.6, 8.8},
+     .minimum_length_mm = 60, .maximum_length_mm = 200,
+     .connect_start_to = "ulna", .connect_end_to = "medius_rest"},
+    {.color_name = "plum", .cap_rgb = {0.56, 0.27, 0.52},  // 19
+     .start_mm = {-186.3, -60, -4.8}, .start_control_mm = {-164, -67, -52},
+     .end_control_mm = {-169, -140, -63}, .end_mm = {-195.5, -172.6, -33.3},
+     .minimum_length_mm = 60, .maximum_length_mm = 200,
+     .connect_start_to = "ulna", .connect_end_to = "medius_rest"},
+
+    // And ten more: muscle 20 + k spans the joints that muscle k spans.
+    {.color_name = "moss", .cap_rgb = {0.54, 0.6, 0.36},  // 20
+     .start_mm = {-205.4, 327.2, 12.1}, .start_control_mm = {-166, 327, 43},
+     .end_control_mm = {-127, 341, 164}, .end_mm = {-66.2, 345.2, 138.3},
+     .minimum_length_mm = 75, .maximum_length_mm = 300,
+     .connect_start_to = "humerus", .connect_end_to = "rib_5_6"},
+    {.color_name = "teal", .cap_rgb = {0, 0.5, 0.5},  // 21
+     .start_mm = {-205.6, 306.6, 12.2}, .start_control_mm = {-179, 308, 65},
+     .end_control_mm = {-151, 312, 156}, .end_mm = {-90, 312.3, 131.5},
+     .minimum_length_mm = 75, .maximum_length_mm = 300,
+     .connect_start_to = "humerus", .connect_end_to = "rib_7_8"},
+    {.color_name = "tan", .cap_rgb = {0.82, 0.71, 0.55},  // 22
+     .start_mm = {-212.9, 276.2, -12.7}, .start_control_mm = {-228, 256, -50},
+     .end_control_mm = {-256, 245, -140}, .end_mm = {-208.4, 256.4, -155.8},
+     .minimum_length_mm = 75, .maximum_length_mm = 200,
+     .connect_start_to = "humerus", .connect_end_to = "scapula"},
+    {.color_name = "cobalt", .cap_rgb = {0, 0.28, 0.67},  // 23
+     .start_mm = {-221.4, 194.4, -6.3}, .start_control_mm = {-260, 216, -25},
+     .end_control_mm = {-296, 330, -89}, .end_mm = {-244.3, 385.3, -88.8},
+     .minimum_length_mm = 75, .maximum_length_mm = 300,
+     .connect_start_to = "humerus", .connect_end_to = "scapula"},
+    {.color_name = "lime", .cap_rgb = {0.75, 1, 0},  // 24
+     .start_mm = {-198.3, 238.7, -5.6}, .start_control_mm = {-170, 196, -31},
+     .end_control_mm = {-162, 129, -71}, .end_mm = {-199, 76.4, -57},
+     .minimum_length_mm = 75, .maximum_length_mm = 300,
+     .connect_start_to = "humerus", .connect_end_to = "ulna_rest"},
+    {.color_name = "steel", .cap_rgb = {0.27, 0.51, 0.71},  // 25
+     .start_mm = {-197.7, 205.8, -4.1}, .start_control_mm = {-159, 179, 7},
+     .end_control_mm = {-134, 14, -1}, .end_mm = {-184.3, -16.6, -1.8},
+     .minimum_length_mm = 90, .maximum_length_mm = 300,
+     .connect_start_to = "humerus", .connect_end_to = "ulna"},
+    {.color_name = "jade", .cap_rgb = {0, 0.66, 0.42},  // 26
+     .start_mm = {-207.2, 121.9, -15.9}, .start_control_mm = {-179, 108, -45},
+     .end_control_mm = {-204, 7, -41}, .end_mm = {-225.4, 8.1, -3.9},
+     .minimum_length_mm = 60, .maximum_length_mm = 200,
+     .connect_start_to = "elbow", .connect_end_to = "radius"},
+    {.color_name = "sky", .cap_rgb = {0.53, 0.81, 0.92},  // 27
+     .start_mm = {-219.8, 194.5, 8.5}, .start_control_mm = {-255, 173, 51},
+     .end_control_mm = {-225, -52, 31}, .end_mm = {-227, -44.5, 5.2},
+     .minimum_length_mm = 60, .maximum_length_mm = 350,
+     .connect_start_to = "humerus", .connect_end_to = "radius"},
+    {.color_name = "indigo", .cap_rgb = {0.29, 0, 0.51},  // 28
+     .start_mm = {-194.1, -58.9, 4.4}, .start_control_mm = {-215, -63, 41},
+     .end_control_mm = {-256, -131, 33}, .end_mm = {-213.4, -172.6, 9.6},
+     .minimum_length_mm = 60, .maximum_length_mm = 200,
+     .connect_start_to = "ulna", .connect_end_to = "medius_rest"},
+    {.color_name = "lavender", .cap_rgb = {0.71, 0.49, 0.86},  // 29
+     .start_mm = {-195.6, -50.1, -2.1}, .start_control_mm = {-217, -53, -34},
+     .end_control_mm = {-246, -133, -25}, .end_mm = {-213.4, -172.6, -8.9},
      .minimum_length_mm = 60, .maximum_length_mm = 200,
      .connect_start_to = "ulna", .connect_end_to = "medius_rest"},
 }};

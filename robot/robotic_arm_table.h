@@ -4,7 +4,11 @@
 /// masses in g, angles in degrees; everything is given in the world frame as it is at the start.
 ///
 /// Source: M. Braun, Simulating Artificial Muscles for Controlling a Robotic Arm with Fluctuation, Osaka University, 2007; the numbers of
-/// the program published with it. Bones, operations and the first ten muscles are those numbers unchanged.
+/// the program published with it. Bones, operations and muscles 0 to 9 are those numbers unchanged.
+///
+/// Muscles 10 to 29 are additions of this program: 10 + k and 20 + k have the lengths of muscle k, run beside it and span the same joints.
+/// At the start their beads keep at least 3 mm from the beads of every other muscle and 1.5 mm from all bones; only the first and the last
+/// bead touch the bone they are attached to.
 #pragma once
 
 #include <array>
@@ -27,9 +31,8 @@ struct PrimitiveRow {
 };
 
 enum class Kind {
-  rotate,  ///< turn `primitive` by `angle_deg` about the world's `axis` through its centre; a composite turns as a whole about its centre
-           ///< of mass
-  fix,     ///< pin the body of `primitive` to the environment
+  rotate,     ///< turn the body of `primitive` by `angle_deg` about the world's `axis` through its centre of mass
+  fix,        ///< pin the body of `primitive` to the environment
   composite,  ///< make `parts` one body at their common centre of mass, oriented like `primitive`
   ball,       ///< ball joint between `primitive` and `other` at `anchor_mm`
   hinge       ///< hinge between them about the world's `axis` through `anchor_mm`, from `low_deg` to `high_deg`
@@ -74,7 +77,7 @@ std::span<const PrimitiveRow> primitives();
 /// The 52 operations on them, in the order in which they act.
 std::span<const OperationRow> operations();
 
-/// The muscles, in the order of the action and of the state.
+/// The 30 muscles, in the order of the action and of the state; an arm with fewer muscles takes the first ones.
 std::span<const MuscleRow> muscles();
 
 }  // namespace musclesim::robotic_arm
