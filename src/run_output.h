@@ -1,0 +1,48 @@
+/// What a run writes: its folder, the description in the sidecar, the listing of --verbose, the score of a task.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "musclesim/log/recording.h"
+#include "musclesim/simulation/simulation.h"
+
+namespace musclesim::program {
+
+/// The options of `run` beside those of the model.
+struct RunOptions {
+  bool simple = false, verbose = false, print_config = false;
+  std::string controller = "asm", task = "height";
+  std::vector<double> target_mm;
+  std::optional<double> decision_interval_s, record_interval_s;
+  double duration_s = 300;
+  std::optional<std::string> record, out;
+};
+
+/// Where the recording goes: --record, or run.csv in --out, or in a fresh folder log/runs/<date-time>-<task>-<seed>. Makes the folder.
+/// Throws BadParameter for a name that does not end in .csv, IoError if the folder cannot be made.
+std::filesystem::path recordingPath(const RunOptions& options, std::uint64_t seed);
+
+/// The sidecar of a run: robot, physics, seed, every parameter.
+RecordingInfo describe(Simulation& simulation, const RunOptions& options, const std::string& initial_state);
+
+/// The paper's --verbose: all primitives and actuators, on standard output.
+void list(Simulation& simulation);
+
+/// How well a target is reached over a run.
+class Score {
+ public:
+  void add(double time_s, const State& state, const Controller& controller);
+  /// Members final_error_mm, reached_within_mm, reached_at_s (null: never), held_share (of the time since); empty without a target.
+  nlohmann::json verdict() const;
+
+ private:
+  static constexpr double near_mm = 20;
+  std::optional<double> error_mm_, reached_at_s_;
+  long samples_since_ = 0, near_since_ = 0;
+};
+
+}  // namespace musclesim::program
