@@ -45,10 +45,13 @@ class Controller {
   using Factory = std::function<std::unique_ptr<Controller>(const ControllerRequest&)>;
   /// Registers a controller under a name; a later registration of the same name replaces the earlier one.
   static void registerController(const std::string& name, const std::string& description, Factory factory);
-  /// Builds a registered controller. Throws BadParameter with the nearest name if there is none of that name.
+  /// Builds a registered controller. Throws BadParameter with the nearest name if there is none of that name, or if
+  /// the request has no muscles or a target that is not finite; and whatever the controller's constructor throws.
   static std::unique_ptr<Controller> make(const std::string& name, const ControllerRequest& request);
   /// Names of all registered controllers, in alphabetical order.
   static std::vector<std::string> names();
+  /// What the controller of that name does, in a few words. Throws as make.
+  static std::string description(const std::string& name);
   /// The controller of the calling thread's current simulation, as in the paper's run loop. Throws BadParameter if there is none.
   static Controller* getActiveController();
 };

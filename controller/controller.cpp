@@ -1,0 +1,89 @@
+#include "musclesim/controller/controller.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <mutex>
+
+#include "musclesim/controller/aasm.h"
+#include "musclesim/controller/asm.h"
+#include "musclesim/controller/hold.h"
+#include "musclesim/controller/random_pressures.h"
+#include "musclesim/error.h"
+
+namespace musclesim {
+
+namespace {
+
+struct Entry {
+  std::string description;
+  Controller::Factory factory;
+};
+
+template <typename T>
+std::unique_ptr<Controller> build(const ControllerRequest& request) {
+  return std::make_unique<T>(request);
+}
+
+/// The controllers by name. Guarded by a mutex, because simulations run in several threads.
+struct Registry {
+  std::mutex mutex;
+  std::map<std::string, Entry> entries = {
+      {"aasm", {"attractor selection with attractors that learn during operation", build<AasmController>}},
+      {"asm", {"attractor selection by fluctuation (Eq. 5-9)", build<AsmController>}},
+      {"hold", {"constant pressures", build<HoldController>}},
+      {"random", {"new random pressures at every decision, the baseline", build<RandomPressuresController>}},
+  };
+};
+
+Registry& registry() {
+  static Registry the_registry;
+  return the_registry;
+}
+
+void requireUsable(const ControllerRequest& request) {
+  if (request.muscle_count < 1) throw BadParameter("muscle count", fmt::format("{}", request.muscle_count), "be at least 1");
+  if (request.target_mm && !request.target_mm->allFinite()) throw BadParameter("target: all coordinates must be finite");
+}
+
+Entry entryOf(const std::string& name) {
+  auto& [mutex, entries] = registry();
+  {
+    const std::lock_guard lock(mutex);
+    if (const auto found = entries.find(name); found != entries.end()) return found->second;
+  }
+  const auto known = Controller::names();
+  const std::string nearest = nearestName(name, known);
+  throw BadParameter("controller", name,
+                     fmt::format("be one of {}{}", fmt::join(known, ", "), nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?"));
+}
+
+}  // namespace
+
+void Controller::registerController(const std::string& name, const std::string& description, Factory factory) {
+  if (name.empty() || !factory) throw BadParameter("a controller needs a name and a factory");
+  auto& [mutex, entries] = registry();
+  const std::lock_guard lock(mutex);
+  entries[name] = {description, std::move(factory)};
+}
+
+std::unique_ptr<Controller> Controller::make(const std::string& name, const ControllerRequest& request) {
+  const Factory factory = entryOf(name).factory;
+  requireUsable(request);
+  return factory(request);
+}
+
+std::vector<std::string> Controller::names() {
+  auto& [mutex, entries] = registry();
+  const std::lock_guard lock(mutex);
+  std::vector<std::string> names;
+  for (const auto& [name, entry] : entries) names.push_back(name);
+  return names;
+}
+
+std::string Controller::description(const std::string& name) {
+  return entryOf(name).description;
+}
+
+}  // namespace musclesim

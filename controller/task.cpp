@@ -1,0 +1,88 @@
+#include "musclesim/controller/task.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "musclesim/error.h"
+
+namespace musclesim {
+
+namespace {
+
+constexpr double kLargestTarget_mm = 1e5;
+constexpr double kLargestHand_mm = 1e9;
+
+/// Declares one coordinate of a target; a value given in the request counts as an override of it.
+double coordinate(const ControllerRequest& request, const std::string& name, double default_mm, int axis, const std::string& meaning) {
+  if (request.target_mm) request.parameters.set(name, (*request.target_mm)[axis], "target");
+  return request.parameters.number(name, default_mm, "mm", -kLargestTarget_mm, kLargestTarget_mm, meaning);
+}
+
+BadParameter unknownTask(const std::string& task) {
+  const std::string nearest = nearestName(task, {"height", "reach"});
+  return BadParameter("task", task, "be height or reach" + (nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?"));
+}
+
+}  // namespace
+
+Vector reportedHand(const State& state) {
+  if (!state.hand_mm) throw BadParameter("the task needs a robot that reports its hand; this robot reports none");
+  const Vector& hand = *state.hand_mm;
+  // Written so that NaN fails too.
+  if (!(hand.cwiseAbs().array() <= kLargestHand_mm).all())
+    throw Diverged(state.time_s, "hand", fmt::format("position ({}, {}, {}) mm is out of every robot's reach", hand.x(), hand.y(), hand.z()));
+  return hand;
+}
+
+double Target::distanceMm(const State& state) const {
+  const Vector difference = reportedHand(state) - point_mm;
+  return is_height ? std::abs(difference.y()) : difference.norm();  // Eq. 8
+}
+
+Target Target::make(const ControllerRequest& request) {
+  Target target;
+  if (request.task == "height") {
+    target.is_height = true;
+    target.point_mm.y() = coordinate(request, "height_task.target_mm", 0, 1, "height the hand should have");
+  } else if (request.task == "reach") {
+    target.point_mm.x() = coordinate(request, "reach_task.target_x_mm", -300, 0, "point the hand should reach, to the side");
+    target.point_mm.y() = coordinate(request, "reach_task.target_y_mm", 0, 1, "point the hand should reach, up");
+    target.point_mm.z() = coordinate(request, "reach_task.target_z_mm", 150, 2, "point the hand should reach, to the front");
+  } else {
+    throw unknownTask(request.task);
+  }
+  return target;
+}
+
+std::unique_ptr<Task> Task::make(const ControllerRequest& request) {
+  if (request.task == "height") return std::make_unique<HeightTask>(request);
+  if (request.task == "reach") return std::make_unique<ReachTask>(request);
+  throw unknownTask(request.task);
+}
+
+HeightTask::HeightTask(const ControllerRequest& request)
+    : Task(Target::make(request)),
+      gain_(request.parameters.number("height_task.gain", 1, "", 0, 1e6, "activity at the target")),
+      e0_mm_(request.parameters.number("height_task.error_scale_mm", 5, "mm", 1e-3, 1e5,
+                                       "height error at which the activity is half of that at the target")) {}
+
+double HeightTask::activity(const State& state) {
+  return gain_ * e0_mm_ / (target().distanceMm(state) + e0_mm_);
+}
+
+ReachTask::ReachTask(const ControllerRequest& request)
+    : Task(Target::make(request)),
+      d_scale_mm_(request.parameters.number("reach_task.distance_scale_mm", 100, "mm", 1e-3, 1e5,
+                                            "how much nearer than its mean distance the hand must be for an activity of 1")),
+      mean_d_(request.parameters.number("reach_task.discount", 0.98, "", 1e-3, 1,
+                                        "weight of a distance relative to that of the decision after it")) {}
+
+double ReachTask::activity(const State& state) {
+  const double d = target().distanceMm(state);                     // Eq. 8
+  const double alpha = (mean_d_.meanOr(d) - d) / d_scale_mm_;      // Eq. 7
+  mean_d_.add(d);                                                  // Eq. 9
+  return alpha;
+}
+
+}  // namespace musclesim
