@@ -14,6 +14,9 @@ constexpr double largest_number = 1e150;
 /// A range narrower than this part of its own numbers cannot have ticks that differ.
 constexpr double narrowest_ratio = 1e-9;
 
+/// An end this near to a tick, in parts of the range, moves to the tick.
+constexpr double near_ratio = 0.01;
+
 /// The smallest of 1, 2, 5 times a power of ten that is not below `least`.
 double roundStep(double least) {
   const double power = std::pow(10, std::floor(std::log10(least)));
@@ -45,12 +48,13 @@ Axis::Axis(const Extent& extent, double first_pixel, double last_pixel, int tick
     maximum_ += half_width;
   }
   step_ = roundStep((maximum_ - minimum_) / tick_count);
-  const double first = round_ends ? std::floor(minimum_ / step_ + narrowest_ratio) : std::ceil(minimum_ / step_ - narrowest_ratio);
-  const double last = round_ends ? std::ceil(maximum_ / step_ - narrowest_ratio) : std::floor(maximum_ / step_ + narrowest_ratio);
+  const double near = round_ends ? 1 - narrowest_ratio : std::max(near_ratio * (maximum_ - minimum_) / step_, narrowest_ratio);
+  const double first = std::ceil(minimum_ / step_ - near);
+  const double last = std::floor(maximum_ / step_ + near);
   for (double count = 0; first + count <= last && count <= 4.0 * tick_count; ++count) ticks_.push_back((first + count) * step_);
-  if (!round_ends || ticks_.size() < 2) return;
-  minimum_ = ticks_.front();
-  maximum_ = ticks_.back();
+  if (ticks_.size() < 2) return;
+  minimum_ = round_ends ? ticks_.front() : std::min(minimum_, ticks_.front());
+  maximum_ = round_ends ? ticks_.back() : std::max(maximum_, ticks_.back());
 }
 
 double Axis::pixel(double value) const {

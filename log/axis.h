@@ -23,7 +23,8 @@ class Extent {
 /// Maps numbers to pixels. Ticks are multiples of 1, 2 or 5 times a power of ten.
 class Axis {
  public:
-  /// About `tick_count` ticks. `round_ends`: the range grows to the ticks beyond its ends. An extent without width gets one.
+  /// About `tick_count` ticks. `round_ends`: the range grows to the ticks beyond its ends; otherwise only where a tick is that near
+  /// (1 % of the range). An extent without width gets one.
   Axis(const Extent& extent, double first_pixel, double last_pixel, int tick_count, bool round_ends);
 
   double minimum() const { return minimum_; }

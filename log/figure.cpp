@@ -19,10 +19,10 @@ constexpr double figure_width = 960, figure_height = 640;
 constexpr double left_margin = 78, right_margin = 76, top_margin = 46;
 constexpr double legend_height = 22, panel_gap = 16, time_axis_height = 44, bottom_margin = 10;
 constexpr double upper_share_ratio = 0.55;  ///< of the height of both panels
-constexpr double curve_width = 1.4;
+constexpr double curve_width = 1.3;
 constexpr double label_size = 12, axis_title_size = 13, title_size = 16;
-constexpr double legend_sample_length = 20, legend_gap = 18;
-constexpr double letter_width_ratio = 0.56;  ///< mean width of a letter over the font's size
+constexpr double legend_sample_length = 16, legend_text_gap = 5, legend_gap = 14;
+constexpr double letter_width_ratio = 0.52;  ///< mean width of a letter over the font's size
 const std::string grid_color = "#e4e4e4", frame_color = "#555555", text_color = "#333333";
 
 const Color height_color{0.87, 0.05, 0.05, "red"}, target_color{1.0, 0.55, 0.0, "orange"}, activity_color{0.1, 0.6, 0.1, "green"};
@@ -126,7 +126,7 @@ double textWidth(const std::string& words, double size) {
 }
 
 double legendEntryWidth(const Curve& curve) {
-  return legend_sample_length + 6 + textWidth(curve.label, label_size) + legend_gap;
+  return legend_sample_length + legend_text_gap + textWidth(curve.label, label_size) + legend_gap;
 }
 
 /// The entries of a legend, row by row, none wider than the panel.
@@ -201,25 +201,22 @@ std::string RunFigure::draw(const Panel& upper, const Panel& lower) {
 }
 
 void RunFigure::drawPanel(const Panel& panel, const SvgBox& box, bool with_time_labels) {
+  const Axis axis = valueAxis(panel.curves, box, false, panel.is_fraction);
+  const Axis right_axis = valueAxis(panel.right_curves, box, true, false);
   drawTimeAxis(box, with_time_labels);
-  if (!panel.right_curves.empty()) {
-    const Axis axis = valueAxis(panel.right_curves, box, true, false);
-    drawRightAxis(axis, panel.right_axis_title, box);
-    if (panel.curves.empty()) svg_.frame(box, frame_color);
-    drawCurves(panel.right_curves, box, axis);
-  }
-  if (!panel.curves.empty()) {
-    const Axis axis = valueAxis(panel.curves, box, false, panel.is_fraction);
-    drawValueAxis(axis, panel.axis_title, box);
-    drawCurves(panel.curves, box, axis);
-  }
+  if (!panel.curves.empty()) drawValueAxis(axis, panel.axis_title, box);
+  if (!panel.right_curves.empty()) drawRightAxis(right_axis, panel.right_axis_title, box);
+  drawCurves(panel.right_curves, box, right_axis);
+  drawCurves(panel.curves, box, axis);
   svg_.frame(box, frame_color);
 }
 
 void RunFigure::drawCurves(const std::vector<Curve>& curves, const SvgBox& box, const Axis& axis) {
+  // A curve along the frame shall not be cut in half.
+  const SvgBox clip{box.left - 1, box.top - 1, box.width + 2, box.height + 2};
   // The first of the legend is drawn last, on top.
   for (auto curve = curves.rbegin(); curve != curves.rend(); ++curve)
-    svg_.curve(curvePieces(recording_.time_s, curve->signal->values, timeAxis(box), axis, curve->between), curve->color, curve->width, box,
+    svg_.curve(curvePieces(recording_.time_s, curve->signal->values, timeAxis(box), axis, curve->between), curve->color, curve->width, clip,
                fmt::format("{} ({})", curve->label, curve->signal->name));
 }
 
@@ -261,7 +258,7 @@ void RunFigure::drawLegend(const std::vector<std::vector<Curve>>& rows, double l
     const double y = top + legend_height * (static_cast<double>(row) + 0.5);
     for (const auto& curve : rows[row]) {
       svg_.sample({x, y - 4}, legend_sample_length, curve.color, 2.4);
-      svg_.text({x + legend_sample_length + 6, y}, curve.label, {label_size, SvgAnchor::start, text_color, false, false});
+      svg_.text({x + legend_sample_length + legend_text_gap, y}, curve.label, {label_size, SvgAnchor::start, text_color, false, false});
       x += legendEntryWidth(curve);
     }
   }

@@ -89,7 +89,8 @@ RecordingInfo withMember(const RecordingInfo& info, const std::string& member, c
     throw BadParameter(fmt::format("sidecar member {} = {}: must be JSON", inQuotes(member), inQuotes(json_value)));
   }
   std::vector<std::string> notes;
-  return asBadParameter([&] { return parseSidecar(object.dump(-1, ' ', false, OrderedJson::error_handler_t::replace), "sidecar", {}, notes); });
+  return asBadParameter(
+      [&] { return parseSidecar(object.dump(-1, ' ', false, OrderedJson::error_handler_t::replace), "sidecar", {}, notes); });
 }
 
 std::string sidecarText(const RecordingInfo& info) {

@@ -9,10 +9,10 @@ namespace musclesim {
 
 namespace {
 
-/// Colours brighter than this get a casing; yellow, aquamarine, green, pink and light gray are.
-constexpr double casing_brightness = 0.6;
+/// Colours brighter than this get a casing; yellow, aquamarine, green, pink and light gray are, orange is not.
+constexpr double casing_brightness = 0.68;
 constexpr double casing_darkness_ratio = 0.62;
-constexpr double casing_extra_width = 1.1;
+constexpr double casing_extra_width = 0.9;
 
 /// Length of the valid UTF-8 character that begins at `offset`; 0 if there is none, or one that XML does not allow.
 std::size_t characterLength(std::string_view text, std::size_t offset) {
@@ -42,11 +42,13 @@ std::string pixels(double value) {
 }
 
 std::string pathData(const std::vector<std::vector<SvgPoint>>& pieces) {
+  constexpr double dot_half_width = 1.2;
   std::string data;
   for (const auto& piece : pieces) {
     if (piece.empty()) continue;
-    data += fmt::format("M{},{}", pixels(piece[0].x), pixels(piece[0].y));
-    if (piece.size() == 1) data += "h0";
+    const bool is_dot = piece.size() == 1;
+    data += fmt::format("M{},{}", pixels(is_dot ? piece[0].x - dot_half_width : piece[0].x), pixels(piece[0].y));
+    if (is_dot) data += "h" + pixels(2 * dot_half_width);
     for (std::size_t i = 1; i < piece.size(); ++i)
       data += fmt::format("{}{},{}", i == 1 ? "L" : " ", pixels(piece[i].x), pixels(piece[i].y));
   }
