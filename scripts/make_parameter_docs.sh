@@ -1,0 +1,117 @@
+#!/usr/bin/env bash
+# Writes the tables of all named parameters into docs/parameters.md, below its hand-written introduction, as the program prints them.
+# Usage: scripts/make_parameter_docs.sh [musclesim]   (the program; default: build/release/musclesim)
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+program="${1:-build/release/musclesim}"
+document=docs/parameters.md
+marker='<!-- Below this line: made by scripts/make_parameter_docs.sh; do not edit. -->'
+[[ -x "$program" ]] || { echo "make_parameter_docs.sh: there is no program $program; build it first or name it" >&2; exit 1; }
+grep -qxF -- "$marker" "$document" || { echo "make_parameter_docs.sh: $document has no line \"$marker\"" >&2; exit 1; }
+
+config() { "$program" --print-config "$@"; }
+
+# "name<TAB>default<TAB>unit<TAB>range<TAB>meaning" of every parameter of the groups named first (a regular expression), from TOML on
+# standard input: group headings, and lines "key = value  # meaning; range unit; default value".
+rows() {
+  awk -v groups="^($1)\$" '
+    /^\[/ { group = substr($0, 2, length($0) - 2); next }
+    / = / && group ~ groups {
+      key = $0; sub(/ = .*/, "", key)
+      words = $0; sub(/^[^#]*# /, "", words)
+      match(words, /; default [^;]*$/)
+      value = substr(words, RSTART + 10); words = substr(words, 1, RSTART - 1)
+      match(words, /; [^;]*$/)
+      range = substr(words, RSTART + 2); words = substr(words, 1, RSTART - 1)
+      unit = ""
+      if (range ~ / \.\. /) {
+        unit = range; sub(/^[^ ]+ \.\. [^ ]+ ?/, "", unit)
+        if (unit != "") range = substr(range, 1, length(range) - length(unit) - 1)
+      }
+      gsub(/ \| /, ", ", range)
+      print group "." key "\t" value "\t" unit "\t" range "\t" words
+    }'
+}
+
+# A Markdown table from rows.
+table() {
+  echo
+  echo '| parameter | default | unit | range | meaning |'
+  echo '|---|---|---|---|---|'
+  awk -F'\t' '{ print "| `" $1 "` | " $2 " | " $3 " | " $4 " | " $5 " |" }'
+}
+
+# The parameters of the physics settings side by side: defaults differ.
+physics_table() {
+  echo
+  echo '| parameter | `si` | `original` | `scaled` | unit | range | meaning |'
+  echo '|---|---|---|---|---|---|---|'
+  awk -F'\t' '
+    FNR == 1 { file++ }
+    !($1 in meaning) { order[++count] = $1; meaning[$1] = $3 " | " $4 " | " $5 }
+    { value[$1, file] = $2 }
+    END {
+      for (i = 1; i <= count; ++i) {
+        name = order[i]
+        line = "| `" name "` |"
+        for (f = 1; f <= 3; ++f) line = line " " ((name, f) in value ? value[name, f] : "-") " |"
+        print line " " meaning[name] " |"
+      }
+    }' <(config --physics si --robot rig --controller hold | rows physics) \
+    <(config --physics original --robot rig --controller hold | rows physics) \
+    <(config --physics scaled --robot rig --controller hold | rows physics)
+}
+
+section() {
+  echo
+  echo "## $1"
+}
+
+tables() {
+  section 'Physics'
+  physics_table
+  echo
+  echo 'With `--stepper quick`, and with `--plane`, there are in addition:'
+  config --robot rig --controller hold --stepper quick --plane | rows 'physics|world' |
+    grep -vxF -f <(config --robot rig --controller hold | rows physics) | table
+  section 'Muscles and linear actuators'
+  config --robot rig --controller hold | rows muscle | table
+  section 'Force law (Eq. 1)'
+  config --robot rig --controller hold | rows force_law | table
+  section 'Robot `rig`'
+  config --robot rig --controller hold | rows rig | table
+  section 'Robot `elbow`'
+  config --robot elbow --controller hold | rows elbow | table
+  section 'Robot `arm`'
+  echo
+  echo 'In `original` and `scaled` physics the default of `arm.composite_inertia` is `summed`.'
+  config --robot arm --controller hold | rows arm | table
+  section 'Height task'
+  config --robot arm --controller asm --task height | rows height_task | table
+  section 'Reach task'
+  echo
+  echo '`aasm` uses the target only.'
+  config --robot arm --controller asm --task reach | rows reach_task | table
+  section 'Controller `asm`'
+  config --robot arm --controller asm | rows asm | table
+  section 'Controller `aasm`'
+  config --robot arm --controller aasm | rows aasm | table
+  section 'Controller `hold`'
+  echo
+  echo 'There is one `hold.pressure_<i>` for each muscle; its default is the value of `hold.pressure`.'
+  config --robot rig --controller hold | rows hold | table
+  section 'Controller `random`'
+  echo
+  echo 'It has no parameters.'
+}
+
+new="$(mktemp "$document.XXXXXX")"
+trap 'rm -f "$new"' EXIT
+{
+  sed "/^$(printf '%s' "$marker" | sed 's/[.[\*^$/]/\\&/g')\$/q" "$document"
+  tables
+} >"$new"
+chmod 644 "$new"
+mv "$new" "$document"
+trap - EXIT
+echo "$document: $(grep -c '^| `' "$document") parameters"
