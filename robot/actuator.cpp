@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "musclesim/error.h"
 #include "musclesim/robot/primitive.h"
@@ -49,18 +51,19 @@ Actuator::Actuator(dWorldID world, dSpaceID space, const std::vector<Vector>& po
       start_mm_(points.front()),
       end_mm_(points.back()),
       name_(fmt::format("muscle_{}", simulation_.actuators().size())) {
-  double start_length_mm = 0;
+  double start_length_mm = 0, shortest_link_mm = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     const double link_mm = (points[i + 1] - points[i]).norm();
     if (!std::isfinite(link_mm)) throw BadParameter(name_ + ": a control point is not finite");
-    if (link_mm < 2 * settings_.bead_radius_mm)
-      throw BadParameter(fmt::format("length of link {} of {}", i, name_), fmt::format("{:.4g} mm", link_mm),
-                         fmt::format("be at least two bead radii, {} mm", 2 * settings_.bead_radius_mm));
+    shortest_link_mm = std::min(shortest_link_mm, link_mm);
     start_length_mm += link_mm;
   }
-  if (!(start_length_mm >= given_minimum_length_mm && start_length_mm <= maximum_length_mm))
+  if (!(given_minimum_length_mm >= 0 && start_length_mm >= given_minimum_length_mm && start_length_mm <= maximum_length_mm))
     throw BadParameter("start length of " + name_ + " along its curve", fmt::format("{:.4g} mm", start_length_mm),
                        fmt::format("lie between its minimum and maximum length, {} .. {} mm", given_minimum_length_mm, maximum_length_mm));
+  if (shortest_link_mm < 2 * settings_.bead_radius_mm)
+    throw BadParameter("shortest link of " + name_, fmt::format("{:.4g} mm", shortest_link_mm),
+                       fmt::format("be at least two bead radii, {} mm", 2 * settings_.bead_radius_mm));
   law_ = std::make_unique<BraunForceLaw>(minimum_length_mm_, maximum_length_mm_, BraunConstants(simulation_.parameters()));
   buildLinks(dSimpleSpaceCreate(space), points);
   simulation_.actuators_.emplace_back(this);
@@ -108,6 +111,9 @@ void Actuator::buildLinks(dSpaceID beads, const std::vector<Vector>& points) {
 }
 
 Joint* Actuator::connect(dBodyID bead, const Vector& anchor, Primitive* primitive, const std::string& which) {
+  if (primitive && dBodyGetWorld(primitive->body().id) != simulation_.world())
+    throw BadParameter(
+        fmt::format("the {} of {} cannot be connected to {}: they belong to different simulations", which, name_, primitive->name()));
   const dJointID ball = dJointCreateBall(simulation_.world(), nullptr);
   dJointAttach(ball, bead, primitive ? primitive->body().id : nullptr);
   dJointSetBallAnchor(ball, anchor.x(), anchor.y(), anchor.z());
@@ -133,6 +139,12 @@ void Actuator::setPressure(double command_ratio) {
   if (!(command_ratio >= 0 && command_ratio <= 1))
     throw BadParameter("command of " + name_, fmt::format("{}", command_ratio), "lie in 0 .. 1");
   command_ratio_ = command_ratio;
+}
+
+void Actuator::setForceLaw(std::unique_ptr<ForceLaw> law) {
+  if (!law) throw BadParameter("force law of " + name_ + ": there is none");
+  law_ = std::move(law);
+  updateTension();
 }
 
 void Actuator::setColor(double red, double green, double blue, const std::string& name) {

@@ -25,6 +25,9 @@ BraunForceLaw::BraunForceLaw(double minimum_length_mm, double maximum_length_mm,
   if (!(minimum_length_mm >= 0 && minimum_length_mm < maximum_length_mm && std::isfinite(maximum_length_mm)))
     throw BadParameter("minimum and maximum length of a muscle", fmt::format("{}, {} mm", minimum_length_mm, maximum_length_mm),
                        "be in order and finite");
+  const auto& [a, b, c, p_max] = constants_;
+  if (!(std::isfinite(a) && std::isfinite(b) && std::isfinite(c) && std::isfinite(p_max) && p_max != 0))
+    throw BadParameter("constants of Eq. 1", fmt::format("{}, {}, {} kgf, {}", a, b, c, p_max), "be finite, and p_max not 0");
 }
 
 double BraunForceLaw::tensionN(double pressure_ratio, double length_mm) const {

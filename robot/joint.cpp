@@ -13,7 +13,7 @@ Joint::Joint(Kind kind, dJointID id, std::string name) : kind_(kind), id_(id), n
 double Joint::angleDeg(int axis) const {
   if (kind_ == Kind::hinge && axis == 0) return dJointGetHingeAngle(id_) * deg_per_rad;
   if (kind_ == Kind::hinge2 && axis == 0) return dJointGetHinge2Angle1(id_) * deg_per_rad;
-  if (kind_ == Kind::hinge2 && axis == 1) return dJointGetHinge2Angle2(id_) * deg_per_rad;
+  if (kind_ == Kind::hinge2 && axis == 1) return -dJointGetHinge2Angle2(id_) * deg_per_rad;  // ODE: second against first
   if (kind_ == Kind::universal && axis == 0) return dJointGetUniversalAngle1(id_) * deg_per_rad;
   if (kind_ == Kind::universal && axis == 1) return dJointGetUniversalAngle2(id_) * deg_per_rad;
   throw BadParameter("joint " + name_ + " has no angle about axis " + std::to_string(axis));

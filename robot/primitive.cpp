@@ -51,6 +51,15 @@ double volumeMm3(const Shape& shape) {
   return 0;
 }
 
+/// Throws unless a joint can be made between a primitive and another (null: the environment).
+void requireJoinable(const Primitive& primitive, const Primitive* other) {
+  if (!other) return;
+  if (&other->body() == &primitive.body())
+    throw BadParameter("joint of " + primitive.name() + " and " + other->name() + ": they are the same body");
+  if (dBodyGetWorld(other->body().id) != dBodyGetWorld(primitive.body().id))
+    throw BadParameter("joint of " + primitive.name() + " and " + other->name() + ": they belong to different simulations");
+}
+
 /// Total mass and inertia of a solid of this shape about its centre, in its own axes.
 dMass solid(const Shape& shape, double mass_g) {
   dMass mass;
@@ -97,11 +106,23 @@ void setStops(dJointID joint, void (*set)(dJointID, int, dReal), int low, int hi
   set(joint, low, limits.low_deg * rad_per_deg);
 }
 
+/// Carries limits of the Euler angles of one body against another: the first axis is fixed to the first body, the third to the second.
+dJointID eulerMotor(dBodyID body, dBodyID other, const Vector& axis1, const Vector& axis3) {
+  const dJointID motor = dJointCreateAMotor(dBodyGetWorld(body), nullptr);
+  dJointAttach(motor, body, other);
+  dJointSetAMotorMode(motor, dAMotorEuler);
+  dJointSetAMotorAxis(motor, 0, 1, axis1.x(), axis1.y(), axis1.z());
+  dJointSetAMotorAxis(motor, 2, other ? 2 : 0, axis3.x(), axis3.y(), axis3.z());
+  return motor;
+}
+
 }  // namespace
 
 Primitive::Primitive(dWorldID world, dSpaceID space, const Vector& position, double mass, double density, Shape shape)
     : world_(world), shape_(shape) {
   requireFinite("position of a primitive", position);
+  if (!(density >= 0) || !std::isfinite(density))
+    throw BadParameter("density of a primitive", fmt::format("{}", density), "be finite and not negative");
   if (mass == 0) mass = positive("density of a primitive without mass", density) * volumeMm3(shape_);
   mass_g_ = positive("mass of a primitive", mass);
   Simulation& simulation = Simulation::of(world);
@@ -148,7 +169,8 @@ void Primitive::setInertia(const Vector& moments_g_mm2) {
   if (!(moments_g_mm2.minCoeff() > 0) || !moments_g_mm2.allFinite())
     throw BadParameter("moments of inertia of " + name_ + " must be positive");
   dMass mass;
-  dMassSetParameters(&mass, mass_g_, 0, 0, 0, moments_g_mm2.x(), moments_g_mm2.y(), moments_g_mm2.z(), 0, 0, 0);
+  dBodyGetMass(body_->id, &mass);
+  dMassSetParameters(&mass, mass.mass, 0, 0, 0, moments_g_mm2.x(), moments_g_mm2.y(), moments_g_mm2.z(), 0, 0, 0);
   dBodySetMass(body_->id, &mass);
 }
 
@@ -174,6 +196,7 @@ void Primitive::fix() {
 }
 
 Joint* Primitive::attachBall(Primitive* other, const Vector& anchor) {
+  requireJoinable(*this, other);
   requireFinite("anchor of a ball joint of " + name_, anchor);
   const dJointID joint = dJointCreateBall(world_, nullptr);
   dJointAttach(joint, body_->id, other ? other->body_->id : nullptr);
@@ -189,11 +212,7 @@ Joint* Primitive::attachBall(Primitive* other, const Vector& anchor, const Vecto
   if (std::abs(normalized(axis1).dot(normalized(axis3))) > 1e-9)
     throw BadParameter("axes of a ball joint of " + name_, "not perpendicular", "be perpendicular in the pose as built");
   Joint* ball = attachBall(other, anchor);
-  const dJointID motor = dJointCreateAMotor(world_, nullptr);
-  dJointAttach(motor, body_->id, other ? other->body_->id : nullptr);
-  dJointSetAMotorMode(motor, dAMotorEuler);
-  dJointSetAMotorAxis(motor, 0, 1, axis1.x(), axis1.y(), axis1.z());
-  dJointSetAMotorAxis(motor, 2, other ? 2 : 0, axis3.x(), axis3.y(), axis3.z());
+  const dJointID motor = eulerMotor(body_->id, other ? other->body_->id : nullptr, axis1, axis3);
   setStops(motor, dJointSetAMotorParam, dParamLoStop1, dParamHiStop1, limits1);
   setStops(motor, dJointSetAMotorParam, dParamLoStop2, dParamHiStop2, limits2);
   setStops(motor, dJointSetAMotorParam, dParamLoStop3, dParamHiStop3, limits3);
@@ -201,6 +220,7 @@ Joint* Primitive::attachBall(Primitive* other, const Vector& anchor, const Vecto
 }
 
 Joint* Primitive::attachHinge(Primitive* other, const Vector& anchor, const Vector& axis) {
+  requireJoinable(*this, other);
   requireFinite("anchor of a hinge of " + name_, anchor);
   requireDirection("axis of a hinge of " + name_, axis);
   const dJointID joint = dJointCreateHinge(world_, nullptr);
@@ -218,6 +238,7 @@ Joint* Primitive::attachHinge(Primitive* other, const Vector& anchor, const Vect
 }
 
 Joint* Primitive::attachHinge(Primitive* other, const Vector& anchor, const Vector& axis1, const Vector& axis2) {
+  requireJoinable(*this, other);
   requireFinite("anchor of a hinge of " + name_, anchor);
   requireDirection("first axis of a hinge of " + name_, axis1);
   requireDirection("second axis of a hinge of " + name_, axis2);
@@ -236,13 +257,20 @@ Joint* Primitive::attachHinge(Primitive* other, const Vector& anchor, const Vect
                               Limits limits2) {
   requireLimits("a hinge of " + name_, limits1);
   requireLimits("a hinge of " + name_, limits2);
+  requireDirection("first axis of a hinge of " + name_, axis1);
+  requireDirection("second axis of a hinge of " + name_, axis2);
+  if (std::abs(normalized(axis1).dot(normalized(axis2))) > 1e-9)
+    throw BadParameter("axes of a hinge with limits of " + name_, "not perpendicular", "be perpendicular");
   Joint* joint = attachHinge(other, anchor, axis1, axis2);
   setStops(joint->id(), dJointSetHinge2Param, dParamLoStop1, dParamHiStop1, limits1);
-  setStops(joint->id(), dJointSetHinge2Param, dParamLoStop2, dParamHiStop2, limits2);
+  // ODE's hinge-2 knows no stops about its second axis; it is the third Euler angle, the second being held at 0 by the joint.
+  const dJointID motor = eulerMotor(body_->id, other->body_->id, axis1, axis2);
+  setStops(motor, dJointSetAMotorParam, dParamLoStop3, dParamHiStop3, limits2);
   return joint;
 }
 
 Joint* Primitive::attachUniversal(Primitive* other, const Vector& anchor, const Vector& axis1, const Vector& axis2) {
+  requireJoinable(*this, other);
   requireFinite("anchor of a universal joint of " + name_, anchor);
   requireDirection("first axis of a universal joint of " + name_, axis1);
   requireDirection("second axis of a universal joint of " + name_, axis2);
@@ -281,6 +309,7 @@ Joint* Primitive::attachUniversal(Primitive* other, const Vector& anchor, const 
 }
 
 Joint* Primitive::attachSlider(Primitive* other, const Vector& axis) {
+  requireJoinable(*this, other);
   requireDirection("axis of a slider of " + name_, axis);
   const dJointID joint = dJointCreateSlider(world_, nullptr);
   dJointAttach(joint, body_->id, other ? other->body_->id : nullptr);
@@ -298,10 +327,10 @@ void Primitive::compositeWithPrimitive(Primitive* other) {
 
 void Primitive::compositePrimitives(const std::vector<Primitive*>& parts, Primitive* parent) {
   if (parts.size() < 2) throw BadParameter("composing primitives: at least two are needed");
+  if (std::find(parts.begin(), parts.end(), nullptr) != parts.end()) throw BadParameter("composing primitives: one of them is null");
   if (!parent) parent = parts.back();
   std::vector<Body*> bodies;
   for (Primitive* part : parts) {
-    if (!part) throw BadParameter("composing primitives: one of them is null");
     if (part->world_ != parent->world_) throw BadParameter("composing primitives: they belong to different simulations");
     part->requireComposable();
     if (std::find(bodies.begin(), bodies.end(), part->body_) != bodies.end())

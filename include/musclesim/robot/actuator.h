@@ -59,7 +59,8 @@ class Actuator {
 
   /// Throws BadParameter unless the pressure is finite and lies in 0..1.
   void setPressure(double command_ratio);
-  void setForceLaw(std::unique_ptr<ForceLaw> law) { law_ = std::move(law); }
+  /// Throws BadParameter for null.
+  void setForceLaw(std::unique_ptr<ForceLaw> law);
   void setColor(double red, double green, double blue, const std::string& name = "");
   void setName(const std::string& name);
 

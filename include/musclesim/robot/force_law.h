@@ -36,7 +36,7 @@ struct BraunConstants {
 /// Section 3.2; constants of the published program.
 class BraunForceLaw final : public ForceLaw {
  public:
-  /// Throws BadParameter unless 0 <= minimum < maximum length and the constants are finite.
+  /// Throws BadParameter unless 0 <= minimum < maximum length and the constants are finite, p_max not 0.
   BraunForceLaw(double minimum_length_mm, double maximum_length_mm, const BraunConstants& constants = {});
   double tensionN(double pressure_ratio, double length_mm) const override;
   double stiffnessNPerMm(double pressure_ratio, double length_mm) const override;

@@ -68,6 +68,7 @@ class Primitive {
   Joint* attachHinge(Primitive* other, const Vector& anchor, const Vector& axis);
   Joint* attachHinge(Primitive* other, const Vector& anchor, const Vector& axis, double low_deg, double high_deg);
   /// Hinge with two axes (ODE's hinge-2): the first fixed to `this`, the second to `other`, which must not be the environment.
+  /// With limits the axes must be perpendicular.
   Joint* attachHinge(Primitive* other, const Vector& anchor, const Vector& axis1, const Vector& axis2);
   Joint* attachHinge(Primitive* other, const Vector& anchor, const Vector& axis1, const Vector& axis2, Limits limits1, Limits limits2);
   /// Universal joint with two axes, which must be perpendicular.
