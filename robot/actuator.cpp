@@ -207,10 +207,14 @@ void Actuator::updateTension() {
   tension_N_ = calculateForce(pressure_ratio_, lengthMm());
 }
 
+double Actuator::hingeStopRad() const {
+  return settings_.hinge_limit_deg * rad_per_deg * lengthRatio();
+}
+
 void Actuator::applyForces() {
   const double force = tension_N_ * simulation_.physics().force_per_N;
   for (const Link& link : links_) dJointAddSliderForce(link.slider->id(), force);
-  const double stop_rad = settings_.hinge_limit_deg * rad_per_deg * lengthRatio();
+  const double stop_rad = hingeStopRad();
   for (const Joint* hinge : hinges_) {
     dJointSetHingeParam(hinge->id(), dParamLoStop, -stop_rad);
     dJointSetHingeParam(hinge->id(), dParamHiStop, stop_rad);

@@ -6,7 +6,42 @@
 
 namespace musclesim {
 
-Joint::Joint(Kind kind, dJointID id, std::string name) : kind_(kind), id_(id), name_(std::move(name)), reference_(Vector::Zero()) {
+namespace {
+
+/// A point or direction of the world seen from a body; null: the environment.
+Vector pointSeenFrom(dBodyID body, const Vector& point) {
+  return body ? Vector(rotationOf(body).transpose() * (point - positionOf(body))) : point;
+}
+
+Vector directionSeenFrom(dBodyID body, const Vector& direction) {
+  return body ? Vector(rotationOf(body).transpose() * direction) : direction;
+}
+
+JointReference referenceOf(Joint::Kind kind, dJointID id) {
+  dBodyID body[2] = {dJointGetBody(id, 0), dJointGetBody(id, 1)};
+  JointReference reference = {{Vector::Zero(), Vector::Zero()}, {Vector::Zero(), Vector::Zero()}, Vector::Zero(), {1, 0, 0, 0}};
+  if (!body[0]) return reference;
+  dVector3 anchor = {}, axis = {};
+  if (kind == Joint::Kind::ball) dJointGetBallAnchor(id, anchor);
+  if (kind == Joint::Kind::hinge) dJointGetHingeAnchor(id, anchor);
+  if (kind == Joint::Kind::hinge) dJointGetHingeAxis(id, axis);
+  if (kind == Joint::Kind::slider) dJointGetSliderAxis(id, axis);
+  for (int i = 0; i < 2; ++i) {
+    reference.anchor[i] = pointSeenFrom(body[i], fromOde(anchor));
+    reference.axis[i] = directionSeenFrom(body[i], fromOde(axis));
+  }
+  reference.offset = pointSeenFrom(body[1], positionOf(body[0]));
+  const dReal unturned[4] = {1, 0, 0, 0};
+  dQuaternion rotation;
+  dQMultiply1(rotation, dBodyGetQuaternion(body[0]), body[1] ? dBodyGetQuaternion(body[1]) : unturned);
+  reference.rotation = {rotation[0], rotation[1], rotation[2], rotation[3]};
+  return reference;
+}
+
+}  // namespace
+
+Joint::Joint(Kind kind, dJointID id, std::string name)
+    : kind_(kind), id_(id), name_(std::move(name)), reference_pose_(referenceOf(kind, id)), reference_(Vector::Zero()) {
   if (kind_ == Kind::slider || kind_ == Kind::fixed) reference_ = separation();
 }
 

@@ -226,7 +226,8 @@ Joint* Primitive::attachHinge(Primitive* other, const Vector& anchor, const Vect
   const dJointID joint = dJointCreateHinge(world_, nullptr);
   dJointAttach(joint, body_->id, other ? other->body_->id : nullptr);
   dJointSetHingeAnchor(joint, anchor.x(), anchor.y(), anchor.z());
-  dJointSetHingeAxis(joint, axis.x(), axis.y(), axis.z());
+  const Vector unit_axis = normalized(axis);
+  dJointSetHingeAxis(joint, unit_axis.x(), unit_axis.y(), unit_axis.z());
   return addJoint(Joint::Kind::hinge, joint, other, "hinge");
 }
 

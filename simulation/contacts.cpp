@@ -11,7 +11,7 @@ Contacts::~Contacts() {
 
 void Contacts::collide() {
   dJointGroupEmpty(joints_);
-  count_ = 0;
+  points_.clear();
   dSpaceCollide(space_, this, &Contacts::onNear);
 }
 
@@ -32,7 +32,7 @@ void Contacts::add(dGeomID first, dGeomID second) {
   if (dCollide(first, second, 1, &contact.geom, sizeof(dContact)) == 0) return;
   const dJointID joint = dJointCreateContact(world_, joints_, &contact);
   dJointAttach(joint, first_body, second_body);
-  ++count_;
+  points_.push_back({{first_body, second_body}, contact.geom});
 }
 
 }  // namespace musclesim

@@ -3,7 +3,15 @@
 
 #include <ode/ode.h>
 
+#include <vector>
+
 namespace musclesim {
+
+/// One contact of this step: bodies (null: the environment), and a normal that points into the first.
+struct ContactPoint {
+  dBodyID body[2];
+  dContactGeom geometry;
+};
 
 class Contacts {
  public:
@@ -15,7 +23,9 @@ class Contacts {
 
   /// Finds all contacts in the present pose and makes their joints; those of the step before are removed.
   void collide();
-  int count() const { return count_; }
+  int count() const { return static_cast<int>(points_.size()); }
+  const std::vector<ContactPoint>& points() const { return points_; }
+  double frictionLimit() const { return friction_limit_; }
 
  private:
   static void onNear(void* contacts, dGeomID first, dGeomID second);
@@ -25,7 +35,7 @@ class Contacts {
   dSpaceID space_;
   double friction_limit_;
   dJointGroupID joints_;
-  int count_ = 0;
+  std::vector<ContactPoint> points_;
 };
 
 }  // namespace musclesim

@@ -1,8 +1,20 @@
 #include "musclesim/simulation/stepper.h"
 
-#include "musclesim/error.h"
+#include <fmt/format.h>
+
+#include "musclesim/robot/actuator.h"
 
 namespace musclesim {
+
+void BodyBounds::refuse(dBodyID body, const Vector& position_mm, const Vector& velocity_mm_per_s) const {
+  const double distance_mm = position_mm.cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
+  if (!(distance_mm <= farthest_mm)) throw BodyOutOfBounds(body, fmt::format("it is {:.3g} mm away from the origin", distance_mm));
+  throw BodyOutOfBounds(body, fmt::format("it moves at {:.3g} mm/s", velocity_mm_per_s.cwiseAbs().maxCoeff<Eigen::PropagateNaN>()));
+}
+
+void Stepper::applyForces(const Actuators& actuators) {
+  for (const auto& actuator : actuators) actuator->applyForces();
+}
 
 StepperKind stepperFromName(const std::string& name) {
   if (name == "auto") return StepperKind::automatic;

@@ -95,8 +95,10 @@ class Actuator {
   void updatePressure(double h_s);
   /// Force stage: tension from pressure and length at present.
   void updateTension();
-  /// Hands the tension to the sliders and sets the hinges' stops.
+  /// Hands the tension to the sliders and sets the hinges' stops, for ODE's steppers.
   void applyForces();
+  /// The hinges' stops at present, at minus and plus this angle.
+  double hingeStopRad() const;
 
  protected:
   /// `points` are the chain's link ends, link count + 1 of them. `given_minimum_length_mm` is what the user asked for.

@@ -9,6 +9,14 @@
 
 namespace musclesim {
 
+/// Where a joint's two bodies were when it was made, [0] seen from the first and [1] from the second (the environment: the world's frame).
+struct JointReference {
+  Vector anchor[2];          ///< balls and hinges: from the centre of mass, in the body's frame, mm
+  Vector axis[2];            ///< sliders and hinges: unit vector in the body's frame
+  Vector offset;             ///< sliders and fixed joints: first body seen from the second, in the second's frame, mm
+  Eigen::Vector4d rotation;  ///< orientation (w, x, y, z) of the second body seen from the first
+};
+
 /// A joint with what is needed to report on it: a name, its angle and how far it is torn.
 class Joint {
  public:
@@ -27,6 +35,8 @@ class Joint {
   double angleDeg(int axis = 0) const;
   /// Distance in mm by which the joint is torn: between the anchor on one body and on the other; for sliders across the axis.
   double gapMm() const;
+  /// The pose of the two bodies against each other at construction; for joints of the kinds ball, hinge, slider and fixed.
+  const JointReference& reference() const { return reference_pose_; }
 
  private:
   Vector separation() const;
@@ -34,6 +44,7 @@ class Joint {
   Kind kind_;
   dJointID id_;
   std::string name_;
+  JointReference reference_pose_;
   Vector reference_;  ///< sliders and fixed joints: second body (or environment) seen from the first, in its frame, mm
 };
 

@@ -120,7 +120,8 @@ class Simulation {
   void removeBody(Body& body);
   Joint& addJoint(Joint::Kind kind, dJointID id, const std::string& name);
   void internalStep(double h_s);
-  void requireFinite();
+  void requireFinite() const;
+  BodyBounds bodyBounds() const;
   void requireWhole();
   std::string labelOf(dBodyID body) const;
 

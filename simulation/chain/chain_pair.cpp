@@ -1,0 +1,370 @@
+#include "chain_pair.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace musclesim::chain {
+
+namespace {
+
+/// y <- L^-1 y with unit lower L.
+inline void forward(const Pack factor[6][6], Pack y[6]) {
+  for (int i = 1; i < 6; ++i)
+    for (int j = 0; j < i; ++j) y[i] -= factor[i][j] * y[j];
+}
+
+inline Pack dot(const Pack a[6], const double b[6]) {
+  Pack sum = a[0] * b[0];
+  for (int i = 1; i < 6; ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+inline Pack dot(const Pack a[6], const Pack b[6]) {
+  Pack sum = a[0] * b[0];
+  for (int i = 1; i < 6; ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+}  // namespace
+
+/// What node k subtracts from node k + 1.
+struct ChainPair::Carry {
+  Pack own[6][6] = {};
+  Pack right[6] = {};
+};
+
+ChainPair::ChainPair(int first_bead_count, int second_bead_count) : bead_count_{first_bead_count, second_bead_count} {
+  const int longest = std::max(first_bead_count, second_bead_count);
+  for (int lane = 0; lane < lane_count; ++lane) offset_[lane] = longest - bead_count_[lane];
+  nodes_.resize(static_cast<std::size_t>(longest));
+  beads_.resize(nodes_.size());
+  std::memset(static_cast<void*>(nodes_.data()), 0, nodes_.size() * sizeof(Node));
+  std::memset(static_cast<void*>(beads_.data()), 0, beads_.size() * sizeof(Bead));
+  // Rows that hold nothing: force 0.
+  for (Node& node : nodes_) {
+    node.free = both(1);
+    for (Pack& softness : node.softness) softness = both(1);
+  }
+}
+
+void ChainPair::setJoint(int lane, int joint, const JointRows& rows, double h_s) {
+  Node& node = nodes_[index(lane, joint)];
+  for (int body = 0; body < 2; ++body)
+    for (int row = 0; row < 6; ++row)
+      for (int i = 0; i < 6; ++i) node.jacobian[body][row][i][lane] = rows.jacobian[body][row][i];
+  for (int row = 0; row < 6; ++row) {
+    const bool holds = row < rows.row_count;
+    node.target[row][lane] = holds ? rows.velocity[row] / h_s : 0;
+    node.softness[row][lane] = holds ? rows.softness[row] / h_s : 1;
+  }
+  node.free[lane] = 1;
+  node.given[lane] = 0;
+}
+
+void ChainPair::setInertia(int lane, const BeadInertia& inertia) {
+  per_mass_[lane] = inertia.per_mass;
+  per_inertia_[lane] = inertia.per_inertia;
+}
+
+void ChainPair::setFreeMotion(int lane, int bead, const Vector6& a) {
+  Bead& b = beads_[index(lane, bead)];
+  for (int i = 0; i < 6; ++i) b.free_motion[i][lane] = a[i];
+}
+
+void ChainPair::makeBlocks() {
+  const std::size_t last = nodes_.size() - 1;
+  for (std::size_t k = 0; k <= last; ++k) {
+    Node& node = nodes_[k];
+    for (int row = 0; row < 6; ++row) {
+      Pack scaled[2][6];
+      for (int i = 0; i < 6; ++i) {
+        scaled[0][i] = inertia(i) * node.jacobian[0][row][i];
+        scaled[1][i] = inertia(i) * node.jacobian[1][row][i];
+      }
+      for (int other = 0; other <= row; ++other) {
+        node.own[row][other] = dot(scaled[0], node.jacobian[0][other]);
+        if (k < last) node.own[row][other] += dot(scaled[1], node.jacobian[1][other]);
+      }
+      node.own[row][row] += node.softness[row];
+      for (int other = 0; other < 6; ++other)
+        node.next[row][other] = k < last ? dot(scaled[1], nodes_[k + 1].jacobian[0][other]) : node.jacobian[1][row][other];
+    }
+  }
+}
+
+void ChainPair::setFree(int lane, int joint) {
+  nodes_[index(lane, joint)].free[lane] = 1;
+  nodes_[index(lane, joint)].given[lane] = 0;
+}
+
+void ChainPair::setForce(int lane, int joint, double force) {
+  nodes_[index(lane, joint)].free[lane] = 0;
+  nodes_[index(lane, joint)].given[lane] = force;
+}
+
+void ChainPair::clearBeadForces() {
+  for (Bead& bead : beads_)
+    for (Pack& force : bead.outer_force) force = both(0);
+}
+
+void ChainPair::addBeadForce(int lane, int bead, const double jacobian[6], double force) {
+  for (int i = 0; i < 6; ++i) beads_[index(lane, bead)].outer_force[i][lane] += force * jacobian[i];
+}
+
+void ChainPair::clearBorder() {
+  border_count_ = 0;
+  entries_.clear();
+}
+
+void ChainPair::addBorder(int lane, int column, int bead, const double jacobian[6]) {
+  border_count_ = std::max(border_count_, column + 1);
+  BorderEntry entry = {lane, column, static_cast<int>(index(lane, bead)), {}};
+  std::copy_n(jacobian, 6, entry.jacobian);
+  entries_.push_back(entry);
+}
+
+void ChainPair::growBorder() {
+  const auto needed = static_cast<std::size_t>(border_count_);
+  if (needed <= border_capacity_) return;
+  border_capacity_ = needed + 6;
+  border_.resize(nodes_.size() * border_capacity_);
+  border_block_.resize(border_capacity_ * (border_capacity_ + 1) / 2);
+  border_right_.resize(border_capacity_);
+  border_force_.resize(border_capacity_);
+  bone_coupling_.resize(border_capacity_);
+}
+
+/// B_k,j = J_k S J_j^T for all border rows j.
+void ChainPair::fillBorder() {
+  growBorder();
+  for (int k = 0; k < nodeCount(); ++k)
+    for (int c = 0; c < border_count_; ++c) borderOf(k)[c] = Column{};
+  for (const BorderEntry& entry : entries_)
+    for (int side = 0; side < 2; ++side) {
+      const int k = entry.node - side;
+      if (k < 0) continue;
+      const Node& node = nodes_[static_cast<std::size_t>(k)];
+      Column& column = borderOf(k)[entry.column];
+      for (int row = 0; row < 6; ++row)
+        for (int i = 0; i < 6; ++i)
+          column.value[row][entry.lane] += node.jacobian[side][row][i][entry.lane] * inertia(i)[entry.lane] * entry.jacobian[i];
+    }
+  const auto count = static_cast<std::size_t>(border_count_);
+  for (std::size_t i = 0; i < count * (count + 1) / 2; ++i) border_block_[i].value = both(0);
+  for (std::size_t i = 0; i < count; ++i) border_right_[i].value = border_force_[i].value = both(0);
+}
+
+void ChainPair::moveBeads() {
+  const std::size_t last = nodes_.size() - 1;
+  for (std::size_t k = 0; k <= last; ++k) {
+    Bead& bead = beads_[k];
+    for (int i = 0; i < 6; ++i) {
+      Pack force = bead.outer_force[i] + nodes_[k].given * nodes_[k].jacobian[0][5][i];
+      if (k > 0) force += nodes_[k - 1].given * nodes_[k - 1].jacobian[1][5][i];
+      bead.motion[i] = bead.free_motion[i] + inertia(i) * force;
+    }
+  }
+}
+
+/// L D L^T of `own`, whose lower part is used up.
+void ChainPair::factorise(Node& node, Pack own[6][6]) const {
+  for (int p = 0; p < 6; ++p) {
+    const Pack per_pivot = 1.0 / own[p][p];
+    node.per_pivot[p] = per_pivot;
+    for (int i = p + 1; i < 6; ++i) {
+      const Pack l = own[i][p] * per_pivot;
+      node.factor[i][p] = l;
+      for (int j = p + 1; j <= i; ++j) own[i][j] -= l * own[j][p];
+    }
+  }
+}
+
+void ChainPair::eliminateNode(int k, Carry& carry) {
+  const auto last = static_cast<int>(nodes_.size()) - 1;
+  Node& node = nodes_[static_cast<std::size_t>(k)];
+  const Pack free = node.free, next_free = k < last ? nodes_[static_cast<std::size_t>(k) + 1].free : both(1);
+  Pack own[6][6];
+  for (int i = 0; i < 5; ++i)
+    for (int j = 0; j <= i; ++j) own[i][j] = node.own[i][j] - carry.own[i][j];
+  for (int j = 0; j < 5; ++j) own[5][j] = free * (node.own[5][j] - carry.own[5][j]);
+  own[5][5] = free * (node.own[5][5] - carry.own[5][5]) + (1.0 - free);
+  factorise(node, own);
+
+  for (int i = 0; i < 6; ++i) {
+    Pack r = node.target[i] - dot(node.jacobian[0][i], beads_[static_cast<std::size_t>(k)].motion) - carry.right[i];
+    if (k < last) r -= dot(node.jacobian[1][i], beads_[static_cast<std::size_t>(k) + 1].motion);
+    node.right[i] = i == 5 ? free * r : r;
+  }
+  forward(node.factor, node.right);
+
+  for (int c = 0; c < 6; ++c) {
+    Pack column[6];
+    for (int i = 0; i < 6; ++i) column[i] = node.next[i][c];
+    if (c == 5 && k < last)
+      for (Pack& entry : column) entry *= next_free;
+    column[5] *= free;
+    forward(node.factor, column);
+    for (int i = 0; i < 6; ++i) node.coupling[i][c] = column[i];
+  }
+  Column* border = borderOf(k);
+  for (int c = 0; c < border_count_; ++c) {
+    border[c].value[5] *= free;
+    forward(node.factor, border[c].value);
+  }
+  if (k == last) return;
+
+  Pack scaled[6][6];
+  for (int p = 0; p < 6; ++p)
+    for (int c = 0; c < 6; ++c) scaled[p][c] = node.coupling[p][c] * node.per_pivot[p];
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      Pack sum = scaled[0][i] * node.coupling[0][j];
+      for (int p = 1; p < 6; ++p) sum += scaled[p][i] * node.coupling[p][j];
+      carry.own[i][j] = sum;
+    }
+    Pack sum = scaled[0][i] * node.right[0];
+    for (int p = 1; p < 6; ++p) sum += scaled[p][i] * node.right[p];
+    carry.right[i] = sum;
+  }
+  Column* next_border = borderOf(k + 1);
+  for (int c = 0; c < border_count_; ++c)
+    for (int i = 0; i < 6; ++i) {
+      Pack sum = scaled[0][i] * border[c].value[0];
+      for (int p = 1; p < 6; ++p) sum += scaled[p][i] * border[c].value[p];
+      next_border[c].value[i] -= sum;
+    }
+}
+
+void ChainPair::accumulateBorder(int k) {
+  const Node& node = nodes_[static_cast<std::size_t>(k)];
+  const Column* border = borderOf(k);
+  for (int c = 0; c < border_count_; ++c) {
+    Pack scaled[6];
+    for (int p = 0; p < 6; ++p) scaled[p] = border[c].value[p] * node.per_pivot[p];
+    for (int d = 0; d <= c; ++d) border_block_[blockIndex(c, d)].value += dot(scaled, border[d].value);
+    border_right_[static_cast<std::size_t>(c)].value += dot(scaled, node.right);
+  }
+}
+
+/// M_B += W^T D^-1 W,  g_B += W^T D^-1 right,  J_B = -W^T D^-1 border, with W = L^-1 J of the last node's three rows.
+void ChainPair::leaveToBone() {
+  const auto last = static_cast<int>(nodes_.size()) - 1;
+  const Node& node = nodes_[static_cast<std::size_t>(last)];
+  const Column* border = borderOf(last);
+  for (int i = 0; i < 6; ++i) {
+    Pack scaled[6];
+    for (int p = 0; p < 6; ++p) scaled[p] = node.coupling[p][i] * node.per_pivot[p];
+    for (int j = 0; j < 6; ++j) {
+      Pack sum = both(0);
+      for (int p = 0; p < 3; ++p) sum += scaled[p] * node.coupling[p][j];
+      for (int lane = 0; lane < lane_count; ++lane) bone_mass_[lane](i, j) = sum[lane];
+    }
+    Pack sum = both(0);
+    for (int p = 0; p < 3; ++p) sum += scaled[p] * node.right[p];
+    for (int lane = 0; lane < lane_count; ++lane) bone_momentum_[lane][i] = sum[lane];
+    for (int c = 0; c < border_count_; ++c) {
+      Pack coupling = both(0);
+      for (int p = 0; p < 3; ++p) coupling -= scaled[p] * border[c].value[p];
+      bone_coupling_[static_cast<std::size_t>(c)].value[i] = coupling;
+    }
+  }
+}
+
+void ChainPair::eliminate() {
+  moveBeads();
+  fillBorder();
+  Carry carry;
+  for (int k = 0; k < nodeCount(); ++k) {
+    eliminateNode(k, carry);
+    accumulateBorder(k);
+  }
+  leaveToBone();
+}
+
+Vector6 ChainPair::boneCoupling(int lane, int i) const {
+  Vector6 result;
+  for (int q = 0; q < 6; ++q) result[q] = bone_coupling_[static_cast<std::size_t>(i)].value[q][lane];
+  return result;
+}
+
+Vector6 ChainPair::motion(int lane, int bead) const {
+  Vector6 result;
+  for (int q = 0; q < 6; ++q) result[q] = beads_[index(lane, bead)].motion[q][lane];
+  return result;
+}
+
+Vector6 ChainPair::velocity(int lane, int bead) const {
+  Vector6 result;
+  for (int q = 0; q < 6; ++q) result[q] = beads_[index(lane, bead)].velocity[q][lane];
+  return result;
+}
+
+double ChainPair::velocityAlong(int lane, int bead, const double jacobian[6]) const {
+  return dot(beads_[index(lane, bead)].velocity, jacobian)[lane];
+}
+
+void ChainPair::setBoneVelocity(int lane, const Vector6& u) {
+  for (int q = 0; q < 6; ++q) bone_velocity_[q][lane] = u[q];
+}
+
+void ChainPair::substitute() {
+  substituteForces();
+  substituteVelocities();
+  makeSlacks();
+}
+
+void ChainPair::substituteForces() {
+  const auto last = static_cast<int>(nodes_.size()) - 1;
+  Pack following[6];
+  for (int q = 0; q < 6; ++q) following[q] = bone_velocity_[q];
+  for (int k = last; k >= 0; --k) {
+    Node& node = nodes_[static_cast<std::size_t>(k)];
+    const Column* border = borderOf(k);
+    for (int i = 0; i < 6; ++i) {
+      Pack sum = node.right[i] - dot(node.coupling[i], following);
+      for (int c = 0; c < border_count_; ++c) sum -= border[c].value[i] * border_force_[static_cast<std::size_t>(c)].value;
+      node.force[i] = sum * node.per_pivot[i];
+    }
+    for (int i = 4; i >= 0; --i)
+      for (int j = i + 1; j < 6; ++j) node.force[i] -= node.factor[j][i] * node.force[j];
+    for (int i = 0; i < 6; ++i) following[i] = node.force[i];
+  }
+}
+
+/// u = a + S J^T l
+void ChainPair::substituteVelocities() {
+  for (std::size_t k = 0; k < beads_.size(); ++k)
+    for (int i = 0; i < 6; ++i) {
+      Pack sum = both(0);
+      for (int row = 0; row < 6; ++row) {
+        sum += nodes_[k].jacobian[0][row][i] * nodes_[k].force[row];
+        if (k > 0) sum += nodes_[k - 1].jacobian[1][row][i] * nodes_[k - 1].force[row];
+      }
+      beads_[k].velocity[i] = beads_[k].motion[i] + inertia(i) * sum;
+    }
+  for (const BorderEntry& entry : entries_) {
+    Bead& bead = beads_[static_cast<std::size_t>(entry.node)];
+    const double force = border_force_[static_cast<std::size_t>(entry.column)].value[entry.lane];
+    for (int i = 0; i < 6; ++i) bead.velocity[i][entry.lane] += inertia(i)[entry.lane] * entry.jacobian[i] * force;
+  }
+}
+
+/// w = J u + cfm/h l - c/h of row 5
+void ChainPair::makeSlacks() {
+  for (std::size_t k = 0; k + 1 < nodes_.size(); ++k) {
+    Node& node = nodes_[k];
+    node.slack = dot(node.jacobian[0][5], beads_[k].velocity) + dot(node.jacobian[1][5], beads_[k + 1].velocity) +
+                 node.softness[5] * node.given - node.target[5];
+  }
+}
+
+double ChainPair::largestVelocity() const {
+  double largest = 0;
+  for (const Bead& bead : beads_)
+    for (int i = 0; i < 3; ++i)
+      for (int lane = 0; lane < lane_count; ++lane) largest = std::max(largest, std::abs(bead.velocity[i][lane]));
+  return largest;
+}
+
+}  // namespace musclesim::chain

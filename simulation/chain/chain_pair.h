@@ -1,0 +1,148 @@
+/// Block elimination of two chains at once, one per lane of a Pack.
+///
+/// The unknowns of a chain are the forces of its joints, node k for the joint between bead k and bead k + 1 (the last: the ball at the end
+/// on the bone B), six rows each. With the beads eliminated they couple neighbour with neighbour only:
+///     A_k,k-1 l_k-1 + A_k l_k + A_k,k+1 l_k+1 + sum_j B_k,j y_j (+ J u_B at the last node) = r_k
+///     A_k = J_k S J_k^T + cfm/h,   A_k,k+1 = J_k S J_k+1^T,   r_k = c/h - J_k a,   a = v/h + S f
+/// S the beads' inverse inertia, u_B the bone's new velocity / h, y_j the forces of the border rows, which stay for the core: the ball at
+/// the start (3 rows) and the free rows of contacts on the beads. Elimination runs from the start to the end, A_k = L D L^T.
+#pragma once
+
+#include <vector>
+
+#include "body_state.h"
+#include "joint_rows.h"
+#include "pack.h"
+
+namespace musclesim::chain {
+
+/// Inverse mass and inertia of a chain's beads.
+struct BeadInertia {
+  double per_mass = 0, per_inertia = 0;
+  double operator[](int component) const { return component < 3 ? per_mass : per_inertia; }
+};
+
+class ChainPair {
+ public:
+  /// Chains of different length are aligned at their ends; the shorter one's first nodes are empty. Bead counts are even; 0: empty lane.
+  ChainPair(int first_bead_count, int second_bead_count);
+
+  int beadCount(int lane) const { return bead_count_[lane]; }
+  int nodeCount() const { return static_cast<int>(nodes_.size()); }
+
+  /// Rows of joint k of a chain, for the step h.
+  void setJoint(int lane, int joint, const JointRows& rows, double h_s);
+  void setInertia(int lane, const BeadInertia& inertia);
+  /// a without the forces of rows at a bound.
+  void setFreeMotion(int lane, int bead, const Vector6& a);
+  /// The blocks A_k and A_k,k+1, after all joints are set.
+  void makeBlocks();
+
+  /// Row 5 of a joint: free, or at a bound with that force.
+  void setFree(int lane, int joint);
+  void setForce(int lane, int joint, double force);
+  /// Forces on beads besides those of row 5: of contact rows at a bound.
+  void clearBeadForces();
+  void addBeadForce(int lane, int bead, const double jacobian[6], double force);
+  /// Starts a new set of border rows; each lane numbers its own from 0.
+  void clearBorder();
+  /// A border row's Jacobian on one bead.
+  void addBorder(int lane, int column, int bead, const double jacobian[6]);
+
+  /// Elimination for the present states and border.
+  void eliminate();
+  /// What it leaves for the core, to be subtracted there: border x border (lower part), border x 1, and for the bone B
+  /// mass (6x6), momentum (6) to be added and coupling (6) per border row.
+  double borderBlock(int lane, int i, int j) const { return border_block_[blockIndex(i, j)].value[lane]; }
+  double borderRight(int lane, int i) const { return border_right_[static_cast<std::size_t>(i)].value[lane]; }
+  const Matrix6& boneMass(int lane) const { return bone_mass_[lane]; }
+  const Vector6& boneMomentum(int lane) const { return bone_momentum_[lane]; }
+  Vector6 boneCoupling(int lane, int i) const;
+  /// a of a bead with all forces of rows at a bound.
+  Vector6 motion(int lane, int bead) const;
+
+  /// Velocities of the bone B for the back substitution and forces of the border rows.
+  void setBoneVelocity(int lane, const Vector6& u);
+  void setBorderForce(int lane, int column, double force) { border_force_[static_cast<std::size_t>(column)].value[lane] = force; }
+  /// Back substitution: forces of all joints, then the beads' new velocities / h.
+  void substitute();
+  double axisForce(int lane, int joint) const { return nodes_[index(lane, joint)].force[5][lane]; }
+  /// w of row 5 at a bound.
+  double axisSlack(int lane, int joint) const { return nodes_[index(lane, joint)].slack[lane]; }
+  double axisDiagonal(int lane, int joint) const { return nodes_[index(lane, joint)].own[5][5][lane]; }
+  Vector6 velocity(int lane, int bead) const;
+  /// Velocity of a bead along a row.
+  double velocityAlong(int lane, int bead, const double jacobian[6]) const;
+  /// Largest absolute linear velocity / h of any bead.
+  double largestVelocity() const;
+
+ private:
+  struct Node {
+    Pack jacobian[2][6][6];  ///< [body][row][v, w]
+    Pack target[6];          ///< c/h
+    Pack softness[6];        ///< cfm/h
+    Pack own[6][6];          ///< A_k, lower part
+    Pack next[6][6];         ///< A_k,k+1
+    Pack free;               ///< 1 where row 5 takes part, 0 where its force is given
+    Pack given;              ///< that force
+    Pack factor[6][6];       ///< L below the diagonal
+    Pack per_pivot[6];       ///< 1 / D
+    Pack coupling[6][6];     ///< L^-1 A_k,k+1; last node: L^-1 J of the bone B
+    Pack right[6];           ///< L^-1 r_k
+    Pack force[6];           ///< l
+    Pack slack;
+  };
+  struct Bead {
+    Pack free_motion[6];  ///< v/h + S f
+    Pack outer_force[6];  ///< of contact rows at a bound
+    Pack motion[6];       ///< a
+    Pack velocity[6];     ///< u
+  };
+  struct Column {
+    Pack value[6];
+  };
+  struct Single {
+    Pack value;
+  };
+  struct BorderEntry {
+    int lane, column, node;
+    double jacobian[6];
+  };
+  struct Carry;
+
+  std::size_t index(int lane, int joint) const { return static_cast<std::size_t>(offset_[lane] + joint); }
+  static std::size_t blockIndex(int i, int j) {
+    const int high = i > j ? i : j, low = i > j ? j : i;
+    return static_cast<std::size_t>(high * (high + 1) / 2 + low);
+  }
+  Column* borderOf(int node) { return border_.data() + static_cast<std::size_t>(node) * border_capacity_; }
+  const Column* borderOf(int node) const { return border_.data() + static_cast<std::size_t>(node) * border_capacity_; }
+  void growBorder();
+  void fillBorder();
+  void moveBeads();
+  void factorise(Node& node, Pack own[6][6]) const;
+  void eliminateNode(int k, Carry& carry);
+  void accumulateBorder(int k);
+  void leaveToBone();
+  void substituteForces();
+  void substituteVelocities();
+  void makeSlacks();
+  Pack inertia(int component) const { return component < 3 ? per_mass_ : per_inertia_; }
+
+  int bead_count_[lane_count];
+  int offset_[lane_count];  ///< number of empty nodes before the chain
+  int border_count_ = 0;
+  std::size_t border_capacity_ = 0;
+  Pack per_mass_{}, per_inertia_{};
+  std::vector<Node> nodes_;
+  std::vector<Bead> beads_;
+  std::vector<Column> border_;
+  std::vector<BorderEntry> entries_;
+  std::vector<Single> border_block_, border_right_, border_force_;
+  std::vector<Column> bone_coupling_;
+  Matrix6 bone_mass_[lane_count];
+  Vector6 bone_momentum_[lane_count];
+  Pack bone_velocity_[6] = {};
+};
+
+}  // namespace musclesim::chain

@@ -1,0 +1,65 @@
+/// The default stepper: solves the same problem as dWorldStep, at a cost that grows with the number of links instead of its cube.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "model.h"
+#include "musclesim/simulation/stepper.h"
+#include "step_problem.h"
+
+namespace musclesim {
+
+class Contacts;
+class Simulation;
+
+struct ChainStatistics {
+  long steps = 0;
+  long unsolved_steps = 0;   ///< left to dWorldStep
+  long rounds = 0;           ///< linear solves
+  long monotone_rounds = 0;  ///< of them in the active set's second phase
+  int largest_rounds = 0;    ///< in one step
+};
+
+/// Takes robots made of bones and actuators: balls, hinges and sliders between bones or to the environment, bones fixed to the
+/// environment, chains of equal beads with both ends connected, contacts. Everything else is left to dWorldStep, with a message.
+class ChainStepper final : public Stepper {
+ public:
+  /// `strict`: a robot that it cannot take is an error, not left to dWorldStep.
+  ChainStepper(const Simulation& simulation, const Contacts& contacts, const BodyBounds& bounds, bool strict);
+  ~ChainStepper() override;
+
+  void prepare() override;
+  void applyForces(const Actuators& actuators) override;
+  void step(double h_s) override;
+  std::string name() const override { return reason_.empty() ? "chain" : "ode"; }
+  std::string message() const override;
+  long unsolvedSteps() const override { return statistics_.unsolved_steps; }
+  bool hasCheckedBounds() const override { return state_is_current_; }
+  std::optional<TornJoint> largestGap() const override;
+
+  const ChainStatistics& statistics() const { return statistics_; }
+
+ private:
+  bool upToDate() const;
+  bool solve(double h_s);
+  void leaveToOde(double h_s);
+
+  const Simulation& simulation_;
+  const Contacts& contacts_;
+  BodyBounds bounds_;
+  bool strict_;
+  double registered_reduction_;  ///< ODE's ERP of the world as the simulation set it
+  bool prepared_ = false;
+  std::size_t joint_count_ = 0, body_count_ = 0, actuator_count_ = 0;
+  std::string reason_;  ///< why dWorldStep is used; empty: it is not
+  chain::Model model_;
+  std::unique_ptr<chain::StepProblem> problem_;
+  chain::BoxActiveSet active_set_;
+  std::vector<chain::Vector6> new_velocity_;  ///< u of all bodies
+  bool state_is_current_ = false;             ///< the model's bodies are where ODE's are
+  ChainStatistics statistics_;
+};
+
+}  // namespace musclesim

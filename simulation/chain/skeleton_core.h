@@ -1,0 +1,56 @@
+/// What is left when the chains are eliminated: the bones and the rows between them.
+///
+///     M_b u_b - sum_i J_i,b^T y_i = g_b       for every bone b: own mass and what the chains that end on it add
+///     sum_b J_i,b u_b + sum_j D_ij y_j = r_i  for every core row i: start balls, skeleton joints, free contact rows
+/// Bones couple only through rows, so M = block diagonal and  (D + J M^-1 J^T) y = r - J M^-1 g  is symmetric positive definite.
+#pragma once
+
+#include <vector>
+
+#include "body_state.h"
+#include "dense_cholesky.h"
+
+namespace musclesim::chain {
+
+class SkeletonCore {
+ public:
+  /// Starts a new system; everything is 0.
+  void reset(int bone_count, int row_count);
+
+  void addBone(int bone, const Matrix6& mass, const Vector6& momentum) {
+    bones_[static_cast<std::size_t>(bone)].mass += mass;
+    bones_[static_cast<std::size_t>(bone)].velocity += momentum;
+  }
+  void addMomentum(int bone, const Vector6& momentum) { bones_[static_cast<std::size_t>(bone)].velocity += momentum; }
+  void addBlock(int row, int column, double value) { rows_.add(row, column, value); }
+  void addRight(int row, double value) { force_[static_cast<std::size_t>(row)] += value; }
+  /// Adds to J_row,bone; bone -1 does not move.
+  void couple(int row, int bone, const double jacobian[6]);
+
+  void solve();
+  const Vector6& velocity(int bone) const { return bones_[static_cast<std::size_t>(bone)].velocity; }
+  double force(int row) const { return force_[static_cast<std::size_t>(row)]; }
+
+ private:
+  struct Coupling {
+    int row;
+    double jacobian[6];
+    double reduced[6];  ///< L^-1 J^T
+  };
+  struct BoneSystem {
+    Matrix6 mass;      ///< then its Cholesky factor
+    Vector6 velocity;  ///< first g, then u
+    double reduced[6];
+    std::vector<Coupling> couplings;
+  };
+  static void factorise(BoneSystem& bone);
+  void reduce(BoneSystem& bone);
+  void substitute(BoneSystem& bone) const;
+
+  std::vector<BoneSystem> bones_;
+  int bone_count_ = 0;
+  DenseCholesky rows_;
+  std::vector<double> force_;  ///< first r, then y
+};
+
+}  // namespace musclesim::chain

@@ -1,0 +1,248 @@
+#include "step_problem.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace musclesim::chain {
+
+namespace {
+
+/// Torque of Lacoursiere's implicit gyroscopic term as ODE adds it: (I (I - h [L]x)^-1 - 1) L / h, L = I w.
+Vector gyroscopicTorque(const Eigen::Matrix3d& inertia, const Vector& spin, double h_s) {
+  const Vector l = inertia * spin;
+  Eigen::Matrix3d cross;
+  cross << 0, -l.z(), l.y(), l.z(), 0, -l.x(), -l.y(), l.x(), 0;
+  const Eigen::Matrix3d effective = inertia - h_s * cross;
+  return (inertia * effective.inverse() - Eigen::Matrix3d::Identity()) * (l / h_s);
+}
+
+}  // namespace
+
+StepProblem::StepProblem(Model& model) : model_(model) {
+  std::vector<int> order(model.chains.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    return model.chains[static_cast<std::size_t>(a)].beadCount() < model.chains[static_cast<std::size_t>(b)].beadCount();
+  });
+  chains_.resize(order.size());
+  for (std::size_t i = 0; i < order.size(); i += lane_count) {
+    int counts[lane_count] = {};
+    for (std::size_t lane = 0; lane < lane_count && i + lane < order.size(); ++lane) {
+      const auto number = static_cast<std::size_t>(order[i + lane]);
+      counts[lane] = model.chains[number].beadCount();
+      chains_[number].pair = static_cast<int>(pairs_.size());
+      chains_[number].lane = static_cast<int>(lane);
+      chains_[number].joints.resize(model.chains[number].joints.size());
+    }
+    pairs_.emplace_back(counts[0], counts[1]);
+  }
+  pair_dirty_.resize(pairs_.size());
+  skeleton_.resize(model.skeleton.size());
+  fixed_.resize(model.fixed.size());
+  bones_.resize(model.bones.size());
+}
+
+bool StepProblem::begin(const Conditions& conditions, const std::vector<ContactPoint>& contacts) {
+  conditions_ = conditions;
+  model_.readBones();
+  addLoads();
+  makeJointRows();
+  if (!contacts_.make(contacts, model_.bodies, conditions.friction_force, conditions.world_reduction / conditions.h_s)) return false;
+  setUpPairs();
+  setUpBones();
+  collectRows();
+  std::fill(pair_dirty_.begin(), pair_dirty_.end(), char{1});
+  return true;
+}
+
+/// Gravity, and for bones the gyroscopic torque.
+void StepProblem::addLoads() {
+  for (int i = 0; i < model_.boneCount(); ++i) {
+    const Bone& bone = model_.bones[static_cast<std::size_t>(i)];
+    BodyMotion& motion = model_.bodies[i];
+    if (bone.gravity) motion.force += bone.mass_g * conditions_.gravity;
+    if (bone.gyroscopic)
+      motion.torque += gyroscopicTorque(motion.rotation * bone.inertia * motion.rotation.transpose(), motion.spin, conditions_.h_s);
+  }
+  for (const Chain& chain : model_.chains)
+    for (int bead = 0; bead < chain.beadCount(); ++bead)
+      model_.bodies[chain.first_bead + bead].force += chain.bead_mass_g * conditions_.gravity;
+}
+
+void StepProblem::makeJointRows() {
+  auto make = [&](JointModel& joint, JointState& state) {
+    makeRows(joint, model_.bodies, conditions_.h_s, conditions_.reduction, state.rows);
+    if (state.rows.contact != AxisContact::none && state.rows.constant_force != 0)
+      addAxisForce(joint, state.rows, state.rows.constant_force);
+  };
+  for (std::size_t c = 0; c < chains_.size(); ++c) {
+    Chain& chain = model_.chains[c];
+    const double stop_rad = chain.actuator->hingeStopRad();
+    const double tension = chain.actuator->tensionN() * conditions_.force_per_N;
+    for (std::size_t k = 0; k < chain.joints.size(); ++k) {
+      JointModel& joint = chain.joints[k];
+      joint.readLimits();
+      if (joint.kind == Joint::Kind::hinge) {
+        joint.limits.low_stop = -stop_rad;
+        joint.limits.high_stop = stop_rad;
+      }
+      make(joint, chains_[c].joints[k]);
+      if (joint.kind == Joint::Kind::slider) addAxisForce(joint, chains_[c].joints[k].rows, tension);
+    }
+    make(chain.start, chains_[c].start);
+  }
+  for (std::size_t i = 0; i < skeleton_.size(); ++i) {
+    model_.skeleton[i].readLimits();
+    make(model_.skeleton[i], skeleton_[i]);
+  }
+  for (std::size_t i = 0; i < fixed_.size(); ++i) make(model_.fixed[i], fixed_[i]);
+}
+
+/// Adds J5^T force to the loads of the joint's bodies.
+void StepProblem::addAxisForce(const JointModel& joint, const JointRows& rows, double force) {
+  for (int side = 0; side < 2; ++side) {
+    if (joint.body[side] < 0) continue;
+    BodyMotion& motion = model_.bodies[joint.body[side]];
+    for (int i = 0; i < 3; ++i) {
+      motion.force[i] += force * rows.jacobian[side][5][i];
+      motion.torque[i] += force * rows.jacobian[side][5][3 + i];
+    }
+  }
+}
+
+void StepProblem::setUpPairs() {
+  const double per_h = 1 / conditions_.h_s;
+  for (std::size_t c = 0; c < chains_.size(); ++c) {
+    const Chain& chain = model_.chains[c];
+    ChainState& state = chains_[c];
+    ChainPair& pair = pairs_[static_cast<std::size_t>(state.pair)];
+    const BeadInertia inertia = {1 / chain.bead_mass_g, 1 / chain.bead_inertia};
+    pair.setInertia(state.lane, inertia);
+    for (int k = 0; k < chain.beadCount(); ++k) {
+      pair.setJoint(state.lane, k, state.joints[static_cast<std::size_t>(k)].rows, conditions_.h_s);
+      const BodyMotion& motion = model_.bodies[chain.first_bead + k];
+      Vector6 a;
+      a << per_h * motion.velocity + inertia.per_mass * motion.force, per_h * motion.spin + inertia.per_inertia * motion.torque;
+      pair.setFreeMotion(state.lane, k, a);
+    }
+  }
+  for (ChainPair& pair : pairs_) pair.makeBlocks();
+}
+
+/// M = diag(m, R I R^T), g = M v/h + f; a fixation adds J^T (h/cfm) J and J^T (h/cfm) c/h.
+void StepProblem::setUpBones() {
+  const double per_h = 1 / conditions_.h_s;
+  for (int i = 0; i < model_.boneCount(); ++i) {
+    const Bone& bone = model_.bones[static_cast<std::size_t>(i)];
+    const BodyMotion& motion = model_.bodies[i];
+    BoneState& state = bones_[static_cast<std::size_t>(i)];
+    const Eigen::Matrix3d inertia = motion.rotation * bone.inertia * motion.rotation.transpose();
+    state.mass.setZero();
+    state.mass.topLeftCorner<3, 3>().diagonal().setConstant(bone.mass_g);
+    state.mass.bottomRightCorner<3, 3>() = inertia;
+    state.momentum << per_h * bone.mass_g * motion.velocity + motion.force, per_h * (inertia * motion.spin) + motion.torque;
+    state.per_mass = 1 / bone.mass_g;
+    state.per_inertia = 3 / inertia.trace();
+  }
+  for (std::size_t f = 0; f < fixed_.size(); ++f) {
+    BoneState& state = bones_[static_cast<std::size_t>(model_.fixed[f].body[0])];
+    const JointRows& rows = fixed_[f].rows;
+    for (int row = 0; row < 6; ++row) {
+      const Eigen::Map<const Vector6> j(rows.jacobian[0][row]);
+      const double stiffness = conditions_.h_s / rows.softness[row];
+      state.mass += stiffness * j * j.transpose();
+      state.momentum += stiffness * rows.velocity[row] * per_h * j;
+    }
+  }
+}
+
+void StepProblem::collectRow(JointState& joint, RowPlace place, double diagonal) {
+  const AxisContact contact = joint.rows.contact;
+  joint.bounded = contact == AxisContact::motor || contact == AxisContact::low_stop || contact == AxisContact::high_stop;
+  if (contact != joint.contact_before || !joint.bounded) joint.state = RowState::free;
+  joint.contact_before = contact;
+  if (!joint.bounded) return;
+  BoundedRow row;
+  row.lower = joint.rows.lower;
+  row.upper = joint.rows.upper;
+  row.state = joint.state;
+  row.diagonal = diagonal;
+  rows_.push_back(row);
+  places_.push_back(place);
+}
+
+double StepProblem::diagonalOf(const ContactRows& contact, int row) const {
+  double sum = conditions_.world_softness / conditions_.h_s;
+  for (int side = 0; side < 2; ++side) {
+    const int body = contact.body[side];
+    if (body < 0) continue;
+    const auto place = model_.placeOf(body);
+    const auto chain = static_cast<std::size_t>(place.chain);
+    const double per_mass = place.chain < 0 ? bones_[static_cast<std::size_t>(body)].per_mass : 1 / model_.chains[chain].bead_mass_g;
+    const double per_inertia = place.chain < 0 ? bones_[static_cast<std::size_t>(body)].per_inertia : 1 / model_.chains[chain].bead_inertia;
+    const double* j = contact.jacobian[side][row];
+    for (int i = 0; i < 3; ++i) sum += per_mass * j[i] * j[i] + per_inertia * j[3 + i] * j[3 + i];
+  }
+  return sum;
+}
+
+void StepProblem::collectRows() {
+  rows_.clear();
+  places_.clear();
+  for (std::size_t c = 0; c < chains_.size(); ++c)
+    for (std::size_t k = 0; k + 1 < chains_[c].joints.size(); ++k)
+      collectRow(chains_[c].joints[k], {RowKind::chain_joint, static_cast<int>(c), static_cast<int>(k)},
+                 pairs_[static_cast<std::size_t>(chains_[c].pair)].axisDiagonal(chains_[c].lane, static_cast<int>(k)));
+  for (std::size_t i = 0; i < skeleton_.size(); ++i) {
+    double diagonal = skeleton_[i].rows.softness[5] / conditions_.h_s;
+    for (int side = 0; side < 2; ++side) {
+      const int body = model_.skeleton[i].body[side];
+      if (body < 0) continue;
+      const double* j = skeleton_[i].rows.jacobian[side][5];
+      const BoneState& bone = bones_[static_cast<std::size_t>(body)];
+      for (int q = 0; q < 3; ++q) diagonal += bone.per_mass * j[q] * j[q] + bone.per_inertia * j[3 + q] * j[3 + q];
+    }
+    collectRow(skeleton_[i], {RowKind::skeleton_joint, static_cast<int>(i), 0}, diagonal);
+  }
+  for (std::size_t i = 0; i < contacts_.all().size(); ++i) {
+    const ContactRows& contact = contacts_.all()[i];
+    for (int row = 0; row < contact.row_count; ++row) {
+      BoundedRow bounded;
+      bounded.lower = contact.lower[row];
+      bounded.upper = contact.upper[row];
+      bounded.state = contact.state[row];
+      bounded.diagonal = diagonalOf(contact, row);
+      rows_.push_back(bounded);
+      places_.push_back({RowKind::contact, static_cast<int>(i), row});
+    }
+  }
+}
+
+void StepProblem::changed(int row) {
+  const RowPlace& place = places_[static_cast<std::size_t>(row)];
+  auto touch = [&](int chain) { pair_dirty_[static_cast<std::size_t>(chains_[static_cast<std::size_t>(chain)].pair)] = 1; };
+  if (place.kind == RowKind::chain_joint) return touch(place.owner);
+  if (place.kind == RowKind::skeleton_joint) return;
+  for (const int body : contacts_.all()[static_cast<std::size_t>(place.owner)].body)
+    if (const int chain = model_.placeOf(body).chain; chain >= 0) touch(chain);
+}
+
+void StepProblem::end(std::vector<Vector6>& u) {
+  takeStates(rows_);
+  for (int i = 0; i < model_.boneCount(); ++i) u[static_cast<std::size_t>(i)] = core_.velocity(i);
+  for (std::size_t c = 0; c < chains_.size(); ++c)
+    for (int k = 0; k < model_.chains[c].beadCount(); ++k)
+      u[static_cast<std::size_t>(model_.chains[c].first_bead + k)] =
+          pairs_[static_cast<std::size_t>(chains_[c].pair)].velocity(chains_[c].lane, k);
+}
+
+void StepProblem::forget() {
+  for (ChainState& chain : chains_)
+    for (JointState& joint : chain.joints) joint.contact_before = AxisContact::none;
+  for (JointState& joint : skeleton_) joint.contact_before = AxisContact::none;
+  contacts_.clear();
+}
+
+}  // namespace musclesim::chain

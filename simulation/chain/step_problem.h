@@ -1,0 +1,114 @@
+/// The box-constrained problem of one step, solved by elimination: beads, chains, bones, dense core.
+///
+///     M u - J^T l = M v/h + f,   J u + cfm/h l = c/h + w,   lower <= l <= upper, w complementary      u = v+ / h
+/// A row at a bound takes no part; its force acts on its bodies like any other.
+#pragma once
+
+#include <vector>
+
+#include "box_active_set.h"
+#include "chain_pair.h"
+#include "contact_set.h"
+#include "model.h"
+#include "skeleton_core.h"
+
+namespace musclesim::chain {
+
+class StepProblem final : public BoxProblem {
+ public:
+  /// The model must outlive the problem.
+  explicit StepProblem(Model& model);
+
+  struct Conditions {
+    double h_s;
+    Vector gravity;  ///< mm/s^2
+    double force_per_N;
+    ErrorReduction reduction;
+    double world_reduction;  ///< ODE's ERP of the world, for contacts
+    double world_softness;   ///< ODE's CFM of the world, for contacts
+    double friction_force;   ///< bound of a contact's friction
+  };
+  /// Sets up the step for the bodies' present state and the actuators' tensions. Returns false if a contact touches an unknown body.
+  bool begin(const Conditions& conditions, const std::vector<ContactPoint>& contacts);
+  /// The bounded rows; their states are those at the end of the last step where the row is the same.
+  std::vector<BoundedRow>& rows() { return rows_; }
+  /// Keeps the states for the next step, and gives u of all bodies.
+  void end(std::vector<Vector6>& u);
+  /// Forgets the states.
+  void forget();
+
+  void solve(std::vector<BoundedRow>& rows) override;
+  void changed(int row) override;
+  double forceTolerance() const override { return 1e-10 * force_scale_; }
+  double slackTolerance() const override { return 1e-10 * velocity_scale_; }
+
+ private:
+  /// A joint's rows and the state of its bounded row.
+  struct JointState {
+    JointRows rows;
+    AxisContact contact_before = AxisContact::none;
+    RowState state = RowState::free;
+    bool bounded = false;
+    double force = 0;  ///< of the bounded row at a bound
+    int core_row = 0;  ///< skeleton: number of the first row in the core
+    bool axisFree() const { return rows.row_count == 6 && state == RowState::free; }
+  };
+  struct ChainState {
+    int pair, lane;
+    std::vector<JointState> joints;
+    JointState start;
+    std::vector<int> border_rows;  ///< core rows of its border: the start ball's, then free contact rows
+  };
+  struct BoneState {
+    Matrix6 mass;      ///< with what a fixation adds
+    Vector6 momentum;  ///< M v/h + f
+    double per_mass, per_inertia;
+  };
+  enum class RowKind : signed char { chain_joint, skeleton_joint, contact };
+  struct RowPlace {
+    RowKind kind;
+    int owner, part;  ///< chain and joint; skeleton joint; contact and direction
+  };
+
+  void addLoads();
+  void makeJointRows();
+  void addAxisForce(const JointModel& joint, const JointRows& rows, double force);
+  void setUpPairs();
+  void setUpBones();
+  void collectRows();
+  void collectRow(JointState& joint, RowPlace place, double diagonal);
+  double diagonalOf(const ContactRows& contact, int row) const;
+
+  void takeStates(const std::vector<BoundedRow>& rows);
+  void setUpBorders();
+  void setUpContactBorder(ContactRows& contact, int row);
+  void eliminateChains();
+  void assembleCore();
+  void addBones();
+  void addChain(std::size_t number);
+  void addSkeleton();
+  void addContact(std::size_t number, int row);
+  void addContactPair(const ContactRows& contact, int row, const ContactRows& other, int other_row);
+  double throughBead(int body, const double first[6], const double second[6]) const;
+  void substitute();
+  void giveForces(std::vector<BoundedRow>& rows);
+  double slackOfSkeleton(std::size_t number) const;
+  double slackOfContact(const ContactRows& contact, int row) const;
+  double alongBody(int body, const double jacobian[6]) const;
+
+  Model& model_;
+  Conditions conditions_{};
+  ContactSet contacts_;
+  std::vector<ChainState> chains_;
+  std::vector<JointState> skeleton_, fixed_;
+  std::vector<BoneState> bones_;
+  std::vector<ChainPair> pairs_;
+  std::vector<char> pair_dirty_;
+  SkeletonCore core_;
+  int core_row_count_ = 0;
+  std::vector<BoundedRow> rows_;
+  std::vector<RowPlace> places_;
+  double force_scale_ = 0, velocity_scale_ = 0;
+};
+
+}  // namespace musclesim::chain
