@@ -2,10 +2,13 @@
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/musclesim)
 
-install(TARGETS musclesim_core musclesim EXPORT musclesimTargets)
+target_compile_features(musclesim_core PUBLIC cxx_std_20)  # the headers need it
+install(TARGETS musclesim)
+install(TARGETS musclesim_core EXPORT musclesimTargets)
+install(EXPORT musclesimTargets NAMESPACE musclesim:: DESTINATION ${package_dir})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/musclesim ${PROJECT_BINARY_DIR}/include/musclesim
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
-install(EXPORT musclesimTargets NAMESPACE musclesim:: DESTINATION ${package_dir})
+
 configure_package_config_file(cmake/musclesimConfig.cmake.in ${PROJECT_BINARY_DIR}/musclesimConfig.cmake INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/musclesimConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/musclesimConfig.cmake ${PROJECT_BINARY_DIR}/musclesimConfigVersion.cmake cmake/FindODE.cmake

@@ -1,0 +1,37 @@
+# Shared by the scripts in this folder; expects the project's folder in $root.
+# shellcheck shell=bash disable=SC2154
+
+say() { printf '%s\n' "$*" >&2; }
+
+# build_preset PRESET TARGET [OPTION...]: configures and builds a preset; OPTIONs count only when it is configured for the first time.
+# On a terminal the build shows its progress; elsewhere only what failed is printed.
+build_preset() {
+  local preset=$1 target=$2 folder="$root/build/$1" status=0 output
+  shift 2
+  local configure=(cmake --preset "$preset")
+  if [[ ! -f $folder/build.ninja ]]; then
+    configure+=("$@")
+  elif ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$folder/CMakeCache.txt"; then
+    configure+=(--fresh "$@")  # the folder was copied or moved
+  fi
+  if command -v ccache >/dev/null; then
+    export CMAKE_CXX_COMPILER_LAUNCHER=ccache
+  fi
+
+  say "Building the $preset preset in build/$preset ..."
+  output=$(mktemp)
+  (cd "$root" && "${configure[@]}" --log-level=WARNING) >"$output" 2>&1 || status=$?
+  if ((status == 0)); then
+    if [[ -t 2 ]]; then
+      cmake --build "$folder" --target "$target" >&2 || status=$?
+    else
+      cmake --build "$folder" --target "$target" >"$output" 2>&1 || status=$?
+    fi
+  fi
+  if ((status != 0)); then
+    grep -v '^\[[0-9]*/[0-9]*\] [A-Z][a-z]*ing ' "$output" >&2 || true
+    say "The $preset preset does not build (see above)."
+  fi
+  rm -f "$output"
+  return "$status"
+}

@@ -1,0 +1,88 @@
+#!/usr/bin/env bash
+# Installs what building musclesim needs and is not there yet, with Debian's apt-get.
+#
+#     scripts/install_dependencies.sh          what the program needs
+#     scripts/install_dependencies.sh --test   and what the tests need
+#
+# When everything is there it does nothing, needs no rights and no network. On a system without apt-get it says what is needed.
+set -euo pipefail
+
+# package and what it is for
+build_packages=(
+  "g++                    C++20 compiler"
+  "cmake                  build description"
+  "ninja-build            runs the build"
+  "pkg-config             finds the physics engine"
+  "libode-dev             physics engine"
+  "libeigen3-dev          linear algebra"
+  "libfmt-dev             text formatting"
+  "nlohmann-json3-dev     JSON files"
+  "libtomlplusplus-dev    configuration files"
+  "libcli11-dev           command line"
+)
+test_packages=(
+  "libgtest-dev           test framework"
+  "clang-format           checks the layout of the sources"
+  "clang-tidy             looks for mistakes in the sources"
+  "gnuplot-nox            draws figures from recordings"
+  "librsvg2-bin           checks that figures can be rendered"
+)
+
+fail() {
+  printf 'install_dependencies: %s\n' "$@" >&2
+  exit 1
+}
+
+wanted=("${build_packages[@]}")
+case "${1-}" in
+  "") ;;
+  --test) wanted+=("${test_packages[@]}") ;;
+  *) fail "unknown argument '$1'; allowed: --test" ;;
+esac
+
+if ! command -v apt-get >/dev/null; then
+  echo "This system has no apt-get. musclesim needs (Debian's names):" >&2
+  printf '  %s\n' "${wanted[@]}" >&2
+  echo "Going on; the build says what it does not find." >&2
+  exit 0
+fi
+
+is_installed() {
+  [[ $(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null) == installed* ]]
+}
+
+missing=()
+for line in "${wanted[@]}"; do
+  package=${line%% *}
+  is_installed "$package" && continue
+  ((${#missing[@]})) || echo "Missing packages:" >&2
+  missing+=("$package")
+  printf '  %s\n' "$line" >&2
+done
+((${#missing[@]})) || exit 0
+
+as_root=(env DEBIAN_FRONTEND=noninteractive)
+if ((EUID != 0)); then
+  if ! command -v sudo >/dev/null; then
+    fail "the packages above are missing, and installing them takes root; as root, run" "    apt-get install ${missing[*]}"
+  fi
+  as_root=(sudo "${as_root[@]}")
+fi
+
+# Runs a command quietly; its output appears only if it fails.
+output=$(mktemp)
+trap 'rm -f "$output"' EXIT
+quietly() {
+  "$@" </dev/null >"$output" 2>&1 && return
+  cat "$output" >&2
+  return 1
+}
+
+echo "Installing ${#missing[@]} packages with apt-get ..." >&2
+if ((EUID != 0)); then
+  sudo true || fail "sudo was refused; as root, run" "    apt-get install ${missing[*]}"
+fi
+apt=("${as_root[@]}" apt-get -o DPkg::Lock::Timeout=300)
+quietly "${apt[@]}" update || fail "apt-get update failed (output above); is there a network connection?"
+quietly "${apt[@]}" install --yes --no-install-recommends "${missing[@]}" ||
+  fail "apt-get install failed (output above); musclesim is developed on Debian 12"

@@ -1,0 +1,25 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds musclesim and runs it.
+#
+#     scripts/run.sh                    the arm looks for its height for 20 s; writes a recording and a figure
+#     scripts/run.sh ARGUMENT...        runs musclesim with these arguments; scripts/run.sh --help lists them
+#
+# The program is build/release/musclesim. The first call builds it, later ones only what has changed.
+# Own messages go to stderr, so stdout is the program's. Paths among the arguments are relative to the caller's folder.
+set -euo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+# shellcheck source=scripts/common.sh
+source "$root/scripts/common.sh"
+
+"$root/scripts/install_dependencies.sh"
+# A user's compiler may warn where ours does not, and the tests are not built here. Settings of an existing build stay.
+build_preset release musclesim -DMUSCLESIM_TESTS=OFF -DMUSCLESIM_WARNINGS_AS_ERRORS=OFF
+
+if (($# == 0)); then
+  set -- --simple --physics original --duration 20
+  say "Running musclesim $* ..."
+  # Runs go to log/runs of the current folder; nobody expects that of a call without arguments from anywhere else.
+  [[ $PWD -ef $root ]] || set -- "$@" --out "$root/log/runs/$(date +%Y-%m-%d-%H%M%S)-height-1"
+fi
+exec "$root/build/release/musclesim" "$@"

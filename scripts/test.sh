@@ -1,0 +1,90 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds musclesim with its tests, and runs every check there is:
+#
+#     scripts/test.sh          layout, build, tests, clang-tidy, tests under the address and undefined-behaviour sanitizers
+#     scripts/test.sh --fast   layout, build, tests
+#
+# A failed phase does not keep the others from running. At the end: a line per phase, then how many tests ran and which failed.
+set -euo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+# shellcheck source=scripts/common.sh
+source "$root/scripts/common.sh"
+
+fast=false
+case "${1-}" in
+  "") ;;
+  --fast) fast=true ;;
+  *)
+    say "test: unknown argument '$1'; allowed: --fast"
+    exit 2
+    ;;
+esac
+cd "$root"
+jobs=2
+test_log=build/dev/test_summary.txt
+summary=()
+failed=false
+
+# phase NAME COMMAND...: runs a phase and notes how long it took and how it ended.
+phase() {
+  local name=$1 start=$SECONDS result=passed
+  shift
+  printf '\n=== %s ===\n' "$name"
+  "$@" || result=FAILED
+  [[ $result == passed ]] || failed=true
+  summary+=("$(printf '%-12s %-7s %4d s' "$name" "$result" $((SECONDS - start)))")
+  [[ $result == passed ]]
+}
+
+check_layout() {
+  local list
+  list=$(mktemp)
+  git ls-files -z '*.h' '*.cpp' >"$list" 2>/dev/null || find . -name build -prune -o \( -name '*.h' -o -name '*.cpp' \) -print0 >"$list"
+  xargs -0 clang-format --dry-run -Werror <"$list" || { rm "$list" && return 1; }
+  rm "$list"
+}
+
+# One line per test; the output of failed tests; totals, which are kept for the end.
+run_tests() {
+  local status=0
+  ctest --preset dev --parallel "$jobs" 2>&1 | tee "$test_log.all" || status=$?
+  sed -n '/^[0-9]*% tests passed/,$p' "$test_log.all" >"$test_log"
+  rm "$test_log.all"
+  return "$status"
+}
+
+# The sources of library and program, as the build lists them; tests are left out, their macros drown everything else.
+check_sources() {
+  local status=0 messages
+  messages=$(mktemp)
+  sed -n 's/^ *"file": "\(.*\)",\{0,1\}$/\1/p' build/dev/compile_commands.json | grep -vF "$root/tests/" | tr '\n' '\0' |
+    xargs -0 -n 1 -P "$jobs" clang-tidy -p build/dev --quiet 2>"$messages" || status=$?
+  grep -v 'warnings\{0,1\} \(generated\|treated as errors\)' "$messages" || true
+  rm "$messages"
+  return "$status"
+}
+
+# Tests labelled "slow" or "package" run only without sanitizers.
+run_sanitized_tests() {
+  export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
+  build_preset asan all && ctest --preset asan --parallel "$jobs" --label-exclude 'slow|package'
+}
+
+phase dependencies scripts/install_dependencies.sh --test || exit 1
+mkdir -p build/dev
+rm -f "$test_log"
+phase layout check_layout || true
+if phase build build_preset dev all; then
+  phase tests run_tests || true
+  if ! $fast; then
+    phase clang-tidy check_sources || true
+    phase sanitizers run_sanitized_tests || true
+  fi
+fi
+
+printf '\n=== summary ===\n'
+printf '%s\n' "${summary[@]}"
+echo
+[[ -f $test_log ]] && cat "$test_log"
+if $failed; then exit 1; fi
