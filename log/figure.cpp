@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <optional>
 
 #include "axis.h"
 #include "curve.h"
+#include "figure_panels.h"
 #include "musclesim/log/file.h"
 #include "svg.h"
 
@@ -19,107 +18,10 @@ constexpr double figure_width = 960, figure_height = 640;
 constexpr double left_margin = 78, right_margin = 76, top_margin = 46;
 constexpr double legend_height = 22, panel_gap = 16, time_axis_height = 44, bottom_margin = 10;
 constexpr double upper_share_ratio = 0.55;  ///< of the height of both panels
-constexpr double curve_width = 1.3;
 constexpr double label_size = 12, axis_title_size = 13, title_size = 16;
 constexpr double legend_sample_length = 16, legend_text_gap = 5, legend_gap = 14;
 constexpr double letter_width_ratio = 0.52;  ///< mean width of a letter over the font's size
 const std::string grid_color = "#e4e4e4", frame_color = "#555555", text_color = "#333333";
-
-const Color height_color{0.87, 0.05, 0.05, "red"}, target_color{1.0, 0.55, 0.0, "orange"}, activity_color{0.1, 0.6, 0.1, "green"};
-
-/// Colours that differ well, also for colour-blind readers. Source: Okabe and Ito 2008.
-const std::vector<Color> distinct_colors = {
-    {0.0, 0.45, 0.70, "blue"},  {0.84, 0.37, 0.0, "vermilion"}, {0.0, 0.62, 0.45, "bluish green"}, {0.80, 0.47, 0.65, "rose"},
-    {0.90, 0.62, 0.0, "amber"}, {0.34, 0.71, 0.91, "sky blue"}, {0.35, 0.35, 0.35, "dark gray"}};
-
-/// One signal as it shall be drawn.
-struct Curve {
-  const Signal* signal;
-  Color color;
-  std::string label;
-  Between between = Between::straight;
-  double width = curve_width;
-};
-
-/// One diagram: its curves and the titles of its axes.
-struct Panel {
-  std::vector<Curve> curves;
-  std::string axis_title;
-  std::vector<Curve> right_curves;
-  std::string right_axis_title;
-  bool is_fraction = false;  ///< the axis shows at least 0..1
-  bool empty() const { return curves.empty() && right_curves.empty(); }
-};
-
-bool isMeasured(const Signal* signal) {
-  return signal && std::any_of(signal->values.begin(), signal->values.end(), [](double value) { return !std::isnan(value); });
-}
-
-Color muscleColor(std::size_t muscle, const std::vector<Color>& muscle_colors) {
-  if (muscle < muscle_colors.size()) return muscle_colors[muscle];
-  const std::size_t further = muscle - muscle_colors.size();
-  const double darkness = 1 / (1 + 0.45 * static_cast<double>(further / distinct_colors.size()));
-  Color color = darkened(distinct_colors[further % distinct_colors.size()], darkness);
-  if (further >= distinct_colors.size()) color.name.clear();
-  return color;
-}
-
-/// All measured signals "<quantity>_<i><unit>" in their muscles' colours.
-std::vector<Curve> muscleCurves(const Recording& recording, const std::string& quantity, const std::string& unit,
-                                const std::vector<Color>& muscle_colors) {
-  std::vector<Curve> curves;
-  for (std::size_t muscle = 0; muscle < static_cast<std::size_t>(recording.muscleCount()); ++muscle) {
-    const Signal* signal = recording.find(fmt::format("{}_{}{}", quantity, muscle, unit));
-    if (!isMeasured(signal)) continue;
-    const Color color = muscleColor(muscle, muscle_colors);
-    curves.push_back({signal, color, fmt::format("{} {}", muscle, color.name)});
-    if (quantity == "command") curves.back().between = Between::held;
-  }
-  return curves;
-}
-
-std::vector<Curve> angleCurves(const Recording& recording) {
-  std::vector<Curve> curves;
-  for (const auto& signal : recording.signals) {
-    if (!signal.name.starts_with("angle_") || !isMeasured(&signal)) continue;
-    const std::string prefix = "angle_", suffix = "_deg";
-    const std::string joint = signal.name.substr(prefix.size(), signal.name.size() - prefix.size() - suffix.size());
-    curves.push_back({&signal, distinct_colors[curves.size() % distinct_colors.size()], joint});
-  }
-  return curves;
-}
-
-Panel upperPanel(const Recording& recording, const std::vector<Color>& muscle_colors) {
-  Panel panel;
-  if (const Signal* height = recording.find("hand_y_mm"); isMeasured(height)) {
-    panel.axis_title = "height (mm)";
-    panel.curves.push_back({height, height_color, "height of the hand", Between::straight, 1.8});
-    if (const Signal* target = recording.find("target_y_mm"); isMeasured(target))
-      panel.curves.push_back({target, target_color, "target", Between::held, 2});
-  } else if (panel.curves = angleCurves(recording); !panel.curves.empty()) {
-    panel.axis_title = "angle (degrees)";
-  } else if (panel.curves = muscleCurves(recording, "length", "_mm", muscle_colors); !panel.curves.empty()) {
-    panel.axis_title = "length (mm)";
-  } else if (panel.curves = muscleCurves(recording, "force", "_N", muscle_colors); !panel.curves.empty()) {
-    panel.axis_title = "force (N)";
-  }
-  if (const Signal* activity = recording.find("activity"); isMeasured(activity)) {
-    panel.right_curves.push_back({activity, activity_color, "activity"});
-    panel.right_axis_title = "activity";
-  }
-  return panel;
-}
-
-Panel lowerPanel(const Recording& recording, const std::vector<Color>& muscle_colors) {
-  Panel panel;
-  panel.is_fraction = true;
-  panel.axis_title = "pressure (fraction)";
-  panel.curves = muscleCurves(recording, "pressure", "", muscle_colors);
-  if (!panel.curves.empty()) return panel;
-  panel.axis_title = "command (fraction)";
-  panel.curves = muscleCurves(recording, "command", "", muscle_colors);
-  return panel;
-}
 
 double textWidth(const std::string& words, double size) {
   return letter_width_ratio * size * static_cast<double>(words.size());
@@ -160,7 +62,7 @@ class RunFigure {
   void drawCurves(const std::vector<Curve>& curves, const SvgBox& box, const Axis& axis);
   void drawTimeAxis(const SvgBox& box, bool with_labels);
   void drawValueAxis(const Axis& axis, const std::string& title, const SvgBox& box);
-  void drawRightAxis(const Axis& axis, const std::string& title, const SvgBox& box);
+  void drawRightAxis(const Axis& axis, const Panel& panel, const SvgBox& box);
   void drawLegend(const std::vector<std::vector<Curve>>& rows, double left, double top);
 
   const Recording& recording_;
@@ -205,7 +107,7 @@ void RunFigure::drawPanel(const Panel& panel, const SvgBox& box, bool with_time_
   const Axis right_axis = valueAxis(panel.right_curves, box, true, false);
   drawTimeAxis(box, with_time_labels);
   if (!panel.curves.empty()) drawValueAxis(axis, panel.axis_title, box);
-  if (!panel.right_curves.empty()) drawRightAxis(right_axis, panel.right_axis_title, box);
+  if (!panel.right_curves.empty()) drawRightAxis(right_axis, panel, box);
   drawCurves(panel.right_curves, box, right_axis);
   drawCurves(panel.curves, box, axis);
   svg_.frame(box, frame_color);
@@ -242,14 +144,15 @@ void RunFigure::drawValueAxis(const Axis& axis, const std::string& title, const 
   svg_.text({20, box.top + box.height / 2}, title, {axis_title_size, SvgAnchor::middle, text_color, false, true});
 }
 
-void RunFigure::drawRightAxis(const Axis& axis, const std::string& title, const SvgBox& box) {
-  const std::string color = hexColor(activity_color);
+void RunFigure::drawRightAxis(const Axis& axis, const Panel& panel, const SvgBox& box) {
+  const std::string color = hexColor(panel.right_curves.front().color);
   for (const double tick : axis.ticks()) {
     const double y = axis.pixel(tick);
     svg_.line({box.right(), y}, {box.right() + 4, y}, color, 1);
     svg_.text({box.right() + 8, y + 4}, axis.label(tick), {label_size, SvgAnchor::start, color, false, false});
   }
-  svg_.text({figure_width - 14, box.top + box.height / 2}, title, {axis_title_size, SvgAnchor::middle, color, false, true});
+  svg_.text({figure_width - 14, box.top + box.height / 2}, panel.right_axis_title,
+            {axis_title_size, SvgAnchor::middle, color, false, true});
 }
 
 void RunFigure::drawLegend(const std::vector<std::vector<Curve>>& rows, double left, double top) {

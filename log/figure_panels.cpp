@@ -1,0 +1,93 @@
+#include "figure_panels.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "svg.h"
+
+namespace musclesim {
+
+namespace {
+
+const Color height_color{0.87, 0.05, 0.05, "red"}, target_color{1.0, 0.55, 0.0, "orange"}, activity_color{0.1, 0.6, 0.1, "green"};
+
+/// Colours that differ well, also for colour-blind readers. Source: Okabe and Ito 2008.
+const std::vector<Color> distinct_colors = {
+    {0.0, 0.45, 0.70, "blue"},  {0.84, 0.37, 0.0, "vermilion"}, {0.0, 0.62, 0.45, "bluish green"}, {0.80, 0.47, 0.65, "rose"},
+    {0.90, 0.62, 0.0, "amber"}, {0.34, 0.71, 0.91, "sky blue"}, {0.35, 0.35, 0.35, "dark gray"}};
+
+bool isMeasured(const Signal* signal) {
+  return signal && std::any_of(signal->values.begin(), signal->values.end(), [](double value) { return !std::isnan(value); });
+}
+
+Color muscleColor(std::size_t muscle, const std::vector<Color>& muscle_colors) {
+  if (muscle < muscle_colors.size()) return muscle_colors[muscle];
+  const std::size_t further = muscle - muscle_colors.size();
+  const double darkness = 1 / (1 + 0.45 * static_cast<double>(further / distinct_colors.size()));
+  Color color = darkened(distinct_colors[further % distinct_colors.size()], darkness);
+  if (further >= distinct_colors.size()) color.name.clear();
+  return color;
+}
+
+/// All measured signals "<quantity>_<i><unit>" in their muscles' colours.
+std::vector<Curve> muscleCurves(const Recording& recording, const std::string& quantity, const std::string& unit,
+                                const std::vector<Color>& muscle_colors) {
+  std::vector<Curve> curves;
+  for (std::size_t muscle = 0; muscle < static_cast<std::size_t>(recording.muscleCount()); ++muscle) {
+    const Signal* signal = recording.find(fmt::format("{}_{}{}", quantity, muscle, unit));
+    if (!isMeasured(signal)) continue;
+    const Color color = muscleColor(muscle, muscle_colors);
+    curves.push_back({signal, color, fmt::format("{} {}", muscle, color.name)});
+    if (quantity == "command") curves.back().between = Between::held;
+  }
+  return curves;
+}
+
+std::vector<Curve> angleCurves(const Recording& recording) {
+  std::vector<Curve> curves;
+  for (const auto& signal : recording.signals) {
+    if (!signal.name.starts_with("angle_") || !isMeasured(&signal)) continue;
+    const std::string prefix = "angle_", suffix = "_deg";
+    const std::string joint = signal.name.substr(prefix.size(), signal.name.size() - prefix.size() - suffix.size());
+    curves.push_back({&signal, distinct_colors[curves.size() % distinct_colors.size()], joint});
+  }
+  return curves;
+}
+
+}  // namespace
+
+Panel upperPanel(const Recording& recording, const std::vector<Color>& muscle_colors) {
+  Panel panel;
+  if (const Signal* height = recording.find("hand_y_mm"); isMeasured(height)) {
+    panel.axis_title = "height (mm)";
+    panel.curves.push_back({height, height_color, "height of the hand", Between::straight, 1.8});
+    if (const Signal* target = recording.find("target_y_mm"); isMeasured(target))
+      panel.curves.push_back({target, target_color, "target", Between::held, 2});
+  } else if (panel.curves = angleCurves(recording); !panel.curves.empty()) {
+    panel.axis_title = "angle (degrees)";
+  } else if (panel.curves = muscleCurves(recording, "length", "_mm", muscle_colors); !panel.curves.empty()) {
+    panel.axis_title = "length (mm)";
+  } else if (panel.curves = muscleCurves(recording, "force", "_N", muscle_colors); !panel.curves.empty()) {
+    panel.axis_title = "force (N)";
+  }
+  if (const Signal* activity = recording.find("activity"); isMeasured(activity)) {
+    panel.right_curves.push_back({activity, activity_color, "activity"});
+    panel.right_axis_title = "activity";
+  }
+  return panel;
+}
+
+Panel lowerPanel(const Recording& recording, const std::vector<Color>& muscle_colors) {
+  Panel panel;
+  panel.is_fraction = true;
+  panel.axis_title = "pressure (fraction)";
+  panel.curves = muscleCurves(recording, "pressure", "", muscle_colors);
+  if (!panel.curves.empty()) return panel;
+  panel.axis_title = "command (fraction)";
+  panel.curves = muscleCurves(recording, "command", "", muscle_colors);
+  return panel;
+}
+
+}  // namespace musclesim
