@@ -45,7 +45,7 @@ Eigen::VectorXd fluctuated(const Eigen::VectorXd& x, const AttractorMixture& mix
                            RandomStream& noise) {
   const double pull = std::clamp(step_times_activity, 0.0, 1.0);
   Eigen::VectorXd next = x;
-  if (pull > 0) next += pull * mixture.drift(x);           // Eq. 5
+  if (pull > 0) next += pull * mixture.drift(x);  // Eq. 5
   for (auto& entry : next) entry += noise_std * noise.normal();
   return next.cwiseMax(-1.0).cwiseMin(1.0);
 }

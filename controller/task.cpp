@@ -31,7 +31,8 @@ Vector reportedHand(const State& state) {
   const Vector& hand = *state.hand_mm;
   // Written so that NaN fails too.
   if (!(hand.cwiseAbs().array() <= kLargestHand_mm).all())
-    throw Diverged(state.time_s, "hand", fmt::format("position ({}, {}, {}) mm is out of every robot's reach", hand.x(), hand.y(), hand.z()));
+    throw Diverged(state.time_s, "hand",
+                   fmt::format("position ({}, {}, {}) mm is out of every robot's reach", hand.x(), hand.y(), hand.z()));
   return hand;
 }
 
@@ -79,9 +80,9 @@ ReachTask::ReachTask(const ControllerRequest& request)
                                         "weight of a distance relative to that of the decision after it")) {}
 
 double ReachTask::activity(const State& state) {
-  const double d = target().distanceMm(state);                     // Eq. 8
-  const double alpha = (mean_d_.meanOr(d) - d) / d_scale_mm_;      // Eq. 7
-  mean_d_.add(d);                                                  // Eq. 9
+  const double d = target().distanceMm(state);                 // Eq. 8
+  const double alpha = (mean_d_.meanOr(d) - d) / d_scale_mm_;  // Eq. 7
+  mean_d_.add(d);                                              // Eq. 9
   return alpha;
 }
 

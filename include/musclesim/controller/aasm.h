@@ -53,9 +53,9 @@ class AdaptiveAttractors {
 ///
 /// The structure is that of the published program; its numbers (e in mm^2, width 1/501, a replacement every 6000 s) never moved an
 /// attractor, so lengths are dimensionless here and width, rate, period, floor, step count and noise are this implementation's.
-/// Declares aasm.attractor_count, _attractor_exponent, _width, _learning_rate, _update_period, _step_ratio, _time_constant, _noise_variance,
-/// _steps_per_decision, those of AasmActivity and the target of the task (either task). Streams "aasm.attractors" and "aasm.noise".
-/// output() throws BadParameter if the robot reports no hand, Diverged if that is not finite.  Source: Braun 2007, Section 5.
+/// Declares aasm.attractor_count, _attractor_exponent, _width, _learning_rate, _update_period, _step_ratio, _time_constant,
+/// _noise_variance, _steps_per_decision, those of AasmActivity and the target of the task (either task). Streams "aasm.attractors" and
+/// "aasm.noise". output() throws BadParameter if the robot reports no hand, Diverged if that is not finite.  Source: Braun 2007, Section 5.
 class AasmController final : public Controller {
  public:
   explicit AasmController(const ControllerRequest& request);

@@ -18,9 +18,9 @@ namespace musclesim {
 /// With alpha at 0 the state walks freely by noise_std sqrt(steps) per decision; with step alpha near 1 it stays within about noise_std of
 /// an attractor. x starts at 0, all pressures at one half.
 ///
-/// Declares asm.attractor_count, asm.attractor_exponent, asm.width, asm.step_ratio (step), asm.noise_std, asm.steps_per_decision and the parameters of the task.
-/// Streams "asm.attractors" and "asm.noise". output() throws BadParameter if the robot reports no hand, Diverged if that is not finite.
-/// Source: Kashiwagi, Urabe, Kaneko and Yomo 2006; for the arm Braun 2007, Section 5.
+/// Declares asm.attractor_count, asm.attractor_exponent, asm.width, asm.step_ratio (step), asm.noise_std, asm.steps_per_decision and the
+/// parameters of the task. Streams "asm.attractors" and "asm.noise". output() throws BadParameter if the robot reports no hand, Diverged if
+/// that is not finite. Source: Kashiwagi, Urabe, Kaneko and Yomo 2006; for the arm Braun 2007, Section 5.
 class AsmController final : public Controller {
  public:
   explicit AsmController(const ControllerRequest& request);
