@@ -1,0 +1,41 @@
+/// The project's own golden trajectories: a change of the model shows here first.
+#include "golden.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+namespace musclesim {
+namespace {
+
+/// How far the signals may be off, in their units. `ode` is the stepper that the data were written with: only rounding may differ.
+void expectGolden(const std::string& robot, StepperKind stepper, double tolerance) {
+  const Recording golden = readRecording((std::filesystem::path(MUSCLESIM_GOLDEN_FOLDER) / (robot + ".csv")).string());
+  ASSERT_EQ(golden.time_s.size(), goldenCommands(robot).time_s.size());
+  const ReplayResult result = replayRecording(golden, goldenOptions(stepper));
+  ASSERT_FALSE(result.divergence) << *result.divergence;
+  ASSERT_FALSE(result.errors.empty());
+  for (const SignalError& error : result.errors) {
+    EXPECT_EQ(error.sample_count, static_cast<long>(golden.time_s.size())) << error.name;
+    EXPECT_LT(error.largest, tolerance) << error.name << " with stepper " << result.stepper;
+  }
+}
+
+TEST(Golden, RigWithDWorldStep) {
+  expectGolden("rig", StepperKind::ode, 1e-6);
+}
+
+TEST(Golden, ElbowWithDWorldStep) {
+  expectGolden("elbow", StepperKind::ode, 1e-6);
+}
+
+TEST(Golden, RigWithTheAutomaticStepper) {
+  expectGolden("rig", StepperKind::automatic, 1e-3);
+}
+
+TEST(Golden, ElbowWithTheAutomaticStepper) {
+  expectGolden("elbow", StepperKind::automatic, 1e-3);
+}
+
+}  // namespace
+}  // namespace musclesim
