@@ -25,6 +25,12 @@ RowState demanded(const BoundedRow& row, double force_tolerance, double slack_to
   return row.state;
 }
 
+/// How far the row is from its condition, as a force.
+double violationOf(const BoundedRow& row) {
+  if (row.state == RowState::free) return std::max(row.lower - row.force, row.force - row.upper);
+  return std::abs(row.slack) / row.diagonal;
+}
+
 void change(BoxProblem& problem, std::vector<BoundedRow>& rows, std::size_t i, RowState state) {
   rows[i].state = state;
   if (state != RowState::free) rows[i].force = rows[i].bound();
@@ -78,7 +84,7 @@ int release(BoxProblem& problem, std::vector<BoundedRow>& rows, double tolerance
 
 }  // namespace
 
-ActiveSetResult BoxActiveSet::run(BoxProblem& problem, std::vector<BoundedRow>& rows) const {
+ActiveSetResult BoxActiveSet::run(BoxProblem& problem, std::vector<BoundedRow>& rows) {
   ActiveSetResult result;
   for (BoundedRow& row : rows)
     if (row.state != RowState::free) row.force = row.bound();
@@ -86,26 +92,34 @@ ActiveSetResult BoxActiveSet::run(BoxProblem& problem, std::vector<BoundedRow>& 
   return result;
 }
 
-bool BoxActiveSet::primalDual(BoxProblem& problem, std::vector<BoundedRow>& rows, ActiveSetResult& result) const {
+/// Returns the number of rows that violate their condition.
+int BoxActiveSet::changeWorst(BoxProblem& problem, std::vector<BoundedRow>& rows) {
+  const double force_tolerance = problem.forceTolerance(), slack_tolerance = problem.slackTolerance();
+  worst_.clear();
+  int count = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const RowState state = demanded(rows[i], force_tolerance, slack_tolerance);
+    if (state == rows[i].state) continue;
+    ++count;
+    const auto group = static_cast<std::size_t>(rows[i].group);
+    if (worst_.size() <= group) worst_.resize(group + 1);
+    const double violation = violationOf(rows[i]);
+    if (worst_[group].row < 0 || violation > worst_[group].violation) worst_[group] = {static_cast<int>(i), violation, state};
+  }
+  for (const Worst& worst : worst_)
+    if (worst.row >= 0) change(problem, rows, static_cast<std::size_t>(worst.row), worst.demanded);
+  return count;
+}
+
+bool BoxActiveSet::primalDual(BoxProblem& problem, std::vector<BoundedRow>& rows, ActiveSetResult& result) {
   int fewest = std::numeric_limits<int>::max(), rounds_without_progress = 0;
-  while (result.rounds < most_rounds) {
+  while (result.rounds < most_rounds && rounds_without_progress < patience) {
     ++result.rounds;
     problem.solve(rows);
-    const double force_tolerance = problem.forceTolerance(), slack_tolerance = problem.slackTolerance();
-    int changes = 0;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      const RowState state = demanded(rows[i], force_tolerance, slack_tolerance);
-      if (state == rows[i].state) continue;
-      change(problem, rows, i, state);
-      ++changes;
-    }
-    if (changes == 0) return true;
-    if (changes < fewest) {
-      fewest = changes;
-      rounds_without_progress = 0;
-    } else if (++rounds_without_progress >= patience) {
-      return false;
-    }
+    const int violations = changeWorst(problem, rows);
+    if (violations == 0) return true;
+    rounds_without_progress = violations < fewest ? 0 : rounds_without_progress + 1;
+    fewest = std::min(fewest, violations);
   }
   return false;
 }

@@ -18,6 +18,7 @@ struct BoundedRow {
   RowState state = RowState::free;
   double force = 0;     ///< l: given by solve() for free rows, the bound for others
   double slack = 0;     ///< w: given by solve() for rows at a bound
+  int group = 0;        ///< 0, 1, ...: rows of one group act on each other strongly
   double feasible = 0;  ///< l of the present point within the box, used by the monotone phase
 
   double bound() const { return state == RowState::at_lower ? lower : upper; }
@@ -42,18 +43,27 @@ struct ActiveSetResult {
   int monotone_rounds = 0;  ///< of them in the monotone phase
 };
 
-/// Phase 1, primal-dual: all rows that violate their condition change at once; a row at a bound whose violation reaches beyond the whole
-/// box goes to the other bound. Starts from the rows' states, so states of the step before make it short. It may cycle, so after
-/// `patience` rounds without progress phase 2 takes over: from a point within the box towards the minimum for the present set, up to the
-/// first bound met (which that row keeps); rows are released only at such a minimum. The objective falls all the time: it ends.
+/// Phase 1, primal-dual: of the rows that violate their condition, the worst of every group changes its state; a row at a bound whose
+/// violation reaches beyond the whole box goes to the other bound. Starts from the rows' states, so states of the step before make it
+/// short. It may cycle, so after `patience` rounds without progress phase 2 takes over: from a point within the box towards the minimum
+/// for the present set, up to the first bound met (where that row stays); rows are released only at such a minimum. The objective falls all
+/// the time: it ends.
 class BoxActiveSet {
  public:
-  int most_rounds = 40, patience = 6, most_monotone_rounds = 400;
-  ActiveSetResult run(BoxProblem& problem, std::vector<BoundedRow>& rows) const;
+  int most_rounds = 60, patience = 15, most_monotone_rounds = 400;
+  ActiveSetResult run(BoxProblem& problem, std::vector<BoundedRow>& rows);
 
  private:
-  bool primalDual(BoxProblem& problem, std::vector<BoundedRow>& rows, ActiveSetResult& result) const;
+  bool primalDual(BoxProblem& problem, std::vector<BoundedRow>& rows, ActiveSetResult& result);
   bool monotone(BoxProblem& problem, std::vector<BoundedRow>& rows, ActiveSetResult& result) const;
+  int changeWorst(BoxProblem& problem, std::vector<BoundedRow>& rows);
+
+  struct Worst {
+    int row = -1;
+    double violation = 0;
+    RowState demanded = RowState::free;
+  };
+  std::vector<Worst> worst_;  ///< by group
 };
 
 }  // namespace musclesim::chain

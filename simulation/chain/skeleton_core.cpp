@@ -5,44 +5,46 @@
 
 namespace musclesim::chain {
 
-namespace {
-
-/// y <- L^-1 y
-inline void forward(const Matrix6& l, double y[6]) {
-  for (int i = 0; i < 6; ++i) {
-    double sum = y[i];
-    for (int j = 0; j < i; ++j) sum -= l(i, j) * y[j];
-    y[i] = sum / l(i, i);
-  }
-}
-
-}  // namespace
-
 void SkeletonCore::reset(int bone_count, int row_count) {
+  const auto bones = static_cast<std::size_t>(bone_count), rows = static_cast<std::size_t>(row_count);
   bone_count_ = bone_count;
-  if (bones_.size() < static_cast<std::size_t>(bone_count)) bones_.resize(static_cast<std::size_t>(bone_count));
+  row_count_ = row_count;
+  if (stride_ < rows || bones_.size() < bones) {
+    stride_ = std::max(stride_, rows * 3 / 2 / 2 * 2 + 8);
+    bones_.resize(std::max(bones_.size(), bones));
+    place_.resize(bones_.size() * stride_);
+    products_.resize(stride_);
+    force_.resize(stride_);
+    for (BoneSystem& bone : bones_) {
+      bone.rows.reserve(stride_);
+      bone.jacobian.resize(6 * stride_);
+    }
+  }
   for (BoneSystem& bone : bones_) {
     bone.mass.setZero();
     bone.velocity.setZero();
-    bone.couplings.clear();
+    bone.rows.clear();
   }
   rows_.reset(row_count);
-  if (force_.size() < static_cast<std::size_t>(row_count)) force_.resize(static_cast<std::size_t>(row_count) * 5 / 4);
   std::fill(force_.begin(), force_.end(), 0.0);
+  std::fill(place_.begin(), place_.end(), -1);
 }
 
 void SkeletonCore::couple(int row, int bone, const double jacobian[6]) {
   if (bone < 0) return;
-  auto& couplings = bones_[static_cast<std::size_t>(bone)].couplings;
-  auto place = std::find_if(couplings.rbegin(), couplings.rend(), [&](const Coupling& c) { return c.row == row; });
-  if (place == couplings.rend()) {
-    couplings.push_back({row, {}, {}});
-    place = couplings.rbegin();
+  BoneSystem& system = bones_[static_cast<std::size_t>(bone)];
+  int& place = place_[static_cast<std::size_t>(bone) * stride_ + static_cast<std::size_t>(row)];
+  const bool is_new = place < 0;
+  if (is_new) {
+    place = static_cast<int>(system.rows.size());
+    system.rows.push_back(row);
   }
-  for (int i = 0; i < 6; ++i) place->jacobian[i] += jacobian[i];
+  double* target = system.jacobian.data() + place;
+  for (std::size_t i = 0; i < 6; ++i) target[i * stride_] = jacobian[i] + (is_new ? 0 : target[i * stride_]);
 }
 
-void SkeletonCore::factorise(BoneSystem& bone) {
+/// M = L L^T in place.
+void SkeletonCore::factorise(BoneSystem& bone) const {
   Matrix6& m = bone.mass;
   for (int j = 0; j < 6; ++j) {
     for (int k = 0; k < j; ++k)
@@ -52,33 +54,53 @@ void SkeletonCore::factorise(BoneSystem& bone) {
   }
 }
 
-/// D += J M^-1 J^T,  r -= J M^-1 g
+/// Factors M and replaces J^T by L^-1 J^T, g by L^-1 g.
 void SkeletonCore::reduce(BoneSystem& bone) {
   factorise(bone);
-  std::copy_n(bone.velocity.data(), 6, bone.reduced);
-  forward(bone.mass, bone.reduced);
-  for (std::size_t c = 0; c < bone.couplings.size(); ++c) {
-    Coupling& own = bone.couplings[c];
-    std::copy_n(own.jacobian, 6, own.reduced);
-    forward(bone.mass, own.reduced);
-    double right = 0;
-    for (int i = 0; i < 6; ++i) right += own.reduced[i] * bone.reduced[i];
-    force_[static_cast<std::size_t>(own.row)] -= right;
-    for (std::size_t d = 0; d <= c; ++d) {
-      const Coupling& other = bone.couplings[d];
-      double product = 0;
-      for (int i = 0; i < 6; ++i) product += own.reduced[i] * other.reduced[i];
-      rows_.add(own.row, other.row, product);
+  const std::size_t count = bone.rows.size();
+  for (std::size_t i = 0; i < 6; ++i) {
+    double* __restrict target = bone.jacobian.data() + i * stride_;
+    const auto row = static_cast<Eigen::Index>(i);
+    bone.reduced[row] = bone.velocity[row];
+    for (std::size_t j = 0; j < i; ++j) {
+      const double factor = bone.mass(row, static_cast<Eigen::Index>(j));
+      const double* __restrict earlier = bone.jacobian.data() + j * stride_;
+      for (std::size_t c = 0; c < count; ++c) target[c] -= factor * earlier[c];
+      bone.reduced[row] -= factor * bone.reduced[static_cast<Eigen::Index>(j)];
     }
+    const double per_pivot = 1 / bone.mass(row, row);
+    for (std::size_t c = 0; c < count; ++c) target[c] *= per_pivot;
+    bone.reduced[row] *= per_pivot;
+  }
+  addProducts(bone);
+}
+
+/// D += J M^-1 J^T,  r -= J M^-1 g
+void SkeletonCore::addProducts(const BoneSystem& bone) {
+  const double* y[6];
+  for (std::size_t i = 0; i < 6; ++i) y[i] = bone.jacobian.data() + i * stride_;
+  double* __restrict products = products_.data();
+  for (std::size_t c = 0; c < bone.rows.size(); ++c) {
+    double f[6], right = 0;
+    for (int i = 0; i < 6; ++i) {
+      f[i] = y[i][c];
+      right += f[i] * bone.reduced[i];
+    }
+    for (std::size_t d = 0; d <= c; ++d)
+      products[d] = (f[0] * y[0][d] + f[1] * y[1][d]) + (f[2] * y[2][d] + f[3] * y[3][d]) + (f[4] * y[4][d] + f[5] * y[5][d]);
+    const int row = bone.rows[c];
+    force_[static_cast<std::size_t>(row)] -= right;
+    for (std::size_t d = 0; d <= c; ++d) rows_.add(row, bone.rows[d], products[d]);
   }
 }
 
 /// u = M^-1 (g + J^T y)
 void SkeletonCore::substitute(BoneSystem& bone) const {
-  double y[6];
-  std::copy_n(bone.reduced, 6, y);
-  for (const Coupling& c : bone.couplings)
-    for (int i = 0; i < 6; ++i) y[i] += c.reduced[i] * force_[static_cast<std::size_t>(c.row)];
+  Vector6 y = bone.reduced;
+  for (std::size_t c = 0; c < bone.rows.size(); ++c) {
+    const double force = force_[static_cast<std::size_t>(bone.rows[c])];
+    for (std::size_t i = 0; i < 6; ++i) y[static_cast<Eigen::Index>(i)] += bone.jacobian[i * stride_ + c] * force;
+  }
   for (int i = 5; i >= 0; --i) {
     double sum = y[i];
     for (int j = i + 1; j < 6; ++j) sum -= bone.mass(j, i) * bone.velocity[j];

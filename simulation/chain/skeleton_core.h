@@ -32,23 +32,24 @@ class SkeletonCore {
   double force(int row) const { return force_[static_cast<std::size_t>(row)]; }
 
  private:
-  struct Coupling {
-    int row;
-    double jacobian[6];
-    double reduced[6];  ///< L^-1 J^T
-  };
+  /// Rows that act on a bone are numbered as they come; component i of row c stands at jacobian[i * stride + c].
   struct BoneSystem {
-    Matrix6 mass;      ///< then its Cholesky factor
+    Matrix6 mass;      ///< then its Cholesky factor L
     Vector6 velocity;  ///< first g, then u
-    double reduced[6];
-    std::vector<Coupling> couplings;
+    Vector6 reduced;   ///< L^-1 g
+    std::vector<int> rows;
+    std::vector<double> jacobian;  ///< J^T, then L^-1 J^T
   };
-  static void factorise(BoneSystem& bone);
+  void factorise(BoneSystem& bone) const;
   void reduce(BoneSystem& bone);
+  void addProducts(const BoneSystem& bone);
   void substitute(BoneSystem& bone) const;
 
   std::vector<BoneSystem> bones_;
-  int bone_count_ = 0;
+  int bone_count_ = 0, row_count_ = 0;
+  std::size_t stride_ = 0;        ///< of the bones' Jacobians
+  std::vector<int> place_;        ///< of a row among a bone's rows, bone * stride + row; -1: it does not act there
+  std::vector<double> products_;  ///< of one row with all rows before it
   DenseCholesky rows_;
   std::vector<double> force_;  ///< first r, then y
 };

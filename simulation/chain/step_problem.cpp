@@ -169,6 +169,7 @@ void StepProblem::collectRow(JointState& joint, RowPlace place, double diagonal)
   row.upper = joint.rows.upper;
   row.state = joint.state;
   row.diagonal = diagonal;
+  row.group = place.kind == RowKind::chain_joint ? place.owner : static_cast<int>(chains_.size()) + place.owner;
   rows_.push_back(row);
   places_.push_back(place);
 }
@@ -214,6 +215,7 @@ void StepProblem::collectRows() {
       bounded.upper = contact.upper[row];
       bounded.state = contact.state[row];
       bounded.diagonal = diagonalOf(contact, row);
+      bounded.group = static_cast<int>(chains_.size() + skeleton_.size() + i);
       rows_.push_back(bounded);
       places_.push_back({RowKind::contact, static_cast<int>(i), row});
     }
