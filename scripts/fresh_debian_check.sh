@@ -60,11 +60,12 @@ mount --bind /dev "$debian/dev"
 inside() {
   local log=$1 status=0 start=$SECONDS line
   shift
-  say "" "Running $* ..."
-  env -i HOME=/root LANG=C.UTF-8 PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
-    chroot "$debian" "$@" </dev/null 2>&1 |
+  say "Running $* ..."
+  local TIMEFORMAT='%0R s elapsed, %0U s of processor time'
+  { time env -i HOME=/root LANG=C.UTF-8 PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
+    chroot "$debian" "$@"; } </dev/null 2>&1 |
     while IFS= read -r line; do printf '[%4d s] %s\n' "$((SECONDS - start))" "$line"; done | tee "$log" || status=$?
-  say "  ended with status $status after $((SECONDS - start)) s"
+  say "  ended with status $status"
   return "$status"
 }
 

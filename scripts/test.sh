@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds musclesim with its tests, and runs every check there is:
 #
-#     scripts/test.sh          layout, build, tests, clang-tidy, tests under the address and undefined-behaviour sanitizers
-#     scripts/test.sh --fast   layout, build, tests
+#     scripts/test.sh          layout of the sources, links of the documents, build, tests, clang-tidy, tests under the address and
+#                              undefined-behaviour sanitizers
+#     scripts/test.sh --fast   all but clang-tidy and sanitizers
 #
 # A failed phase does not keep the others from running. At the end: a line per phase, then how many tests ran and which failed.
 set -euo pipefail
@@ -75,6 +76,7 @@ phase dependencies scripts/install_dependencies.sh --test || exit 1
 mkdir -p build/dev
 rm -f "$test_log"
 phase layout check_layout || true
+phase documents scripts/check_docs.sh || true
 if phase build build_preset dev all; then
   phase tests run_tests || true
   if ! $fast; then
