@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Writes the tables of all named parameters into docs/parameters.md, below its hand-written introduction, as the program prints them.
+# Writes the tables of all named parameters into docs/parameters.md, below its hand-written introduction, as the program prints them, and
+# the defaults into the tables of docs/controlling.md.
 # Usage: scripts/make_parameter_docs.sh [musclesim]   (the program; default: build/release/musclesim)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -113,5 +114,23 @@ trap 'rm -f "$new"' EXIT
 } >"$new"
 chmod 644 "$new"
 mv "$new" "$document"
+trap - EXIT
+
+# docs/controlling.md: "| symbol | `parameter` | default |".
+controlling=docs/controlling.md
+new="$(mktemp "$controlling.XXXXXX")"
+trap 'rm -f "$new"' EXIT
+{ config --controller asm --task height; config --controller asm --task reach; config --controller aasm; } | rows '.*' |
+  awk -F'\t' '
+    NR == FNR { text[$1] = $2 ($3 == "" ? "" : " " $3); next }
+    split($0, cell, " [|] ") == 3 && cell[2] ~ /^`[a-z_.A-Z]+`$/ {
+      name = substr(cell[2], 2, length(cell[2]) - 2)
+      if (!(name in text)) { print FILENAME ": there is no parameter " name > "/dev/stderr"; exit 1 }
+      print cell[1] " | " cell[2] " | " text[name] " |"
+      next
+    }
+    { print }' - "$controlling" >"$new"
+chmod 644 "$new"
+mv "$new" "$controlling"
 trap - EXIT
 echo "$document: $(grep -c '^| `' "$document") parameters"
