@@ -138,12 +138,25 @@ void Simulation::start(const std::string& initial_state, const Action& first_com
   worst_gap_ = largestGap();
 }
 
+template <class Function>
+void Simulation::untilDiverged(const Function& move) {
+  if (divergence_) throw *divergence_;
+  try {
+    move();
+  } catch (const Diverged& divergence) {
+    divergence_ = divergence;
+    throw;
+  }
+}
+
 void Simulation::step() {
   makeCurrent();
-  for (int i = 0; i < substeps_; ++i) internalStep(internalStepS());
-  ++step_count_;
-  internal_time_s_ = time_s();
-  requireWhole();
+  untilDiverged([&] {
+    for (int i = 0; i < substeps_; ++i) internalStep(internalStepS());
+    ++step_count_;
+    internal_time_s_ = time_s();
+    requireWhole();
+  });
 }
 
 void Simulation::advance(double duration_s) {
@@ -157,10 +170,12 @@ void Simulation::advance(double duration_s) {
   }
   const auto count = static_cast<long>(std::max(1.0, std::ceil(duration_s / internalStepS() - 1e-6)));
   const double h_s = duration_s / static_cast<double>(count);
-  for (long i = 0; i < count; ++i) internalStep(h_s);
-  start_time_s_ += duration_s;
-  internal_time_s_ = time_s();
-  requireWhole();
+  untilDiverged([&] {
+    for (long i = 0; i < count; ++i) internalStep(h_s);
+    start_time_s_ += duration_s;
+    internal_time_s_ = time_s();
+    requireWhole();
+  });
 }
 
 void Simulation::internalStep(double h_s) {

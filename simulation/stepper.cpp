@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <mutex>
+
 #include "musclesim/robot/actuator.h"
 
 namespace musclesim {
@@ -33,7 +35,10 @@ QuickStepper::QuickStepper(dWorldID world, int iteration_count, unsigned long se
 }
 
 void QuickStepper::step(double h_s) {
-  // ODE's generator belongs to the process; with the state put back before every step, simulations do not disturb each other.
+  // ODE's generator belongs to the process; with its state put back before every step and one step at a time, simulations, also those in
+  // other threads, do not disturb each other.
+  static std::mutex generator;
+  const std::lock_guard<std::mutex> lock(generator);
   dRandSetSeed(random_state_);
   if (!dWorldQuickStep(world_, h_s)) throw OdeFault("dWorldQuickStep ran out of memory");
   random_state_ = dRandGetSeed();

@@ -181,15 +181,17 @@ TEST(Robot, SimulationsInOneProcessDoNotDisturbEachOther) {
 }
 
 TEST(Robot, SimulationsInSeveralThreadsGiveIdenticalBits) {
-  const auto alone = shortRun();
-  std::vector<double> one, other;
-  std::thread first([&] { one = shortRun(); }), second([&] { other = shortRun(); });
-  const auto here = shortRun();
-  first.join();
-  second.join();
-  EXPECT_EQ(one, alone);
-  EXPECT_EQ(other, alone);
-  EXPECT_EQ(here, alone);
+  for (const StepperKind stepper : {StepperKind::automatic, StepperKind::ode, StepperKind::quick}) {
+    const auto alone = shortRun(stepper);
+    std::vector<double> one, other;
+    std::thread first([&] { one = shortRun(stepper); }), second([&] { other = shortRun(stepper); });
+    const auto here = shortRun(stepper);
+    first.join();
+    second.join();
+    EXPECT_EQ(one, alone);
+    EXPECT_EQ(other, alone);
+    EXPECT_EQ(here, alone);
+  }
 }
 
 }  // namespace

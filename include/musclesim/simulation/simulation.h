@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "musclesim/controller/controller.h"
+#include "musclesim/error.h"
 #include "musclesim/parameters.h"
 #include "musclesim/robot/actuator.h"
 #include "musclesim/robot/joint.h"
@@ -65,7 +66,7 @@ class Simulation {
   void start(const std::string& initial_state, const Action& first_command);
 
   /// One control step: pressures, forces, then the bodies, in as many internal steps as were set at construction.
-  /// Throws Diverged with time, place and cause; the world is then frozen as it was.
+  /// Throws Diverged with time, place and cause; the world is then frozen as it was, and further steps throw the same again.
   void step();
   /// The same for any duration, in equal internal steps no longer than those of step(). Throws BadParameter unless it is positive.
   void advance(double duration_s);
@@ -119,6 +120,8 @@ class Simulation {
   Body& addBody(dBodyID id, Primitive& part);
   void removeBody(Body& body);
   Joint& addJoint(Joint::Kind kind, dJointID id, const std::string& name);
+  template <class Function>
+  void untilDiverged(const Function& move);
   void internalStep(double h_s);
   void requireFinite() const;
   BodyBounds bodyBounds() const;
@@ -133,6 +136,7 @@ class Simulation {
   double start_time_s_ = 0, internal_time_s_ = 0;
   long step_count_ = 0;
   bool faulted_ = false;
+  std::optional<Diverged> divergence_;
   long solver_message_count_ = 0;
   JointGap worst_gap_;
 
