@@ -10,6 +10,7 @@
 #include "musclesim/controller/asm.h"
 #include "musclesim/controller/hold.h"
 #include "musclesim/controller/random_pressures.h"
+#include "musclesim/controller/task.h"
 #include "musclesim/error.h"
 
 namespace musclesim {
@@ -44,6 +45,7 @@ Registry& registry() {
 
 void requireUsable(const ControllerRequest& request) {
   if (request.muscle_count < 1) throw BadParameter("muscle count", fmt::format("{}", request.muscle_count), "be at least 1");
+  Task::requireKnown(request.task);
   if (request.target_mm && !request.target_mm->allFinite()) throw BadParameter("target: all coordinates must be finite");
 }
 

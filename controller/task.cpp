@@ -56,6 +56,10 @@ Target Target::make(const ControllerRequest& request) {
   return target;
 }
 
+void Task::requireKnown(const std::string& task) {
+  if (task != "height" && task != "reach") throw unknownTask(task);
+}
+
 std::unique_ptr<Task> Task::make(const ControllerRequest& request) {
   if (request.task == "height") return std::make_unique<HeightTask>(request);
   if (request.task == "reach") return std::make_unique<ReachTask>(request);

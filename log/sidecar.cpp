@@ -64,7 +64,7 @@ class SidecarReader {
   }
   void requireFormat() const;
   std::string text(const std::string& member, bool required = false) const;
-  std::optional<std::string> choice(const std::string& member, const std::string& first, const std::string& second) const;
+  std::optional<std::string> choice(const std::string& member, const std::vector<std::string>& allowed) const;
   std::optional<double> positive(const std::string& member, const std::string& unit) const;
   std::optional<std::uint64_t> seed() const;
   std::optional<bool> complete() const;
@@ -83,8 +83,8 @@ RecordingInfo SidecarReader::read(std::vector<std::string>& notes) {
   requireFormat();
   RecordingInfo info;
   info.robot = text("robot", true);
-  info.physics = choice("physics", "si", "original");
-  info.initial_state = choice("initial_state", "settled", "built");
+  info.physics = choice("physics", {"si", "original", "scaled"});
+  info.initial_state = choice("initial_state", {"settled", "built"});
   if (const json* values = document_.find("robot_parameters")) readRobotParameters(*values, "", info.robot_parameters);
   info.description = text("description");
   info.trial = text("trial");
@@ -120,10 +120,11 @@ std::string SidecarReader::text(const std::string& member, bool required) const 
   return word;
 }
 
-std::optional<std::string> SidecarReader::choice(const std::string& member, const std::string& first, const std::string& second) const {
+std::optional<std::string> SidecarReader::choice(const std::string& member, const std::vector<std::string>& allowed) const {
   const json* value = document_.find(member);
   if (!value) return std::nullopt;
-  if (*value != first && *value != second) refuse(member, member, *value, fmt::format("be \"{}\" or \"{}\"", first, second));
+  const bool known = std::any_of(allowed.begin(), allowed.end(), [&](const std::string& word) { return *value == word; });
+  if (!known) refuse(member, member, *value, fmt::format("be \"{}\"", fmt::join(allowed, "\" or \"")));
   return value->get<std::string>();
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <mutex>
 
 #include "musclesim/error.h"
 #include "musclesim/robot/elbow.h"
@@ -24,25 +25,41 @@ std::map<std::string, Robot::Registered>& Robot::registry() {
   return robots;
 }
 
+namespace {
+
+/// Guards the registry: simulations are built in several threads.
+std::mutex& registryMutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+}  // namespace
+
 void Robot::registerFactory(const std::string& name, const std::string& description, Factory factory) {
+  const std::lock_guard lock(registryMutex());
   registry()[name] = {description, std::move(factory)};
 }
 
 std::unique_ptr<Robot> Robot::make(const std::string& name, Simulation& simulation) {
-  const auto found = registry().find(name);
-  if (found == registry().end()) {
+  Factory build;
+  {
+    const std::lock_guard lock(registryMutex());
+    if (const auto found = registry().find(name); found != registry().end()) build = found->second.build;
+  }
+  if (!build) {
     std::vector<std::string> names;
-    for (const auto& [known, entry] : registry()) names.push_back(known);
+    for (const auto& [known, description] : registered()) names.push_back(known);
     const std::string nearest = nearestName(name, names);
     throw BadParameter(fmt::format("there is no robot \"{}\"{}; registered: {}", name,
                                    nearest.empty() ? "" : ", did you mean \"" + nearest + "\"?", fmt::join(names, ", ")));
   }
-  auto robot = found->second.build(simulation);
+  auto robot = build(simulation);
   robot->name_ = name;
   return robot;
 }
 
 std::vector<std::pair<std::string, std::string>> Robot::registered() {
+  const std::lock_guard lock(registryMutex());
   std::vector<std::pair<std::string, std::string>> result;
   for (const auto& [name, entry] : registry()) result.emplace_back(name, entry.description);
   return result;

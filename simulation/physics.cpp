@@ -41,7 +41,7 @@ PhysicsSettings::PhysicsSettings(PhysicsKind physics_kind, Parameters& parameter
   longest_internal_step_s = std::numeric_limits<double>::infinity();
   if (si)
     longest_internal_step_s =
-        parameters.number("physics.longest_internal_step_s", 3e-4, "s", 1e-7, 0.1, "upper bound of the internal step with ODE's steppers");
+        parameters.number("physics.longest_internal_step_s", 3e-4, "s", 1e-7, 0.1, "upper bound of the internal step");
 }
 
 double PhysicsSettings::errorReductionPerStep(double step_s) const {

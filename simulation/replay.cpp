@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "musclesim/controller/replay.h"
 #include "musclesim/error.h"
@@ -20,6 +21,13 @@ void appendRow(Recording& recording, double time_s, const std::vector<double>& v
   for (std::size_t i = 0; i < values.size(); ++i) recording.signals[i].values.push_back(values[i]);
 }
 
+/// The number of internal steps that a run of this program noted in its sidecar; 0 if there is none.
+int recordedSubsteps(const RecordingInfo& info) {
+  const auto extra = nlohmann::json::parse(info.extra_json, nullptr, false);
+  if (!extra.is_object() || !extra.contains("substeps") || !extra["substeps"].is_number_integer()) return 0;
+  return extra["substeps"].get<int>();
+}
+
 }  // namespace
 
 SimulationOptions simulationOptionsFor(const RecordingInfo& info, const std::string& source, const ReplayOptions& options) {
@@ -28,6 +36,8 @@ SimulationOptions simulationOptionsFor(const RecordingInfo& info, const std::str
   result.step_s = options.step_s.value_or(info.step_s.value_or(default_step_s));
   result.stepper = options.stepper;
   result.substeps = options.substeps;
+  // A run of ours is repeated with its own internal steps unless the user changes what they depend on.
+  if (options.substeps == 0 && !options.physics && !options.step_s) result.substeps = recordedSubsteps(info);
   result.plane = options.plane;
   result.seed = options.seed;
   for (const auto& [name, value] : info.robot_parameters)

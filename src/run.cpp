@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 /// In the original's units the paper's 6 s; in true seconds the time the arm takes to settle (docs/parameters.md).
 double defaultDecisionIntervalS(const PhysicsSettings& physics) {
-  constexpr double original_s = 6.0, si_s = 1.0;
+  constexpr double original_s = 6.0, si_s = 3.0;
   if (physics.kind == PhysicsKind::si) return si_s;
   return physics.kind == PhysicsKind::original ? original_s : original_s / std::sqrt(original_force_deficit_ratio);
 }
@@ -64,6 +64,7 @@ class Run {
     say(model_, fmt::format("{} physics, stepper {}, {} internal steps of {:.4g} s per step of {:g} s, seed {}",
                             nameOf(simulation_.physics().kind), simulation_.stepper().name(), simulation_.substeps(),
                             simulation_.internalStepS(), simulation_.stepS(), simulation_.seed()));
+    if (!simulation_.stepper().message().empty()) say(model_, simulation_.stepper().message());
     std::optional<Diverged> divergence;
     Progress progress(options_.duration_s, model_.quiet);
     try {
@@ -75,10 +76,7 @@ class Run {
     const nlohmann::json verdict = conclude(divergence, progress.wallS());
     recorder.note("verdict", verdict.dump());
     recorder.close(!divergence && interruptSignal() == 0);
-    const fs::path svg = fs::path(csv).replace_extension(".svg");
-    const Recording recording = readRecording(csv.string());
-    writeRunFigure(recording, muscleColors(simulation_.robot()), recording.info.description, svg.string());
-    return report(verdict, csv, svg, divergence);
+    return report(verdict, csv, drawFigure(csv, recorder.rowCount()), divergence);
   }
 
  private:
@@ -93,6 +91,15 @@ class Run {
     options.seed = model.seed;
     options.parameters = parametersFrom(model);
     return options;
+  }
+
+  /// The figure beside the recording; an empty path for a run that ended before its first row.
+  fs::path drawFigure(const fs::path& csv, long row_count) const {
+    if (row_count == 0) return {};
+    const fs::path svg = fs::path(csv).replace_extension(".svg");
+    const Recording recording = readRecording(csv.string());
+    writeRunFigure(recording, muscleColors(robot()), recording.info.description, svg.string());
+    return svg;
   }
 
   void requireDuration() const {
@@ -160,6 +167,7 @@ class Run {
     verdict["simulated_s"] = simulation_.time_s();
     verdict["worst_joint_gap_mm"] = simulation_.worstGap().gap_mm;
     verdict["worst_joint"] = simulation_.worstGap().joint;
+    verdict["unsolved_steps"] = simulation_.stepper().unsolvedSteps();
     verdict["solver_messages"] = simulation_.solverMessageCount();
     verdict["wall_s"] = wall_s;
     verdict["wall_per_simulated_s"] = simulation_.time_s() > 0 ? wall_s / simulation_.time_s() : 0.0;
@@ -176,7 +184,8 @@ class Run {
       say(model_, fmt::format("target reached (within {:g} mm) at {:.2f} s, held for {:.0f} % of the time since",
                               verdict["reached_within_mm"].get<double>(), verdict["reached_at_s"].get<double>(),
                               100 * verdict["held_share"].get<double>()));
-    fmt::print("log     {}\nfigure  {}\n", csv.string(), svg.string());
+    fmt::print("log     {}\n", csv.string());
+    if (!svg.empty()) fmt::print("figure  {}\n", svg.string());
     if (model_.json) {
       verdict["command"] = "run";
       verdict["log"] = csv.string();
@@ -223,7 +232,7 @@ void addOptions(CLI::App& command, RunOptions& options) {
       ->expected(3);
   command
       .add_option("--decision-interval", options.decision_interval_s,
-                  "Time between decisions in s (default: 6 in original physics, 1 in si)")
+                  "Time between decisions in s (default: 6 in original physics, 3 in si)")
       ->group(group);
   command.add_option("--duration", options.duration_s, "Simulated time in s")->group(group)->capture_default_str();
   command.add_option("--record", options.record, "Recording to write, FILE.csv (default: run.csv in the run's folder)")->group(group);

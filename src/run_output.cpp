@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <ctime>
 
@@ -13,6 +15,8 @@ namespace musclesim::program {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr std::array<const char*, 4> model_groups = {"physics.", "muscle.", "force_law.", "world."};
 
 /// log/runs/<date-time>-<task>-<seed>, with a number appended if that exists.
 fs::path freshRunFolder(const RunOptions& options, std::uint64_t seed) {
@@ -36,10 +40,14 @@ nlohmann::json toJson(const Parameter::Value& value) {
 std::map<std::string, Parameter::Value> robotParameters(Simulation& simulation) {
   std::map<std::string, Parameter::Value> result;
   const std::string own = simulation.robot().name() + ".";
+  // Controllers and tasks have parameters too, but a replay has neither.
+  const auto belongsToModel = [](const std::string& name) {
+    return std::any_of(model_groups.begin(), model_groups.end(), [&](const char* group) { return name.starts_with(group); });
+  };
   for (const Parameter& p : simulation.parameters().declared()) {
     if (p.name.starts_with(own))
       result[p.name.substr(own.size())] = p.value;
-    else if (p.value != p.default_value)
+    else if (belongsToModel(p.name) && p.value != p.default_value)
       result[p.name] = p.value;
   }
   return result;

@@ -35,6 +35,8 @@ class Task {
   Vector targetMm() const { return target_.point_mm; }
   bool targetIsHeight() const { return target_.is_height; }
 
+  /// Throws BadParameter, with the nearest name, unless there is a task of that name.
+  static void requireKnown(const std::string& task);
   /// The task named in the request. Throws as Target::make.
   static std::unique_ptr<Task> make(const ControllerRequest& request);
 

@@ -29,7 +29,7 @@ struct ActiveEffect {
 /// The sidecar. Only `format` and `robot` are required in the file.
 struct RecordingInfo {
   std::string robot;
-  std::optional<std::string> physics;                        ///< "si" or "original"
+  std::optional<std::string> physics;                        ///< "si", "original" or "scaled"
   std::optional<std::string> initial_state;                  ///< "settled" or "built"
   std::map<std::string, Parameter::Value> robot_parameters;  ///< nested objects are flattened with a dot
   std::string description, trial, repeat_of, program;
