@@ -382,7 +382,10 @@ void Primitive::merge(Body& target, const std::vector<Body*>& bodies, Primitive&
       placed.push_back({part, fromOde(dGeomGetPosition(part->geom_)), matrixFromOde(dGeomGetRotation(part->geom_))});
   for (Body* body : bodies) {
     if (body == &target) continue;
-    for (Primitive* part : body->parts) dGeomSetBody(part->geom_, target.id);
+    for (Primitive* part : body->parts) {
+      dGeomClearOffset(part->geom_);  // dGeomSetBody would lose the memory of an offset
+      dGeomSetBody(part->geom_, target.id);
+    }
     simulation.removeBody(*body);
   }
   dMass mass;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 #include "../robot/ode_vector.h"
 #include "chain/chain_stepper.h"
@@ -23,6 +24,22 @@ constexpr double farthest_mm = 1e5;        ///< a body farther out than 100 m en
 constexpr double fastest_m_per_s = 1000;   ///< in true seconds
 constexpr double settle_duration_s = 0.5;  ///< of `si` time
 constexpr const char* advice = "; try a smaller --step or more --substeps, and look at the last rows of the recording";
+
+/// After a caught fault ODE's world may still be locked; destroying it would raise another. It is kept to the end of the process, in reach,
+/// so that leak checkers do not take it for forgotten.
+struct AbandonedWorld {
+  dWorldID world;
+  dSpaceID space;
+  std::unique_ptr<Contacts> contacts;
+  std::vector<std::unique_ptr<Primitive>> primitives;
+};
+
+void abandon(AbandonedWorld world) {
+  static std::mutex access;
+  static auto* const worlds = new std::vector<AbandonedWorld>;  // never destroyed: that would destroy the worlds
+  const std::lock_guard<std::mutex> lock(access);
+  worlds->push_back(std::move(world));
+}
 
 double requireStep(double step_s) {
   if (!(step_s >= 1e-7 && step_s <= 10)) throw BadParameter("step", fmt::format("{} s", step_s), "be a number in 1e-7 .. 10 s");
@@ -46,7 +63,9 @@ Simulation::Simulation(SimulationOptions options)
   dWorldSetGravity(world_, 0, -physics_.gravity_mm_per_s2, 0);
   dWorldSetERP(world_, physics_.errorReductionPerStep(internalStepS()));
   dWorldSetCFM(world_, physics_.constraint_force_mixing);
-  space_ = dHashSpaceCreate(nullptr);
+  // The kind of space decides which of two bodies' several contacts counts. The published program has a hash table, which allocates memory
+  // and is slower for robots of this size.
+  space_ = options.physics == PhysicsKind::si ? dSimpleSpaceCreate(nullptr) : dHashSpaceCreate(nullptr);
   if (options.plane)
     dCreatePlane(space_, 0, 1, 0, parameters_.number("world.plane_height_mm", -500, "mm", -1e4, 1e4, "height of the ground plane"));
   contacts_ = std::make_unique<Contacts>(world_, space_, physics_.contact_friction_N * physics_.force_per_N);
@@ -65,10 +84,8 @@ Simulation::~Simulation() {
   if (current_simulation == this) current_simulation = nullptr;
   controller_.reset();
   robot_.reset();
-  // After a caught fault ODE's world may still be locked; destroying it would raise another.
   if (faulted_) {
-    (void)contacts_.release();
-    for (auto& primitive : primitives_) (void)primitive.release();
+    abandon({world_, space_, std::move(contacts_), std::move(primitives_)});
     return;
   }
   contacts_.reset();
