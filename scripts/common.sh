@@ -8,10 +8,11 @@ say() { printf '%s\n' "$*" >&2; }
 build_preset() {
   local preset=$1 target=$2 folder="$root/build/$1" status=0 output
   shift 2
-  local configure=(cmake --preset "$preset")
+  local configure=(cmake --preset "$preset") configured_for
+  configured_for=$(sed -n 's/^CMAKE_HOME_DIRECTORY:INTERNAL=//p' "$folder/CMakeCache.txt" 2>/dev/null) || true
   if [[ ! -f $folder/build.ninja ]]; then
     configure+=("$@")
-  elif ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$folder/CMakeCache.txt"; then
+  elif [[ ! $configured_for -ef $root ]]; then
     configure+=(--fresh "$@")  # the folder was copied or moved
   fi
   if command -v ccache >/dev/null; then

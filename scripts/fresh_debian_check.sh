@@ -10,7 +10,7 @@
 # MIRROR=URL chooses another Debian mirror.
 set -euo pipefail
 
-root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+root=$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")
 # shellcheck source=scripts/common.sh
 source "$root/scripts/common.sh"
 

@@ -8,7 +8,7 @@
 # Own messages go to stderr, so stdout is the program's. Paths among the arguments are relative to the caller's folder.
 set -euo pipefail
 
-root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+root=$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")
 # shellcheck source=scripts/common.sh
 source "$root/scripts/common.sh"
 

@@ -8,7 +8,7 @@
 # A failed phase does not keep the others from running. At the end: a line per phase, then how many tests ran and which failed.
 set -euo pipefail
 
-root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+root=$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")
 # shellcheck source=scripts/common.sh
 source "$root/scripts/common.sh"
 
