@@ -69,7 +69,7 @@ class Run {
     Progress progress(options_.duration_s, model_.quiet);
     try {
       simulation_.start(initial_state, first_action);
-      loop(recorder, progress);
+      loop(recorder, progress, first_action);
     } catch (const Diverged& error) {
       divergence = error;
     }
@@ -131,16 +131,18 @@ class Run {
     return values;
   }
 
-  /// The paper's run loop: state, output, step; with a row of the log before the world moves. The first action already acts.
-  void loop(Recorder& recorder, Progress& progress) {
+  /// The paper's run loop: state, output, step; with a row of the log before the world moves.
+  void loop(Recorder& recorder, Progress& progress, musclesim::Action action) {
     const long step_count = std::lround(options_.duration_s / simulation_.stepS());
     const long record_every = std::max(1L, std::lround(options_.record_interval_s.value_or(simulation_.stepS()) / simulation_.stepS()));
     for (long i = 0; i < step_count && interruptSignal() == 0; ++i) {
-      if (i > 0) robot().step(controller_->output(robot().getState()));
+      if (i > 0) action = controller_->output(robot().getState());
+      robot().step(action);
       record(recorder, progress, i % record_every == 0);
       simulation_.step();
       warnOfGap();
     }
+    robot().step(action);  // the last row, too, shows the forces at its own time
     record(recorder, progress, true);
   }
 
