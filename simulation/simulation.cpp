@@ -152,7 +152,7 @@ void Simulation::start(const std::string& initial_state, const Action& first_com
   }
   start_time_s_ = internal_time_s_ = 0;
   step_count_ = 0;
-  worst_gap_ = largestGap();
+  worst_gap_ = tornMost();
 }
 
 template <class Function>
@@ -238,20 +238,24 @@ BodyBounds Simulation::bodyBounds() const {
 }
 
 void Simulation::requireWhole() {
-  const std::optional<TornJoint> torn = stepper_->largestGap();
-  if (torn && torn->gap_mm <= worst_gap_.gap_mm) return;
-  const JointGap gap = torn ? JointGap{torn->gap_mm, torn->joint->name()} : largestGap();
-  if (!(gap.gap_mm <= worst_gap_.gap_mm)) worst_gap_ = gap;
-  if (!(gap.gap_mm <= torn_mm)) throw Diverged(internal_time_s_, gap.joint, fmt::format("it is torn by {:.3g} mm{}", gap.gap_mm, advice));
+  const std::optional<TornJoint> known = stepper_->largestGap();
+  const TornJoint torn = known ? *known : tornMost();
+  if (!(torn.gap_mm <= worst_gap_.gap_mm)) worst_gap_ = torn;
+  if (!(torn.gap_mm <= torn_mm))
+    throw Diverged(internal_time_s_, torn.joint->name(), fmt::format("it is torn by {:.3g} mm{}", torn.gap_mm, advice));
 }
 
-JointGap Simulation::largestGap() const {
-  JointGap largest;
+TornJoint Simulation::tornMost() const {
+  TornJoint largest;
   for (const auto& joint : joints_) {
     const double gap_mm = joint->gapMm();
-    if (!(gap_mm <= largest.gap_mm)) largest = {gap_mm, joint->name()};
+    if (!(gap_mm <= largest.gap_mm)) largest = {gap_mm, joint.get()};
   }
   return largest;
+}
+
+JointGap Simulation::named(const TornJoint& torn) {
+  return {torn.gap_mm, torn.joint ? torn.joint->name() : ""};
 }
 
 std::string Simulation::labelOf(dBodyID id) const {

@@ -50,6 +50,7 @@ struct ActiveSetResult {
 /// the time: it ends.
 class BoxActiveSet {
  public:
+  BoxActiveSet() { worst_.reserve(256); }
   int most_rounds = 60, patience = 15, most_monotone_rounds = 400;
   ActiveSetResult run(BoxProblem& problem, std::vector<BoundedRow>& rows);
 

@@ -124,8 +124,13 @@ void ChainPair::addBorder(int lane, int column, int bead, const double jacobian[
   entries_.push_back(entry);
 }
 
-void ChainPair::growBorder() {
-  const auto needed = static_cast<std::size_t>(border_count_);
+void ChainPair::reserve(int border_count) {
+  growBorder(border_count);
+  entries_.reserve(lane_count * static_cast<std::size_t>(border_count));
+}
+
+void ChainPair::growBorder(int count) {
+  const auto needed = static_cast<std::size_t>(count);
   if (needed <= border_capacity_) return;
   border_capacity_ = needed + 6;
   border_.resize(nodes_.size() * border_capacity_);
@@ -137,7 +142,7 @@ void ChainPair::growBorder() {
 
 /// B_k,j = J_k S J_j^T for all border rows j.
 void ChainPair::fillBorder() {
-  growBorder();
+  growBorder(border_count_);
   for (int k = 0; k < nodeCount(); ++k)
     for (int c = 0; c < border_count_; ++c) borderOf(k)[c] = Column{};
   for (const BorderEntry& entry : entries_)

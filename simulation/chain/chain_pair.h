@@ -44,6 +44,8 @@ class ChainPair {
   /// Forces on beads besides those of row 5: of contact rows at a bound.
   void clearBeadForces();
   void addBeadForce(int lane, int bead, const double jacobian[6], double force);
+  /// Memory for that many border rows.
+  void reserve(int border_count);
   /// Starts a new set of border rows; each lane numbers its own from 0.
   void clearBorder();
   /// A border row's Jacobian on one bead.
@@ -117,7 +119,7 @@ class ChainPair {
   }
   Column* borderOf(int node) { return border_.data() + static_cast<std::size_t>(node) * border_capacity_; }
   const Column* borderOf(int node) const { return border_.data() + static_cast<std::size_t>(node) * border_capacity_; }
-  void growBorder();
+  void growBorder(int count);
   void fillBorder();
   void moveBeads();
   void factorise(Node& node, Pack own[6][6]) const;

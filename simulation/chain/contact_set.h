@@ -30,6 +30,10 @@ class ContactSet {
   /// Returns false if a contact touches a body that is not among the bodies.
   bool make(const std::vector<ContactPoint>& points, const BodyState& bodies, double friction_force, double reduction_per_s);
   void clear() { contacts_.clear(); }
+  void reserve(std::size_t count) {
+    contacts_.reserve(count);
+    before_.reserve(count);
+  }
   std::vector<ContactRows>& all() { return contacts_; }
   const std::vector<ContactRows>& all() const { return contacts_; }
 

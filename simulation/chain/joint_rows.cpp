@@ -213,6 +213,7 @@ JointModel registerJoint(const Joint& joint, const BodyState& bodies) {
   model.joint = &joint;
   model.kind = joint.kind();
   model.reference = joint.reference();
+  model.separation = -(matrixOf(model.reference.rotation) * model.reference.offset);
   const dJointID id = joint.id();
   for (int i = 0; i < 2; ++i) model.body[i] = dJointGetBody(id, i) ? bodies.find(dJointGetBody(id, i)) : -1;
   const dWorldID world = dBodyGetWorld(dJointGetBody(id, 0));
@@ -261,9 +262,9 @@ double gapOf(const JointModel& joint, const BodyState& bodies) {
     return (pair.first.position + pair.first.rotation * joint.reference.anchor[0] - pair.second.position -
             pair.second.rotation * joint.reference.anchor[1])
         .norm();
-  const Vector moved = pair.second.position + pair.second.rotation * joint.reference.offset - pair.first.position;
+  const Vector moved = pair.first.rotation.transpose() * (pair.second.position - pair.first.position) - joint.separation;
   if (joint.kind == Joint::Kind::fixed) return moved.norm();
-  const Vector axis = pair.first.rotation * joint.reference.axis[0];
+  const Vector& axis = joint.reference.axis[0];
   return (moved - axis * axis.dot(moved)).norm();
 }
 

@@ -33,6 +33,7 @@ struct JointModel {
   Joint::Kind kind = Joint::Kind::ball;
   int body[2] = {-1, -1};
   JointReference reference;
+  Vector separation = Vector::Zero();  ///< second body seen from the first when the joint was made, in the first's frame, mm
   AxisLimits limits;
   double reduction = 0;  ///< ODE's ERP of the position rows as it was registered
   double softness = 0;   ///< ODE's CFM of the position rows

@@ -42,6 +42,20 @@ StepProblem::StepProblem(Model& model) : model_(model) {
   skeleton_.resize(model.skeleton.size());
   fixed_.resize(model.fixed.size());
   bones_.resize(model.bones.size());
+  reserve();
+}
+
+/// Memory for as many contacts as a robot can be expected to have, so that steps need not ask for it.
+void StepProblem::reserve() {
+  constexpr int contact_count = 100, contacts_per_chain = 12;
+  const auto links = std::accumulate(chains_.begin(), chains_.end(), std::size_t{0},
+                                     [](std::size_t sum, const ChainState& chain) { return sum + chain.joints.size(); });
+  contacts_.reserve(contact_count);
+  rows_.reserve(links + skeleton_.size() + 3 * contact_count);
+  places_.reserve(rows_.capacity());
+  for (ChainState& chain : chains_) chain.border_rows.reserve(3 + 3 * contacts_per_chain);
+  for (ChainPair& pair : pairs_) pair.reserve(3 + 3 * contacts_per_chain);
+  core_.reset(model_.boneCount(), 3 * static_cast<int>(chains_.size()) + 6 * static_cast<int>(skeleton_.size()) + contact_count);
 }
 
 bool StepProblem::begin(const Conditions& conditions, const std::vector<ContactPoint>& contacts) {

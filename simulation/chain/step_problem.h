@@ -70,6 +70,7 @@ class StepProblem final : public BoxProblem {
     int owner, part;  ///< chain and joint; skeleton joint; contact and direction
   };
 
+  void reserve();
   void addLoads();
   void makeJointRows();
   void addAxisForce(const JointModel& joint, const JointRows& rows, double force);

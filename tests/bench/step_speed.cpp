@@ -73,8 +73,8 @@ int main(int argc, char** argv) {
   const auto chain = makeSimulation(c, StepperKind::chain);
   const double chain_ms = run(*chain, schedule, std::lround(duration_s / chain->stepS()), time_scale);
   const ChainStatistics& s = dynamic_cast<const ChainStepper&>(chain->stepper()).statistics();
-  std::printf("n=%d %s: ode %.3f ms (%ld steps), chain %.4f ms (%ld steps), ratio %.1f, r %.4f; rounds %.2f (<= %d, monotone %ld), unsolved %ld\n",
-              c.muscle_count, nameOf(c.physics).c_str(), ode_ms, ode_steps, chain_ms, s.steps, ode_ms / chain_ms,
-              chain_ms * 1e-3 / chain->stepS(), static_cast<double>(s.rounds) / static_cast<double>(s.steps), s.largest_rounds,
-              s.monotone_rounds, s.unsolved_steps);
+  std::printf(
+      "n=%d %s: ode %.3f ms (%ld steps), chain %.4f ms (%ld steps), ratio %.1f, r %.4f; rounds %.2f (<= %d, monotone %ld), unsolved %ld\n",
+      c.muscle_count, nameOf(c.physics).c_str(), ode_ms, ode_steps, chain_ms, s.steps, ode_ms / chain_ms, chain_ms * 1e-3 / chain->stepS(),
+      static_cast<double>(s.rounds) / static_cast<double>(s.steps), s.largest_rounds, s.monotone_rounds, s.unsolved_steps);
 }

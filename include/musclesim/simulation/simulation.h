@@ -97,9 +97,9 @@ class Simulation {
   long solverMessageCount() const { return solver_message_count_; }
 
   /// The joint that is torn furthest at present.
-  JointGap largestGap() const;
+  JointGap largestGap() const { return named(tornMost()); }
   /// The largest gap seen at the end of any control step so far.
-  const JointGap& worstGap() const { return worst_gap_; }
+  JointGap worstGap() const { return named(worst_gap_); }
   /// Sum of kinetic energy and of potential energy against y = 0, in J (true seconds only in `si` and `scaled`).
   double mechanicalEnergyJ() const;
   /// Sets all velocities to 0.
@@ -126,6 +126,8 @@ class Simulation {
   void requireFinite() const;
   BodyBounds bodyBounds() const;
   void requireWhole();
+  TornJoint tornMost() const;
+  static JointGap named(const TornJoint& torn);
   std::string labelOf(dBodyID body) const;
 
   Parameters parameters_;
@@ -138,7 +140,7 @@ class Simulation {
   bool faulted_ = false;
   std::optional<Diverged> divergence_;
   long solver_message_count_ = 0;
-  JointGap worst_gap_;
+  TornJoint worst_gap_;
 
   dWorldID world_ = nullptr;
   dSpaceID space_ = nullptr;
