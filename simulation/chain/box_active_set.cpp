@@ -93,6 +93,19 @@ ActiveSetResult BoxActiveSet::run(BoxProblem& problem, std::vector<BoundedRow>& 
 }
 
 /// Returns the number of rows that violate their condition.
+int BoxActiveSet::changeAll(BoxProblem& problem, std::vector<BoundedRow>& rows) const {
+  const double force_tolerance = problem.forceTolerance(), slack_tolerance = problem.slackTolerance();
+  int count = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const RowState state = demanded(rows[i], force_tolerance, slack_tolerance);
+    if (state == rows[i].state) continue;
+    change(problem, rows, i, state);
+    ++count;
+  }
+  return count;
+}
+
+/// Returns the same as changeAll().
 int BoxActiveSet::changeWorst(BoxProblem& problem, std::vector<BoundedRow>& rows) {
   const double force_tolerance = problem.forceTolerance(), slack_tolerance = problem.slackTolerance();
   worst_.clear();
@@ -116,7 +129,7 @@ bool BoxActiveSet::primalDual(BoxProblem& problem, std::vector<BoundedRow>& rows
   while (result.rounds < most_rounds && rounds_without_progress < patience) {
     ++result.rounds;
     problem.solve(rows);
-    const int violations = changeWorst(problem, rows);
+    const int violations = result.rounds <= full_rounds ? changeAll(problem, rows) : changeWorst(problem, rows);
     if (violations == 0) return true;
     rounds_without_progress = violations < fewest ? 0 : rounds_without_progress + 1;
     fewest = std::min(fewest, violations);

@@ -43,20 +43,21 @@ struct ActiveSetResult {
   int monotone_rounds = 0;  ///< of them in the monotone phase
 };
 
-/// Phase 1, primal-dual: of the rows that violate their condition, the worst of every group changes its state; a row at a bound whose
-/// violation reaches beyond the whole box goes to the other bound. Starts from the rows' states, so states of the step before make it
-/// short. It may cycle, so after `patience` rounds without progress phase 2 takes over: from a point within the box towards the minimum
-/// for the present set, up to the first bound met (where that row stays); rows are released only at such a minimum. The objective falls all
-/// the time: it ends.
+/// Phase 1, primal-dual: all rows that violate their condition change their state in the first rounds, then only the worst of every group;
+/// a row at a bound whose violation reaches beyond the whole box goes to the other bound. Starts from the rows' states, so states of the
+/// step before make it short. It may cycle, so after `patience` rounds without progress phase 2 takes over: from a point within the box
+/// towards the minimum for the present set, up to the first bound met (where that row stays); rows are released only at such a minimum. The
+/// objective falls all the time: it ends.
 class BoxActiveSet {
  public:
   BoxActiveSet() { worst_.reserve(256); }
-  int most_rounds = 60, patience = 15, most_monotone_rounds = 400;
+  int full_rounds = 2, most_rounds = 60, patience = 15, most_monotone_rounds = 400;
   ActiveSetResult run(BoxProblem& problem, std::vector<BoundedRow>& rows);
 
  private:
   bool primalDual(BoxProblem& problem, std::vector<BoundedRow>& rows, ActiveSetResult& result);
   bool monotone(BoxProblem& problem, std::vector<BoundedRow>& rows, ActiveSetResult& result) const;
+  int changeAll(BoxProblem& problem, std::vector<BoundedRow>& rows) const;
   int changeWorst(BoxProblem& problem, std::vector<BoundedRow>& rows);
 
   struct Worst {

@@ -16,7 +16,7 @@ void DenseCholesky::reset(int size) {
   stride_ = static_cast<std::size_t>((size + 1) / 2 * 2);
   const std::size_t needed = stride_ * static_cast<std::size_t>(size);
   if (entries_.size() < needed) entries_.resize(needed * 5 / 4);
-  std::fill_n(entries_.begin(), needed, 0.0);
+  for (int j = 0; j < size; ++j) std::fill(column(j) + j, column(j) + size, 0.0);
 }
 
 void DenseCholesky::factorise() {

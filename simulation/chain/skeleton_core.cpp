@@ -8,7 +8,6 @@ namespace musclesim::chain {
 void SkeletonCore::reset(int bone_count, int row_count) {
   const auto bones = static_cast<std::size_t>(bone_count), rows = static_cast<std::size_t>(row_count);
   bone_count_ = bone_count;
-  row_count_ = row_count;
   if (stride_ < rows || bones_.size() < bones) {
     stride_ = std::max(stride_, rows * 3 / 2 / 2 * 2 + 8);
     bones_.resize(std::max(bones_.size(), bones));
@@ -26,8 +25,8 @@ void SkeletonCore::reset(int bone_count, int row_count) {
     bone.rows.clear();
   }
   rows_.reset(row_count);
-  std::fill(force_.begin(), force_.end(), 0.0);
-  std::fill(place_.begin(), place_.end(), -1);
+  std::fill_n(force_.begin(), rows, 0.0);
+  for (std::size_t bone = 0; bone < bones; ++bone) std::fill_n(place_.begin() + static_cast<std::ptrdiff_t>(bone * stride_), rows, -1);
 }
 
 void SkeletonCore::couple(int row, int bone, const double jacobian[6]) {

@@ -46,7 +46,7 @@ class SkeletonCore {
   void substitute(BoneSystem& bone) const;
 
   std::vector<BoneSystem> bones_;
-  int bone_count_ = 0, row_count_ = 0;
+  int bone_count_ = 0;
   std::size_t stride_ = 0;        ///< of the bones' Jacobians
   std::vector<int> place_;        ///< of a row among a bone's rows, bone * stride + row; -1: it does not act there
   std::vector<double> products_;  ///< of one row with all rows before it
