@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <string>
 
 #include "commands.h"
 #include "interrupt.h"
@@ -18,6 +19,12 @@ using namespace musclesim::program;
 int complain(const std::exception& error, ExitStatus status) {
   std::fprintf(stderr, "musclesim: error: %s\n", error.what());
   return status;
+}
+
+/// An empty value (--step "") would count as "not given".
+void refuseEmptyValues(CLI::App& command) {
+  for (CLI::Option* option : command.get_options())
+    if (option->get_expected_max() > 0) option->check([](const std::string& value) { return value.empty() ? "must not be empty" : ""; });
 }
 
 int parseAndRun(int argument_count, char** arguments) {
@@ -35,6 +42,8 @@ int parseAndRun(int argument_count, char** arguments) {
   const program::Action run = addRun(app, model);
   CLI::App* replay_command = app.add_subcommand("replay", "Plays a recording's commands through the model and compares");
   const program::Action replay = addReplay(*replay_command, model);
+  refuseEmptyValues(app);
+  refuseEmptyValues(*replay_command);
   try {
     app.parse(argument_count, arguments);
   } catch (const CLI::ParseError& error) {

@@ -22,7 +22,10 @@ void addModelOptions(CLI::App& command, ModelOptions& options) {
       ->group(model);
   command.add_option("--muscles", options.muscle_count, "Number of muscles of the arm, 1 .. 30 (default 10)")->group(model);
   command.add_flag("--plane", options.plane, "Add a ground plane")->group(model);
-  command.add_option("--seed", options.seed, "Seed of everything random")->group(model)->capture_default_str();
+  command.add_option("--seed", options.seed, "Seed of everything random")
+      ->group(model)
+      ->capture_default_str()
+      ->check([](const std::string& value) { return value.starts_with('-') ? "must be a whole number, 0 or larger" : ""; });
   command.add_option("--set", options.set, "name=value: override one named parameter; may be repeated")
       ->group(model)
       ->allow_extra_args(false);
