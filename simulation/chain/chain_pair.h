@@ -123,7 +123,9 @@ class ChainPair {
   void fillBorder();
   void moveBeads();
   void factorise(Node& node, Pack own[6][6]) const;
-  void eliminateNode(int k, Carry& carry);
+  void factoriseNode(int k, const Carry& carry);
+  void reduceColumns(int k, const Carry& carry);
+  void carryOver(int k, Carry& carry);
   void accumulateBorder(int k);
   void leaveToBone();
   void substituteForces();

@@ -12,4 +12,17 @@ inline Pack both(double value) {
   return Pack{value, value};
 }
 
+/// Products of 6-vectors.
+inline Pack dot(const Pack a[6], const double b[6]) {
+  Pack sum = a[0] * b[0];
+  for (int i = 1; i < 6; ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+inline Pack dot(const Pack a[6], const Pack b[6]) {
+  Pack sum = a[0] * b[0];
+  for (int i = 1; i < 6; ++i) sum += a[i] * b[i];
+  return sum;
+}
+
 }  // namespace musclesim::chain

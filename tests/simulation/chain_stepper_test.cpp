@@ -172,6 +172,29 @@ TEST(ChainStepper, TakesWhatIsBuiltLater) {
   EXPECT_GT(dBodyGetLinearVel(bone->body().id)[1], fallen);
 }
 
+TEST(ChainStepper, LeavesAStepToDWorldStepWhereItCannotSolveIt) {
+  SimulationOptions options;
+  options.substeps = 1;
+  options.step_s = 1e-3;
+  Simulation simulation(options);
+  auto* bone = new Box(simulation.world(), simulation.space(), {0, 0, 0}, 100, 0, 10, 10, 10);
+  simulation.step();
+  EXPECT_EQ(simulation.stepper().unsolvedSteps(), 0);
+  // A body that was not made through the simulation, in contact with one that was.
+  const dBodyID stranger = dBodyCreate(simulation.world());
+  dBodySetPosition(stranger, 0, 9, 0);
+  const dGeomID geom = dCreateSphere(simulation.space(), 5);
+  dGeomSetBody(geom, stranger);
+  simulation.step();
+  EXPECT_EQ(simulation.stepper().unsolvedSteps(), 1);
+  EXPECT_NE(dBodyGetLinearVel(stranger)[1], 0);
+  dGeomDestroy(geom);
+  const double falling = dBodyGetLinearVel(bone->body().id)[1];
+  simulation.step();
+  EXPECT_EQ(simulation.stepper().unsolvedSteps(), 1);
+  EXPECT_LT(dBodyGetLinearVel(bone->body().id)[1], falling);
+}
+
 TEST(ChainStepper, NamesTheBodyThatEscapesAndKeepsTheWorld) {
   const auto simulation = makeSimulation({.robot = "elbow"}, StepperKind::automatic);
   const dBodyID forearm = simulation->bodies()[0]->id;
