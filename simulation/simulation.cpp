@@ -145,6 +145,7 @@ void Simulation::start(const std::string& initial_state, const Action& first_com
     // In `original` units the same number of true seconds lasts sqrt(1000) times longer.
     const double slowness = std::sqrt(world_force_per_N / physics_.force_per_N);
     advance(settle_duration_s * slowness);
+    robot().step(first_command);  // forces at the lengths it has settled to
   } else if (initial_state == "built") {
     robot().step(first_command);
   } else {

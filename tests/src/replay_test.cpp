@@ -57,7 +57,7 @@ TEST_F(ReplayCommand, ReproducesItsOwnRunsBitForBit) {
 
 TEST_F(ReplayCommand, ShowsTheGapOfAnotherModel) {
   record({});
-  const auto verdict = replay({"--set", "elbow.forearm_kg=0.9"});
+  const auto verdict = replay({"--set", "elbow.forearm_kg=0.7"});
   EXPECT_GT(verdict.at("signals").at("angle_elbow_deg").at("rmse"), 0.1);
 }
 
