@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "musclesim/error.h"
+#include "musclesim/robot/force_law_choice.h"
 #include "musclesim/robot/primitive.h"
 #include "musclesim/simulation/simulation.h"
 #include "musclesim/units.h"
@@ -64,7 +65,7 @@ Actuator::Actuator(dWorldID world, dSpaceID space, const std::vector<Vector>& po
   if (shortest_link_mm < 2 * settings_.bead_radius_mm)
     throw BadParameter("shortest link of " + name_, fmt::format("{:.4g} mm", shortest_link_mm),
                        fmt::format("be at least two bead radii, {} mm", 2 * settings_.bead_radius_mm));
-  law_ = std::make_unique<BraunForceLaw>(minimum_length_mm_, maximum_length_mm_, BraunConstants(simulation_.parameters()));
+  law_ = makeForceLaw(simulation_.parameters(), minimum_length_mm_, maximum_length_mm_);
   buildLinks(dSimpleSpaceCreate(space), points);
   simulation_.actuators_.emplace_back(this);
   updateTension();

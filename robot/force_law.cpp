@@ -15,8 +15,8 @@ double ForceLaw::stiffnessNPerMm(double pressure_ratio, double length_mm) const 
 }
 
 BraunConstants::BraunConstants(Parameters& parameters)
-    : a(parameters.number("force_law.a", BraunConstants().a, "", 0, 10, "Eq. 1: share of the vented muscle's rubber force")),
-      b(parameters.number("force_law.b", BraunConstants().b, "", 0, 50, "Eq. 1: exponent of the rubber force")),
+    : a(parameters.number("force_law.a", BraunConstants().a, "", -1e3, 1e3, "Eq. 1: share of the vented muscle's rubber force")),
+      b(parameters.number("force_law.b", BraunConstants().b, "", -50, 50, "Eq. 1: exponent of the rubber force")),
       c_kgf(parameters.number("force_law.c_kgf", BraunConstants().c_kgf, "kgf", 0, 1e4, "Eq. 1: force at full length and pressure")),
       pressure_maximum_ratio(parameters.number("force_law.pressure_maximum_ratio", 1, "", 1e-3, 1e3, "Eq. 1: p_max, in the unit of p")) {}
 

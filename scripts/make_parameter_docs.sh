@@ -77,8 +77,15 @@ tables() {
     grep -vxF -f <(config --robot rig --controller hold | rows physics) | table
   section 'Muscles and linear actuators'
   config --robot rig --controller hold | rows muscle | table
-  section 'Force law (Eq. 1)'
+  section 'Force laws'
+  echo
+  echo 'All muscles follow the law `force_law.name`. With `braun` (Eq. 1) there are:'
   config --robot rig --controller hold | rows force_law | table
+  for law in chou-hannaford sarosi map; do
+    echo
+    echo "With \`$law\` there are in addition to the first two:"
+    config --robot rig --controller hold --set "force_law.name=$law" | rows force_law | tail -n +3 | table
+  done
   section 'Robot `rig`'
   config --robot rig --controller hold | rows rig | table
   section 'Robot `elbow`'

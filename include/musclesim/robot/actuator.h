@@ -53,8 +53,8 @@ class Actuator {
   void connectStartTo(Primitive* primitive);
   void connectEndTo(Primitive* primitive);
 
-  /// Tension in N, pulling positive, at a pressure (fraction of full scale) and a length. The default asks the force law (Eq. 1);
-  /// a user's own actuator overrides it. A result that is not finite stops the run.
+  /// Tension in N, pulling positive, at a pressure (fraction of full scale) and a length. The default asks the force law (Eq. 1
+  /// unless "force_law.name" says otherwise); a user's own actuator overrides it. A result that is not finite stops the run.
   virtual double calculateForce(double pressure_ratio, double length_mm) const;
 
   /// Throws BadParameter unless the pressure is finite and lies in 0..1.

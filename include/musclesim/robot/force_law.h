@@ -19,7 +19,7 @@ class ForceLaw {
   virtual std::string name() const = 0;
 };
 
-/// Constants of Eq. 1, read from the parameters "force_law.*".
+/// Constants of Eq. 1, read from the parameters "force_law.*". For real muscles a fit may give a and b either sign.
 struct BraunConstants {
   explicit BraunConstants(Parameters& parameters);
   BraunConstants() = default;
