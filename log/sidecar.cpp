@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "columns.h"
+#include "effect_json.h"
 #include "musclesim/error.h"
 #include "musclesim/log/csv.h"
 #include "musclesim/log/json_document.h"
@@ -41,15 +42,6 @@ bool isKnown(const std::string& member) {
   return std::find(knownMembers().begin(), knownMembers().end(), member) != knownMembers().end();
 }
 
-/// A JSON value as it may stand in a message.
-std::string shortText(const json& value) {
-  constexpr std::size_t longest = 40;
-  if (value.is_object()) return "{...}";
-  if (value.is_array()) return "[...]";
-  const std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
-  return text.size() > longest ? text.substr(0, longest) + "..." : text;
-}
-
 /// Reads the members one by one; each function refuses a wrong type or value at its place.
 class SidecarReader {
  public:
@@ -60,7 +52,7 @@ class SidecarReader {
 
  private:
   [[noreturn]] void refuse(const std::string& member, const std::string& path, const json& value, const std::string& allowed) const {
-    document_.refuse(member, fmt::format("{} = {}: must {}", path, shortText(value), allowed));
+    document_.refuse(member, fmt::format("{} = {}: must {}", path, shortJson(value), allowed));
   }
   void requireFormat() const;
   std::string text(const std::string& member, bool required = false) const;
@@ -71,8 +63,6 @@ class SidecarReader {
   void readRobotParameters(const json& values, const std::string& prefix, std::map<std::string, Parameter::Value>& parameters) const;
   void readNoise(RecordingInfo& info) const;
   std::vector<ActiveEffect> effects() const;
-  ActiveEffect effect(const json& value, const std::string& path) const;
-  void readEffectParameters(const json& values, const std::string& path, ActiveEffect& effect) const;
   void keepFurtherMembers(RecordingInfo& info, std::vector<std::string>& notes) const;
 
   JsonDocument document_;
@@ -188,41 +178,11 @@ void SidecarReader::readNoise(RecordingInfo& info) const {
 }
 
 std::vector<ActiveEffect> SidecarReader::effects() const {
-  std::vector<ActiveEffect> list;
   const json* values = document_.find("active_effects");
-  if (!values) return list;
-  if (!values->is_array())
-    refuse("active_effects", "active_effects", *values, "be a list: [{\"id\": ..., \"component\": ..., \"parameters\": {...}}, ...]");
-  for (const auto& value : *values) list.push_back(effect(value, fmt::format("active_effects[{}]", list.size())));
-  return list;
-}
-
-ActiveEffect SidecarReader::effect(const json& value, const std::string& path) const {
-  if (!value.is_object()) refuse("active_effects", path, value, "be an object with the members id, component, parameters");
-  ActiveEffect effect;
-  for (const auto& [key, entry] : value.items()) {
-    const std::string entry_path = path + "." + key;
-    if (key == "parameters") {
-      readEffectParameters(entry, entry_path, effect);
-    } else if (key == "id" || key == "component") {
-      if (!entry.is_string() || entry.get<std::string>().empty())
-        refuse("active_effects", entry_path, entry, "be a string that is not empty");
-      (key == "id" ? effect.id : effect.component) = entry.get<std::string>();
-    } else {
-      refuse("active_effects", entry_path, entry, "be one of the members id, component, parameters");
-    }
-  }
-  if (effect.id.empty()) refuse("active_effects", path, value, "have the member \"id\"");
-  return effect;
-}
-
-void SidecarReader::readEffectParameters(const json& values, const std::string& path, ActiveEffect& effect) const {
-  if (!values.is_object()) refuse("active_effects", path, values, "be an object: {\"name\": number, ...}");
-  for (const auto& [name, value] : values.items()) {
-    const bool is_infinite = value == "inf";
-    if (!value.is_number() && !is_infinite) refuse("active_effects", path + "." + name, value, "be a number or \"inf\"");
-    effect.parameters[name] = is_infinite ? std::numeric_limits<double>::infinity() : value.get<double>();
-  }
+  if (!values) return {};
+  return effectsFromJson(*values, "active_effects", [&](const std::string& path, const json& value, const std::string& allowed) {
+    refuse("active_effects", path, value, allowed);
+  });
 }
 
 void SidecarReader::keepFurtherMembers(RecordingInfo& info, std::vector<std::string>& notes) const {

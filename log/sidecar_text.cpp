@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 
+#include "effect_json.h"
 #include "musclesim/error.h"
 #include "musclesim/log/csv.h"
 #include "musclesim/log/json_document.h"
@@ -14,27 +14,14 @@ namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
-void requireNumber(const std::string& name, double value, bool infinity_allowed = false) {
-  if (std::isfinite(value) || (infinity_allowed && value == std::numeric_limits<double>::infinity())) return;
-  throw BadParameter(name, fmt::format("{}", value), infinity_allowed ? "be a number or infinity" : "be a finite number");
+void requireNumber(const std::string& name, double value) {
+  if (!std::isfinite(value)) throw BadParameter(name, fmt::format("{}", value), "be a finite number");
 }
 
-OrderedJson jsonOf(const std::string& name, const Parameter::Value& value) {
+OrderedJson parameterJson(const std::string& name, const Parameter::Value& value) {
   if (const auto* word = std::get_if<std::string>(&value)) return *word;
   requireNumber(name, std::get<double>(value));
   return std::get<double>(value);
-}
-
-OrderedJson jsonOf(const ActiveEffect& effect) {
-  OrderedJson parameters = OrderedJson::object();
-  for (const auto& [name, value] : effect.parameters) {
-    requireNumber("active_effects." + effect.id + "." + name, value, true);
-    if (std::isinf(value))
-      parameters[name] = "inf";
-    else
-      parameters[name] = value;
-  }
-  return {{"id", effect.id}, {"component", effect.component}, {"parameters", parameters}};
 }
 
 void addNumber(OrderedJson& object, const std::string& name, const std::optional<double>& value) {
@@ -51,14 +38,15 @@ OrderedJson sidecarJson(const RecordingInfo& info) {
   OrderedJson object = {{"format", recording_format}, {"robot", info.robot}};
   addText(object, "physics", info.physics.value_or(""));
   addText(object, "initial_state", info.initial_state.value_or(""));
-  for (const auto& [name, value] : info.robot_parameters) object["robot_parameters"][name] = jsonOf("robot_parameters." + name, value);
+  for (const auto& [name, value] : info.robot_parameters)
+    object["robot_parameters"][name] = parameterJson("robot_parameters." + name, value);
   addText(object, "description", info.description);
   addText(object, "trial", info.trial);
   addText(object, "repeat_of", info.repeat_of);
   addNumber(object, "pressure_full_scale_kPa", info.pressure_full_scale_kPa);
   addNumber(object, "command_full_scale_V", info.command_full_scale_V);
   for (const auto& [name, value] : info.noise_std) addNumber(object["noise_std"], name, value);
-  for (const auto& effect : info.active_effects) object["active_effects"].push_back(jsonOf(effect));
+  if (!info.active_effects.empty()) object["active_effects"] = jsonOf(info.active_effects);
   if (info.seed) object["seed"] = *info.seed;
   addNumber(object, "step_s", info.step_s);
   addText(object, "program", info.program);

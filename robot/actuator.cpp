@@ -200,10 +200,6 @@ void Actuator::placeStraight(const Vector& start_mm, const Vector& end_mm) {
   updateTension();
 }
 
-void Actuator::updatePressure(double) {
-  pressure_ratio_ = command_ratio_;
-}
-
 void Actuator::updateTension() {
   tension_N_ = calculateForce(pressure_ratio_, lengthMm());
 }

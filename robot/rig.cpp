@@ -12,28 +12,36 @@ namespace musclesim {
 Rig::Rig(Simulation& simulation) : Robot(simulation) {
   const double minimum_mm = parameter("rig.minimum_length_mm", 120, "mm", 15, 1e4, "muscle: shortest length");
   const double maximum_mm = parameter("rig.maximum_length_mm", 300, "mm", 15, 1e4, "muscle: longest length");
-  load_kg_ = parameter("rig.load_kg", 2.0, "kg", 1e-4, 1e3, "mass hanging from the muscle");
+  const double load_kg = parameter("rig.load_kg", 2.0, "kg", 1e-4, 1e3, "mass hanging from the muscle");
   const Vector top(0, 0, 0), bottom(0, -(minimum_mm + maximum_mm) / 2, 0);
   muscle_ = new Muscle(world(), space(), top, top + (bottom - top) / 3, top + (bottom - top) * 2 / 3, bottom, minimum_mm, maximum_mm);
   constexpr double drawn_radius_mm = 20;
-  load_ = new Sphere(world(), nullptr, bottom, load_kg_ * g_per_kg, 0, drawn_radius_mm);
+  load_ = new Sphere(world(), nullptr, bottom, load_kg * g_per_kg, 0, drawn_radius_mm);
   load_->setName("load");
   load_->attachSlider(nullptr, Vector::UnitY());
   muscle_->connectStartTo(nullptr);
   muscle_->connectEndTo(load_);
   addActuator(muscle_);
+  setLoad(load_);
 }
 
 void Rig::settle(const Action& first_command) {
-  step(first_command);
-  const double gravity = simulation().physics().gravity_mm_per_s2 / simulation().physics().force_per_N;  // N/g
-  const double weight_N = (load_kg_ * g_per_kg + muscle_->massG() / 2) * gravity;
+  EffectChain& effects = simulation().effects();
+  effects.settlePressures(first_command);
+  const double gravity = -simulation().gravityMmPerS2().y() / simulation().physics().force_per_N;  // N/g
+  dMass load;
+  dBodyGetMass(load_->body().id, &load);
+  const double weight_N = (load.mass + muscle_->massG() / 2) * gravity;
+  auto place = [&](double length_mm) { load_->place({0, -length_mm, 0}, Eigen::Matrix3d::Identity()); };
   const auto stops = muscle_->straightLengthRange();
-  const double length_mm = rootBetween([&](double l) { return muscle_->calculateForce(muscle_->pressure(), l) - weight_N; },
-                                       stops.shortest_mm, stops.longest_mm);
-  const Vector bottom(0, -length_mm, 0);
-  load_->place(bottom, Eigen::Matrix3d::Identity());
-  muscle_->placeStraight(Vector::Zero(), bottom);
+  const double length_mm = rootBetween(
+      [&](double l) {
+        place(l);
+        return effects.restingTensionN(0, l) + effects.restingLoad(*load_).force_N.y() - weight_N;
+      },
+      stops.shortest_mm, stops.longest_mm);
+  place(length_mm);
+  muscle_->placeStraight(Vector::Zero(), {0, -length_mm, 0});
 }
 
 }  // namespace musclesim

@@ -93,6 +93,15 @@ void Robot::addAngle(const std::string& name, const Joint* joint, int axis) {
 void Robot::setHand(const Primitive* primitive, const Vector& offset_mm) {
   hand_ = primitive;
   hand_offset_mm_ = offset_mm;
+  hand_reported_ = true;
+}
+
+void Robot::setLoad(const Primitive* primitive) {
+  hand_ = primitive;
+}
+
+Vector Robot::handMm() const {
+  return hand_->getPosition() + hand_->getRotation() * hand_offset_mm_;
 }
 
 void Robot::settle(const Action&) {
@@ -100,6 +109,12 @@ void Robot::settle(const Action&) {
 }
 
 State Robot::getState() const {
+  State state = truth();
+  simulation_.effects().read(state);
+  return state;
+}
+
+State Robot::truth() const {
   State state;
   state.time_s = simulation_.time_s();
   for (const Actuator* actuator : actuators_) {
@@ -109,7 +124,7 @@ State Robot::getState() const {
     state.length_mm.push_back(actuator->lengthMm());
   }
   for (const Angle& angle : angles_) state.angle_deg.push_back(angle.joint->angleDeg(angle.axis));
-  if (hand_) state.hand_mm = hand_->getPosition() + hand_->getRotation() * hand_offset_mm_;
+  if (hand_reported_) state.hand_mm = handMm();
   return state;
 }
 
@@ -120,11 +135,8 @@ void Robot::step(const Action& action) {
   for (std::size_t i = 0; i < action.size(); ++i)
     if (!std::isfinite(action[i]))
       throw Diverged(simulation_.time_s(), fmt::format("command_{}", i), fmt::format("the commanded pressure is {}", action[i]));
-  for (std::size_t i = 0; i < action.size(); ++i) {
-    actuators_[i]->setPressure(action[i]);
-    actuators_[i]->updatePressure(0);
-    actuators_[i]->updateTension();
-  }
+  for (std::size_t i = 0; i < action.size(); ++i) actuators_[i]->setPressure(action[i]);
+  simulation_.sense();
 }
 
 std::vector<std::string> Robot::signalNames() const {
@@ -132,7 +144,7 @@ std::vector<std::string> Robot::signalNames() const {
   for (const char* form : {"command_{}", "pressure_{}", "force_{}_N", "length_{}_mm"})
     for (std::size_t i = 0; i < actuators_.size(); ++i) names.push_back(fmt::format(fmt::runtime(form), i));
   for (const Angle& angle : angles_) names.push_back("angle_" + angle.name + "_deg");
-  if (hand_)
+  if (hand_reported_)
     for (const char* axis : {"x", "y", "z"}) names.push_back(fmt::format("hand_{}_mm", axis));
   return names;
 }
@@ -141,11 +153,18 @@ std::vector<double> Robot::signalValues(const State& state) const {
   std::vector<double> values;
   for (const auto* quantity : {&state.command, &state.pressure, &state.force_N, &state.length_mm, &state.angle_deg})
     values.insert(values.end(), quantity->begin(), quantity->end());
-  if (hand_) {
+  if (hand_reported_) {
     const Vector hand = state.hand_mm.value_or(Vector::Constant(std::numeric_limits<double>::quiet_NaN()));
     values.insert(values.end(), {hand.x(), hand.y(), hand.z()});
   }
   return values;
+}
+
+void Robot::setSignalValues(const std::vector<double>& values, State& state) const {
+  auto next = values.begin();
+  for (auto* quantity : {&state.command, &state.pressure, &state.force_N, &state.length_mm, &state.angle_deg})
+    for (double& value : *quantity) value = *next++;
+  if (state.hand_mm) *state.hand_mm = Vector(next[0], next[1], next[2]);
 }
 
 }  // namespace musclesim

@@ -43,6 +43,8 @@ SimulationOptions simulationOptionsFor(const RecordingInfo& info, const std::str
   for (const auto& [name, value] : info.robot_parameters)
     result.parameters.set(name.find('.') == std::string::npos ? info.robot + "." + name : name, value, source);
   result.parameters.setAll(options.parameters);
+  result.effects = info.active_effects;
+  result.effects.insert(result.effects.end(), options.effects.begin(), options.effects.end());
   return result;
 }
 
@@ -63,6 +65,7 @@ ReplayResult replayRecording(const Recording& recording, const ReplayOptions& op
   result.simulated.info.step_s = simulation.stepS();
   result.simulated.info.program = "musclesim " MUSCLESIM_VERSION;
   result.simulated.info.noise_std.clear();
+  result.simulated.info.active_effects = simulation.effects().active();
   for (const auto& name : robot.signalNames()) result.simulated.signals.push_back({name, {}});
   try {
     for (std::size_t row = 0; row < recording.time_s.size(); ++row) {

@@ -77,12 +77,14 @@ Simulation::Simulation(SimulationOptions options)
     stepper_ = std::make_unique<OdeStepper>(world_);
   else
     stepper_ = std::make_unique<ChainStepper>(*this, *contacts_, bodyBounds(), options.stepper == StepperKind::chain);
+  effects_ = std::make_unique<EffectChain>(*this, std::move(options.effects));
   makeCurrent();
 }
 
 Simulation::~Simulation() {
   if (current_simulation == this) current_simulation = nullptr;
   controller_.reset();
+  effects_.reset();
   robot_.reset();
   if (faulted_) {
     abandon({world_, space_, std::move(contacts_), std::move(primitives_)});
@@ -122,6 +124,7 @@ Robot& Simulation::build(const std::string& robot_name) {
 Robot& Simulation::adopt(std::unique_ptr<Robot> robot) {
   if (robot_) throw BadParameter("this simulation already has a robot");
   robot_ = std::move(robot);
+  effects_->attach();
   stepper_->prepare();
   return *robot_;
 }
@@ -141,12 +144,15 @@ void Simulation::start(const std::string& initial_state, const Action& first_com
   if (initial_state == "settled") {
     robot().settle(first_command);
     stop();
-    robot().step(first_command);
     // In `original` units the same number of true seconds lasts sqrt(1000) times longer.
     const double slowness = std::sqrt(world_force_per_N / physics_.force_per_N);
+    effects_->begin(-settle_duration_s * slowness);
+    robot().step(first_command);
     advance(settle_duration_s * slowness);
     robot().step(first_command);  // forces at the lengths it has settled to
   } else if (initial_state == "built") {
+    effects_->settlePressures(first_command);
+    effects_->begin(0);
     robot().step(first_command);
   } else {
     throw BadParameter("initial_state", initial_state, "be one of built, settled");
@@ -196,17 +202,28 @@ void Simulation::advance(double duration_s) {
   });
 }
 
+void Simulation::sense() {
+  updateForces(0);
+}
+
+void Simulation::updateForces(double h_s) {
+  effects_->command(h_s);
+  effects_->pressure(h_s);
+  effects_->force(h_s);
+}
+
 void Simulation::internalStep(double h_s) {
-  // A sample's way: command -> pressure -> force -> body. (The sensor stage is Robot::getState.)
-  for (const auto& actuator : actuators_) actuator->updatePressure(h_s);
+  // A sample's way: command -> pressure -> force -> body -> sensor. (Readings are taken in Robot::getState.)
+  updateForces(h_s);
   for (const auto& actuator : actuators_) {
-    actuator->updateTension();
     if (!std::isfinite(actuator->tensionN()))
       throw Diverged(
           internal_time_s_, actuator->name(),
           fmt::format("its tension is {} N at {} mm and pressure {}", actuator->tensionN(), actuator->lengthMm(), actuator->pressure()));
   }
   stepper_->applyForces(actuators_);
+  effects_->body(h_s);
+  effects_->track(h_s);
   auto& messages = ode_runtime::messagesOfThread();
   const long messages_before = messages.count;
   try {
@@ -231,6 +248,12 @@ void Simulation::requireFinite() const {
   for (const auto& actuator : actuators_)
     for (const Link& link : actuator->links())
       for (const dBodyID bead : link.bead) check(bead);
+}
+
+Vector Simulation::gravityMmPerS2() const {
+  dVector3 gravity;
+  dWorldGetGravity(world_, gravity);
+  return fromOde(gravity);
 }
 
 BodyBounds Simulation::bodyBounds() const {

@@ -42,8 +42,9 @@ int parseAndRun(int argument_count, char** arguments) {
   const program::Action run = addRun(app, model);
   CLI::App* replay_command = app.add_subcommand("replay", "Plays a recording's commands through the model and compares");
   const program::Action replay = addReplay(*replay_command, model);
-  refuseEmptyValues(app);
-  refuseEmptyValues(*replay_command);
+  CLI::App* effects_command = app.add_subcommand("effects", "Lists the effects that a clean model leaves out, or describes one");
+  const program::Action effects = addEffects(*effects_command);
+  for (CLI::App* command : {&app, replay_command, effects_command}) refuseEmptyValues(*command);
   try {
     app.parse(argument_count, arguments);
   } catch (const CLI::ParseError& error) {
@@ -51,6 +52,7 @@ int parseAndRun(int argument_count, char** arguments) {
     std::fprintf(stderr, "musclesim: error: %s\nmusclesim --help lists the options\n", error.what());
     return bad_usage;
   }
+  if (effects_command->parsed()) return effects();
   return replay_command->parsed() ? replay() : run();
 }
 

@@ -2,6 +2,8 @@
 
 #include <cstdio>
 
+#include "musclesim/effect/effects_file.h"
+
 namespace musclesim::program {
 
 void addModelOptions(CLI::App& command, ModelOptions& options) {
@@ -30,6 +32,8 @@ void addModelOptions(CLI::App& command, ModelOptions& options) {
       ->group(model)
       ->allow_extra_args(false);
   command.add_option("--config", options.config, "TOML file with named parameters")->group(model);
+  command.add_option("--effects", options.effects, "JSON file with effects that the clean model leaves out (musclesim effects lists them)")
+      ->group(model);
   command.add_flag("--quiet", options.quiet, "No messages on standard error except errors")->group(model);
   command.add_flag("--json", options.json, "Print the verdict as one JSON object, the last line of standard output")->group(model);
 }
@@ -40,6 +44,10 @@ Parameters parametersFrom(const ModelOptions& options) {
   if (options.muscle_count) parameters.set("arm.muscle_count", static_cast<double>(*options.muscle_count), "--muscles");
   for (const auto& assignment : options.set) parameters.setFromText(assignment, "--set");
   return parameters;
+}
+
+std::vector<ActiveEffect> effectsFrom(const ModelOptions& options) {
+  return options.effects ? readEffects(*options.effects) : std::vector<ActiveEffect>();
 }
 
 void say(const ModelOptions& options, const std::string& message) {

@@ -20,7 +20,7 @@ struct ModelOptions {
   bool plane = false;
   std::uint64_t seed = 1;
   std::vector<std::string> set;
-  std::optional<std::string> config;
+  std::optional<std::string> config, effects;
   bool quiet = false, json = false;
 };
 
@@ -29,6 +29,9 @@ void addModelOptions(CLI::App& command, ModelOptions& options);
 
 /// The named parameters: --config first, then --muscles, then --set.
 Parameters parametersFrom(const ModelOptions& options);
+
+/// The effects of --effects; none without it.
+std::vector<ActiveEffect> effectsFrom(const ModelOptions& options);
 
 /// One line to standard error, unless --quiet.
 void say(const ModelOptions& options, const std::string& message);

@@ -29,6 +29,7 @@ ReplayOptions replayOptions(const ModelOptions& model) {
   options.plane = model.plane;
   options.seed = model.seed;
   options.parameters = parametersFrom(model);
+  options.effects = effectsFrom(model);
   return options;
 }
 

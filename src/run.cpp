@@ -90,6 +90,7 @@ class Run {
     options.plane = model.plane;
     options.seed = model.seed;
     options.parameters = parametersFrom(model);
+    options.effects = effectsFrom(model);
     return options;
   }
 

@@ -74,6 +74,7 @@ RecordingInfo describe(Simulation& simulation, const RunOptions& options, const 
   info.initial_state = initial_state;
   info.robot_parameters = robotParameters(simulation);
   info.description = fmt::format("{} under {}, {} task", info.robot, options.controller, options.task);
+  info.active_effects = simulation.effects().active();
   info.seed = simulation.seed();
   info.step_s = simulation.stepS();
   info.program = "musclesim " MUSCLESIM_VERSION;

@@ -42,8 +42,8 @@ TEST(Sidecar, ReadsEveryMember) {
   ASSERT_EQ(info.active_effects.size(), 2u);
   EXPECT_EQ(info.active_effects[0].id, "valve_lag");
   EXPECT_EQ(info.active_effects[0].component, "all");
-  EXPECT_EQ(info.active_effects[0].parameters.at("fill_time_constant_s"), 0.08);
-  EXPECT_EQ(info.active_effects[0].parameters.at("limit"), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(info.active_effects[0].parameters.at("fill_time_constant_s"), Parameter::Value(0.08));
+  EXPECT_EQ(info.active_effects[0].parameters.at("limit"), Parameter::Value(std::numeric_limits<double>::infinity()));
   EXPECT_EQ(info.active_effects[1].component, "hand");
   EXPECT_EQ(info.seed, std::numeric_limits<std::uint64_t>::max());
   EXPECT_EQ(info.step_s, 0.0005);
@@ -92,7 +92,7 @@ TEST(Sidecar, WrongTypesAndValuesAreRefusedAtTheirPlace) {
       {R"("active_effects": [{"component": "all"}])", {"active_effects[0]", "\"id\""}},
       {R"("active_effects": [{"id": "a"}, {"id": 3}])", {"active_effects[1].id"}},
       {R"("active_effects": [{"id": "a", "strength": 3}])", {"active_effects[0].strength", "id, component, parameters"}},
-      {R"("active_effects": [{"id": "a", "parameters": {"x": "big"}}])", {"active_effects[0].parameters.x", "\"inf\""}},
+      {R"("active_effects": [{"id": "a", "parameters": {"x": true}}])", {"active_effects[0].parameters.x", "\"inf\""}},
       {R"("active_effects": [{"id": "a", "parameters": [1]}])", {"active_effects[0].parameters", "object"}},
   };
   for (auto [member, words] : cases) {
@@ -124,7 +124,7 @@ TEST(Sidecar, TextReadsBackToTheSame) {
   info.robot_parameters = {{"forearm_kg", 0.1 + 0.2}, {"force_law", std::string("braun")}, {"force_law.a", -1e-300}};
   info.description = "\"quotes\", \u00FCml\u00E4ute\nand a line break";
   info.noise_std = {{"angle_elbow_deg", 1.0 / 3}};
-  info.active_effects = {{"stop", "elbow", {{"stiffness", std::numeric_limits<double>::infinity()}, {"gap_mm", 0.5}}}};
+  info.active_effects = {{"stop", "elbow", {{"stiffness", std::numeric_limits<double>::infinity()}, {"gap_mm", 0.5}, {"axis", "y"}}}};
   info.seed = std::numeric_limits<std::uint64_t>::max();
   info.step_s = 0.01;
   info.complete = true;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "musclesim/effect/active_effect.h"
 #include "musclesim/parameters.h"
 
 namespace musclesim {
@@ -17,13 +18,6 @@ namespace musclesim {
 struct Signal {
   std::string name;  ///< canonical column name, for example "length_0_mm", "command_3", "angle_elbow_deg", "hand_y_mm", "activity"
   std::vector<double> values;
-};
-
-/// An effect that the simulator must include when it replays the recording (part of the model, not of the gap).
-struct ActiveEffect {
-  std::string id;
-  std::string component = "all";
-  std::map<std::string, double> parameters;
 };
 
 /// The sidecar. Only `format` and `robot` are required in the file.
@@ -35,7 +29,7 @@ struct RecordingInfo {
   std::string description, trial, repeat_of, program;
   std::optional<double> pressure_full_scale_kPa, command_full_scale_V;
   std::map<std::string, double> noise_std;
-  std::vector<ActiveEffect> active_effects;
+  std::vector<ActiveEffect> active_effects;  ///< what the simulator must include when it replays the recording: model, not gap
   std::optional<std::uint64_t> seed;
   std::optional<double> step_s;
   std::optional<bool> complete;  ///< false while a run is being recorded and after one that stopped early; absent: not known

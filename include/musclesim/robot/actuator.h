@@ -91,10 +91,11 @@ class Actuator {
   /// than the links' beads or not finite.
   void placeStraight(const Vector& start_mm, const Vector& end_mm);
 
-  /// Pressure stage for one internal step of h_s seconds: without effects the pressure is the command.
-  void updatePressure(double h_s);
-  /// Force stage: tension from pressure and length at present.
+  /// Pressure stage: the pressure that is now in the muscle, fraction of full scale.
+  void takePressure(double pressure_ratio) { pressure_ratio_ = pressure_ratio; }
+  /// Force stage: tension from pressure and length at present; where effects act on it, the tension that they make of it.
   void updateTension();
+  void takeTension(double tension_N) { tension_N_ = tension_N; }
   /// Hands the tension to the sliders and sets the hinges' stops, for ODE's steppers.
   void applyForces();
   /// The hinges' stops at present, at minus and plus this angle.

@@ -13,17 +13,19 @@ namespace musclesim {
 class Elbow : public Robot {
  public:
   explicit Elbow(Simulation& simulation);
-  /// Frictionless equilibrium of the muscles' and gravity's torques about the hinge, between the stops.
+  /// Frictionless equilibrium of all torques about the hinge, those of effects included, between the stops.
   void settle(const Action& first_command) override;
   std::string initialState() const override { return "settled"; }
 
  private:
-  double torqueNmm(double angle_rad, const Action& command) const;
+  void placeForearm(double angle_rad);
+  double torqueNmm(double angle_rad);
   Vector lowerAttachment(double side, double angle_rad) const;
   Vector upperAttachment(double side) const;
 
-  double forearm_kg_, center_of_mass_mm_, stop_deg_, lever_mm_, lower_mm_, upper_mm_;
+  double lever_mm_, lower_mm_, upper_mm_;
   Primitive* forearm_;
+  Joint* hinge_;
   Actuator* muscles_[2];
 };
 

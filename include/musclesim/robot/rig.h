@@ -10,12 +10,11 @@ namespace musclesim {
 class Rig : public Robot {
  public:
   explicit Rig(Simulation& simulation);
-  /// Frictionless equilibrium F(p, l) = (load + chain/2) g with l between the stops.
+  /// Frictionless equilibrium F(p, l) = (load + chain/2) g with l between the stops; with all effects.
   void settle(const Action& first_command) override;
   std::string initialState() const override { return "settled"; }
 
  private:
-  double load_kg_;
   Actuator* muscle_;
   Primitive* load_;
 };

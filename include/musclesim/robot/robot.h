@@ -28,8 +28,10 @@ class Robot {
   Robot& operator=(const Robot&) = delete;
 
   /// Sensor stage: the readings at present. Lengths, angles and positions are those of the time; pressures and forces those after the last
-  /// command began to act.
+  /// command began to act. Without effects of this stage they are the truth.
   virtual State getState() const;
+  /// The true state at present.
+  State truth() const;
   /// Command stage: sets the pressures that hold until the next call. Throws BadParameter for a wrong number of them or one outside 0..1,
   /// Diverged for one that is not finite.
   virtual void step(const Action& action);
@@ -46,6 +48,20 @@ class Robot {
   std::vector<std::string> signalNames() const;
   /// The values of a state in the order of signalNames().
   std::vector<double> signalValues(const State& state) const;
+  /// The same backwards.
+  void setSignalValues(const std::vector<double>& values, State& state) const;
+
+  /// A joint whose angle is reported.
+  struct Angle {
+    std::string name;
+    const Joint* joint;
+    int axis;
+  };
+  const std::vector<Angle>& angles() const { return angles_; }
+  /// The primitive with the hand or, where none is reported, the load; null if there is neither.
+  const Primitive* hand() const { return hand_; }
+  /// The hand's point in the world, mm.
+  Vector handMm() const;
   const std::string& name() const { return name_; }
 
   /// Registers a robot class under a name; a later registration of the same name replaces the earlier one.
@@ -73,13 +89,10 @@ class Robot {
   void addAngle(const std::string& name, const Joint* joint, int axis = 0);
   /// The reported point: a point of a primitive's body, given in the body's frame relative to its centre of mass, mm.
   void setHand(const Primitive* primitive, const Vector& offset_mm = Vector::Zero());
+  /// A primitive whose centre carries what effects hang on the hand, but is not reported.
+  void setLoad(const Primitive* primitive);
 
  private:
-  struct Angle {
-    std::string name;
-    const Joint* joint;
-    int axis;
-  };
   using Factory = std::function<std::unique_ptr<Robot>(Simulation&)>;
   struct Registered {
     std::string description;
@@ -92,6 +105,7 @@ class Robot {
   std::vector<Actuator*> actuators_;
   std::vector<Angle> angles_;
   const Primitive* hand_ = nullptr;
+  bool hand_reported_ = false;
   Vector hand_offset_mm_ = Vector::Zero();
   std::string name_ = "robot";
 };

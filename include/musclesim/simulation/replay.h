@@ -19,7 +19,8 @@ struct ReplayOptions {
   int substeps = 0;
   bool plane = false;
   std::uint64_t seed = 1;
-  Parameters parameters;  ///< wins over the sidecar's robot_parameters
+  Parameters parameters;              ///< wins over the sidecar's robot_parameters
+  std::vector<ActiveEffect> effects;  ///< besides the sidecar's active_effects
 };
 
 /// Difference of one signal, simulated minus recorded, over the samples where both are numbers.
@@ -41,8 +42,10 @@ struct ReplayResult {
 /// Options for a simulation of the recording's plant: physics, step, parameters of the robot.
 SimulationOptions simulationOptionsFor(const RecordingInfo& info, const std::string& source, const ReplayOptions& options = {});
 
-/// Simulates the plant of a recording under its commands, each held until the next row.
-/// Throws BadParameter if the robot has another number of muscles than the recording has commands, or for parameters unknown to the model.
+/// Simulates the plant of a recording under its commands, each held until the next row, with its active effects and those of the options.
+/// The simulated recording names both as its active effects. Each call builds a simulation of its own, so that any number can run in as
+/// many threads. Throws BadParameter if the robot has another number of muscles than the recording has commands, or for parameters unknown
+/// to the model.
 ReplayResult replayRecording(const Recording& recording, const ReplayOptions& options = {});
 
 /// Error of every signal of `simulated` that `measured` also has, row by row; commands are not compared.

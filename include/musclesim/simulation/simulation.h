@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "musclesim/controller/controller.h"
+#include "musclesim/effect/active_effect.h"
+#include "musclesim/effect/effect_chain.h"
 #include "musclesim/error.h"
 #include "musclesim/parameters.h"
 #include "musclesim/robot/actuator.h"
@@ -30,7 +32,8 @@ struct SimulationOptions {
   int substeps = 0;      ///< internal steps per control step; 0: as many as the stepper needs
   bool plane = false;    ///< a ground plane at the height of the parameter "world.plane_height_mm"
   std::uint64_t seed = 1;
-  Parameters parameters;  ///< overrides by name
+  Parameters parameters;              ///< overrides by name
+  std::vector<ActiveEffect> effects;  ///< what the clean model leaves out
 };
 
 /// The largest distance by which a joint is torn.
@@ -62,9 +65,11 @@ class Simulation {
 
   /// Puts the robot into its initial state for the first command and sets the time to 0.
   /// "built": the pose as built, at rest. "settled": at rest at the frictionless equilibrium for the command, then 0.5 s with the command
-  /// held. Throws BadParameter for another name or a robot that cannot settle.
+  /// held; effects are part of the equilibrium. Throws BadParameter for another name or a robot that cannot settle.
   void start(const std::string& initial_state, const Action& first_command);
 
+  /// Pressures and tensions as they are now that new commands have been set: nothing moves on.
+  void sense();
   /// One control step: pressures, forces, then the bodies, in as many internal steps as were set at construction.
   /// Throws Diverged with time, place and cause; the world is then frozen as it was, and further steps throw the same again.
   void step();
@@ -86,6 +91,9 @@ class Simulation {
   dWorldID world() const { return world_; }
   dSpaceID space() const { return space_; }
   Robot& robot();
+  EffectChain& effects() { return *effects_; }
+  /// Acceleration of a falling body, world units; effects may turn it.
+  Vector gravityMmPerS2() const;
   Controller* controller() { return controller_.get(); }
 
   const std::vector<std::unique_ptr<Primitive>>& primitives() const { return primitives_; }
@@ -123,6 +131,7 @@ class Simulation {
   template <class Function>
   void untilDiverged(const Function& move);
   void internalStep(double h_s);
+  void updateForces(double h_s);
   void requireFinite() const;
   BodyBounds bodyBounds() const;
   void requireWhole();
@@ -151,6 +160,7 @@ class Simulation {
   std::unique_ptr<Contacts> contacts_;
   std::unique_ptr<Stepper> stepper_;
   std::unique_ptr<Robot> robot_;
+  std::unique_ptr<EffectChain> effects_;
   std::unique_ptr<Controller> controller_;
 };
 

@@ -1,0 +1,85 @@
+#include "musclesim/effect/effect.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <stdexcept>
+
+#include "../robot/ode_vector.h"
+#include "musclesim/effect/effect_chain.h"
+#include "musclesim/error.h"
+#include "musclesim/robot/robot.h"
+#include "musclesim/simulation/simulation.h"
+#include "musclesim/units.h"
+
+namespace musclesim {
+
+std::string nameOf(Stage stage) {
+  static const char* const names[] = {"command", "pressure", "force", "body", "sensor"};
+  return names[static_cast<std::size_t>(stage)];
+}
+
+double EffectValues::operator[](const std::string& name) const {
+  for (std::size_t i = 0; i < parameters_->size(); ++i)
+    if ((*parameters_)[i].name == name) return values_[i];
+  throw std::logic_error("there is no parameter " + name + " in the effect's list");
+}
+
+void MuscleRatioEffect::attach(const EffectPlace& place) {
+  simulation_ = &place.simulation;
+  muscle_ = static_cast<std::size_t>(place.muscle);
+  actuator_ = place.robot.actuators()[muscle_];
+}
+
+void MuscleRatioEffect::apply(std::vector<double>& ratios, const Moment& moment) {
+  ratios[muscle_] = output(ratios[muscle_], moment);
+}
+
+void MuscleRatioEffect::settle(std::vector<double>& ratios) {
+  ratios[muscle_] = settled(ratios[muscle_]);
+}
+
+double MuscleRatioEffect::lengthRateMmPerS() const {
+  return simulation_->effects().lengthRateMmPerS(muscle_);
+}
+
+void ForceEffect::attach(const EffectPlace& place) {
+  simulation_ = &place.simulation;
+  actuator_ = place.robot.actuators()[static_cast<std::size_t>(place.muscle)];
+}
+
+void JointEffect::attach(const EffectPlace& place) {
+  for (const auto& angle : place.robot.angles())
+    if (angle.name == place.joint) joint_ = angle.joint;
+  if (!joint_ || joint_->kind() != Joint::Kind::hinge)
+    throw BadParameter(fmt::format("effect on {}: it is not a hinge with one axis", place.component));
+  force_per_N_ = place.simulation.physics().force_per_N;
+}
+
+double JointEffect::angleDeg() const {
+  return joint_->angleDeg();
+}
+
+double JointEffect::rateRadPerS() const {
+  return dJointGetHingeAngleRate(joint_->id());
+}
+
+void JointEffect::addTorqueNm(double torque_Nm) const {
+  dJointAddHingeTorque(joint_->id(), torque_Nm * mm_per_m * force_per_N_);
+}
+
+void HandEffect::attach(const EffectPlace& place) {
+  robot_ = &place.robot;
+  force_per_N_ = place.simulation.physics().force_per_N;
+}
+
+Vector HandEffect::pointMm() const {
+  return robot_->handMm();
+}
+
+void HandEffect::addForceN(const Vector& force_N) const {
+  const Vector force = force_N * force_per_N_, point = pointMm();
+  dBodyAddForceAtPos(robot_->hand()->body().id, force.x(), force.y(), force.z(), point.x(), point.y(), point.z());
+}
+
+}  // namespace musclesim

@@ -1,0 +1,46 @@
+/// The catalogue of effects: one id per physical cause.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "musclesim/effect/active_effect.h"
+#include "musclesim/effect/effect.h"
+
+namespace musclesim {
+
+/// Everything about an effect that does not need a simulation. What `musclesim effects ID` prints and a fit needs to know.
+struct EffectInfo {
+  std::string id;
+  Stage stage = Stage::command;
+  std::vector<ComponentKind> acts_on;
+  std::string summary;    ///< a few words
+  std::string equation;   ///< with its letters explained
+  std::string signature;  ///< what tells it from look-alikes
+  std::string source;
+  std::vector<EffectParameter> parameters;
+  std::function<std::unique_ptr<Effect>(const EffectValues&)> make;
+};
+
+/// All effects in the order in which they act within their stages: those of the library, then registered ones.
+std::vector<EffectInfo> effectCatalogue();
+/// Throws BadParameter with the nearest id if there is none of that id.
+EffectInfo effectInfo(const std::string& id);
+/// Adds an effect to the catalogue; a later registration of the same id replaces the earlier one. Throws BadParameter for an entry without
+/// id, component or factory, or with parameters whose neutral value lies outside their range.
+void registerEffect(EffectInfo info);
+
+/// The values of all parameters, neutral where none is given. Throws BadParameter for an unknown name, a value out of range or not a
+/// number.
+std::vector<double> effectValues(const EffectInfo& info, const ActiveEffect& effect);
+/// Whether the values change nothing: all parameters that are not shape parameters are neutral. Effects without parameters are never.
+bool isNeutral(const EffectInfo& info, const std::vector<double>& values);
+/// The entry of an effects file with these values, in the order of info.parameters.
+ActiveEffect activeEffect(const EffectInfo& info, const std::string& component, const std::vector<double>& values);
+
+/// The components of a robot that the effect can act on, "all" first where there are several; empty if there is none.
+std::vector<std::string> componentsFor(const EffectInfo& info, const Robot& robot);
+
+}  // namespace musclesim

@@ -1,0 +1,110 @@
+/// For every effect of the catalogue: neutral is no effect bit for bit, on all robots; the effect is felt where it is not neutral.
+#include <algorithm>
+#include <map>
+
+#include "effect_runs.h"
+#include "musclesim/error.h"
+#include "support/support.h"
+
+namespace musclesim {
+namespace {
+
+double durationFor(const std::string& robot) {
+  return robot == "arm" ? 0.05 : 0.4;
+}
+
+/// The clean run of a robot, made once.
+const ReplayResult& cleanRun(const std::string& robot) {
+  static std::map<std::string, ReplayResult> runs;
+  const auto found = runs.find(robot);
+  if (found != runs.end()) return found->second;
+  return runs[robot] = replayRecording(wavesFor(robot, durationFor(robot)));
+}
+
+std::vector<std::string> componentsOf(const EffectInfo& info, const std::string& robot) {
+  Simulation simulation;
+  return componentsFor(info, simulation.build(robot));
+}
+
+/// All parameters neutral but those that only say how.
+ActiveEffect neutralEffect(const EffectInfo& info, const std::string& component) {
+  std::vector<double> values;
+  for (const EffectParameter& p : info.parameters) values.push_back(p.shape ? p.usual_high : p.neutral);
+  return activeEffect(info, component, values);
+}
+
+/// As strong as is usual.
+ActiveEffect usualEffect(const EffectInfo& info, const std::string& component) {
+  std::vector<double> values;
+  for (const EffectParameter& p : info.parameters) values.push_back(p.shape ? p.neutral : p.usual_high);
+  return activeEffect(info, component, values);
+}
+
+class EveryEffect : public ::testing::TestWithParam<std::string> {
+ protected:
+  EffectInfo info = effectInfo(GetParam());
+};
+
+TEST_P(EveryEffect, IsNoEffectBitForBitWhereNeutral) {
+  if (info.parameters.empty()) GTEST_SKIP() << "has no parameters, so no neutral setting";
+  for (const char* robot : {"rig", "elbow", "arm"}) {
+    SCOPED_TRACE(robot);
+    const std::vector<std::string> components = componentsOf(info, robot);
+    if (components.empty()) continue;
+    const ReplayResult& clean = cleanRun(robot);
+    const ReplayResult neutral =
+        replayWith(wavesFor(robot, durationFor(robot)), {neutralEffect(info, components.front()), neutralEffect(info, components.back())});
+    expectSame(neutral.simulated, clean.simulated);
+  }
+}
+
+TEST_P(EveryEffect, IsFeltWhereItIsNot) {
+  for (const char* robot : {"rig", "elbow", "arm"}) {
+    SCOPED_TRACE(robot);
+    const std::vector<std::string> components = componentsOf(info, robot);
+    if (components.empty()) continue;
+    const ReplayResult run = replayWith(wavesFor(robot, durationFor(robot)), {usualEffect(info, components.front())});
+    ASSERT_FALSE(run.divergence) << *run.divergence;
+    double largest = 0;
+    for (const SignalError& error : compareSignals(run.simulated, cleanRun(robot).simulated)) largest = std::max(largest, error.largest);
+    EXPECT_GT(largest, 0);
+  }
+}
+
+TEST_P(EveryEffect, HasParametersThatAreRefusedOutOfRangeOrNotANumber) {
+  const double nan = std::nan("");
+  for (const EffectParameter& p : info.parameters) {
+    for (const double value : {nan, std::nextafter(p.minimum, -INFINITY), std::nextafter(p.maximum, INFINITY)}) {
+      if (value == p.minimum || value == p.maximum) continue;  // no bound
+      const std::string message = messageOf<BadParameter>([&] { effectValues(info, {info.id, "all", {{p.name, value}}}); });
+      EXPECT_TRUE(contains(message, info.id + "." + p.name));
+    }
+    EXPECT_LE(p.usual_low, p.usual_high) << p.name;
+    EXPECT_GE(p.usual_low, p.minimum) << p.name;
+    EXPECT_LE(p.usual_high, p.maximum) << p.name;
+    EXPECT_FALSE(p.meaning.empty()) << p.name;
+  }
+  EXPECT_FALSE(info.equation.empty());
+  EXPECT_FALSE(info.source.empty());
+  EXPECT_FALSE(info.signature.empty());
+}
+
+TEST_P(EveryEffect, IsRefusedOnAComponentThatTheRobotDoesNotHave) {
+  const std::string message = messageOf<BadParameter>([&] {
+    SimulationOptions options;
+    options.effects = {{info.id, "muscle_77", {}}};
+    Simulation(options).build("elbow");
+  });
+  EXPECT_TRUE(contains(message, "component of " + info.id));
+}
+
+std::vector<std::string> allIds() {
+  std::vector<std::string> ids;
+  for (const EffectInfo& info : effectCatalogue()) ids.push_back(info.id);
+  return ids;
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalogue, EveryEffect, ::testing::ValuesIn(allIds()), [](const auto& place) { return place.param; });
+
+}  // namespace
+}  // namespace musclesim
