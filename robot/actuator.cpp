@@ -9,6 +9,7 @@
 
 #include "musclesim/error.h"
 #include "musclesim/robot/force_law_choice.h"
+#include "musclesim/robot/line_of_pull.h"
 #include "musclesim/robot/primitive.h"
 #include "musclesim/simulation/simulation.h"
 #include "musclesim/units.h"
@@ -22,7 +23,14 @@ MuscleSettings::MuscleSettings(Parameters& p)
       slider_friction_N(p.number("muscle.slider_friction_N", 1, "N", 0, 1e3, "dry friction of each link's slider")),
       hinge_friction_Nm(p.number("muscle.hinge_friction_Nm", 0.008, "N m", 0, 10, "dry friction of each hinge between links")),
       hinge_limit_deg(p.number("muscle.hinge_limit_deg", 60, "deg", 0, 180, "stops of the hinges at full length")),
-      hinge_bounce_ratio(p.number("muscle.hinge_bounce_ratio", 0.2, "", 0, 1, "restitution of the hinges' stops")) {}
+      hinge_bounce_ratio(p.number("muscle.hinge_bounce_ratio", 0.2, "", 0, 1, "restitution of the hinges' stops")),
+      viscous(p.choice("muscle.joint_friction", "coulomb", {"coulomb", "viscous"},
+                       "friction of sliders and hinges: constant, or growing with the speed") == "viscous"),
+      slider_viscous_speed_mm_per_s(p.number("muscle.slider_viscous_speed_mm_per_s", 200, "mm/s", 0.1, 1e6,
+                                             "speed at which viscous friction of a slider equals its dry friction")),
+      hinge_viscous_speed_rad_per_s(p.number("muscle.hinge_viscous_speed_rad_per_s", 8, "rad/s", 0.01, 1e5,
+                                             "speed at which viscous friction of a hinge equals its dry friction")),
+      line(p.choice("muscle.model", "chain", {"chain", "line"}, "chains of beads, or massless straight lines") == "line") {}
 
 namespace {
 
@@ -66,16 +74,30 @@ Actuator::Actuator(dWorldID world, dSpaceID space, const std::vector<Vector>& po
     throw BadParameter("shortest link of " + name_, fmt::format("{:.4g} mm", shortest_link_mm),
                        fmt::format("be at least two bead radii, {} mm", 2 * settings_.bead_radius_mm));
   law_ = makeForceLaw(simulation_.parameters(), minimum_length_mm_, maximum_length_mm_);
-  buildLinks(dSimpleSpaceCreate(space), points);
+  if (settings_.line)
+    line_ = std::make_unique<LineOfPull>(start_mm_, end_mm_);
+  else
+    buildLinks(dSimpleSpaceCreate(space), points);
   simulation_.actuators_.emplace_back(this);
   updateTension();
 }
 
 Actuator::~Actuator() = default;
 
+/// Dry friction is a motor at rest with a largest force; viscous friction one without, softened to `force` at `speed`.
+void Actuator::setFriction(dJointID joint, double force, double speed) const {
+  const bool slider = dJointGetType(joint) == dJointTypeSlider;
+  const auto set = [&](int which, double value) {
+    slider ? dJointSetSliderParam(joint, which, value) : dJointSetHingeParam(joint, which, value);
+  };
+  set(dParamFMax, settings_.viscous && force > 0 ? dInfinity : force);
+  if (settings_.viscous && force > 0) set(dParamCFM, speed / force);
+}
+
 void Actuator::buildLinks(dSpaceID beads, const std::vector<Vector>& points) {
   const dWorldID world = simulation_.world();
   const double force_per_N = simulation_.physics().force_per_N;
+  const double speed_ratio = std::sqrt(force_per_N / world_force_per_N);  // the original's world is slower
   const int count = static_cast<int>(points.size()) - 1;
   for (int i = 0; i < count; ++i) {
     const Vector along = points[i + 1] - points[i];
@@ -94,7 +116,7 @@ void Actuator::buildLinks(dSpaceID beads, const std::vector<Vector>& points) {
     dJointSetSliderParam(slider, dParamLoStop, length_mm - maximum_length_mm_ / count);
     dJointSetSliderParam(slider, dParamHiStop, length_mm - 2 * settings_.bead_radius_mm);
     dJointSetSliderParam(slider, dParamVel, 0);
-    dJointSetSliderParam(slider, dParamFMax, settings_.slider_friction_N * force_per_N);
+    setFriction(slider, settings_.slider_friction_N * force_per_N, settings_.slider_viscous_speed_mm_per_s * speed_ratio);
     link.slider = &simulation_.addJoint(Joint::Kind::slider, slider, fmt::format("slider {} of {}", i, name_));
     if (i > 0) {
       const Vector axis = hingeAxisAfter((points[i] - points[i - 1]).normalized());
@@ -103,7 +125,7 @@ void Actuator::buildLinks(dSpaceID beads, const std::vector<Vector>& points) {
       dJointSetHingeAnchor(hinge, points[i].x(), points[i].y(), points[i].z());
       dJointSetHingeAxis(hinge, axis.x(), axis.y(), axis.z());
       dJointSetHingeParam(hinge, dParamVel, 0);
-      dJointSetHingeParam(hinge, dParamFMax, settings_.hinge_friction_Nm * mm_per_m * force_per_N);
+      setFriction(hinge, settings_.hinge_friction_Nm * mm_per_m * force_per_N, settings_.hinge_viscous_speed_rad_per_s * speed_ratio);
       dJointSetHingeParam(hinge, dParamBounce, settings_.hinge_bounce_ratio);
       hinges_.push_back(&simulation_.addJoint(Joint::Kind::hinge, hinge, fmt::format("hinge {} of {}", i - 1, name_)));
     }
@@ -123,13 +145,21 @@ Joint* Actuator::connect(dBodyID bead, const Vector& anchor, Primitive* primitiv
 }
 
 void Actuator::connectStartTo(Primitive* primitive) {
+  if (line_) return line_->connect(LineOfPull::End::start, primitive, name_);
   if (start_joint_) throw BadParameter("the start of " + name_ + " is already connected");
   start_joint_ = connect(links_.front().bead[0], start_mm_, primitive, "start");
 }
 
 void Actuator::connectEndTo(Primitive* primitive) {
+  if (line_) return line_->connect(LineOfPull::End::end, primitive, name_);
   if (end_joint_) throw BadParameter("the end of " + name_ + " is already connected");
   end_joint_ = connect(links_.back().bead[1], end_mm_, primitive, "end");
+}
+
+void Actuator::addViaPoint(Primitive* primitive, const Vector& point_mm) {
+  if (!line_) throw BadParameter("via points are for line muscles (muscle.model = line), and " + name_ + " is a chain");
+  line_->addViaPoint(primitive, point_mm);
+  updateTension();
 }
 
 double Actuator::calculateForce(double pressure_ratio, double length_mm) const {
@@ -157,6 +187,7 @@ void Actuator::setName(const std::string& name) {
 }
 
 double Actuator::lengthMm() const {
+  if (line_) return line_->lengthMm();
   double sum_mm = 0;
   for (const Link& link : links_) sum_mm += (positionOf(link.bead[0]) - positionOf(link.bead[1])).norm();
   return sum_mm + static_cast<double>(links_.size()) * 2 * settings_.bead_radius_mm;
@@ -171,10 +202,12 @@ double Actuator::massG() const {
 }
 
 Actuator::LengthRange Actuator::straightLengthRange() const {
+  if (line_) return {minimum_length_mm_, maximum_length_mm_};
   return {static_cast<double>(links_.size()) * 2 * settings_.bead_radius_mm, maximum_length_mm_};
 }
 
 void Actuator::placeStraight(const Vector& start_mm, const Vector& end_mm) {
+  if (line_) return updateTension();
   const double radius = settings_.bead_radius_mm;
   const auto count = static_cast<double>(links_.size());
   const Vector along = end_mm - start_mm;
@@ -198,24 +231,6 @@ void Actuator::placeStraight(const Vector& start_mm, const Vector& end_mm) {
     }
   }
   updateTension();
-}
-
-void Actuator::updateTension() {
-  tension_N_ = calculateForce(pressure_ratio_, lengthMm());
-}
-
-double Actuator::hingeStopRad() const {
-  return settings_.hinge_limit_deg * rad_per_deg * lengthRatio();
-}
-
-void Actuator::applyForces() {
-  const double force = tension_N_ * simulation_.physics().force_per_N;
-  for (const Link& link : links_) dJointAddSliderForce(link.slider->id(), force);
-  const double stop_rad = hingeStopRad();
-  for (const Joint* hinge : hinges_) {
-    dJointSetHingeParam(hinge->id(), dParamLoStop, -stop_rad);
-    dJointSetHingeParam(hinge->id(), dParamHiStop, stop_rad);
-  }
 }
 
 }  // namespace musclesim

@@ -3,10 +3,18 @@
 namespace musclesim {
 
 Contacts::Contacts(dWorldID world, dSpaceID space, double friction_limit)
-    : world_(world), space_(space), friction_limit_(friction_limit), joints_(dJointGroupCreate(0)) {}
+    : world_(world), space_(space), friction_limit_(friction_limit), joints_(dJointGroupCreate(0)) {
+  surface_.mu = friction_limit_;
+}
 
 Contacts::~Contacts() {
   dJointGroupDestroy(joints_);
+}
+
+void Contacts::soften(double error_reduction, double softness) {
+  surface_.mode = dContactSoftERP | dContactSoftCFM;
+  surface_.soft_erp = error_reduction;
+  surface_.soft_cfm = softness;
 }
 
 void Contacts::collide() {
@@ -27,8 +35,7 @@ void Contacts::add(dGeomID first, dGeomID second) {
   // Contact joints made earlier in this step count: one contact per pair of bodies.
   if (first_body && second_body && dAreConnected(first_body, second_body)) return;
   dContact contact = {};
-  contact.surface.mode = 0;
-  contact.surface.mu = friction_limit_;
+  contact.surface = surface_;
   if (dCollide(first, second, 1, &contact.geom, sizeof(dContact)) == 0) return;
   const dJointID joint = dJointCreateContact(world_, joints_, &contact);
   dJointAttach(joint, first_body, second_body);

@@ -23,6 +23,8 @@ class Contacts {
 
   /// Finds all contacts in the present pose and makes their joints; those of the step before are removed.
   void collide();
+  /// Error reduction and softness of contacts from now on, in ODE's terms; without them they are the world's.
+  void soften(double error_reduction, double softness);
   int count() const { return static_cast<int>(points_.size()); }
   const std::vector<ContactPoint>& points() const { return points_; }
   double frictionLimit() const { return friction_limit_; }
@@ -34,6 +36,7 @@ class Contacts {
   dWorldID world_;
   dSpaceID space_;
   double friction_limit_;
+  dSurfaceParameters surface_ = {};
   dJointGroupID joints_;
   std::vector<ContactPoint> points_;
 };

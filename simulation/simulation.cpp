@@ -9,6 +9,7 @@
 #include "../robot/ode_vector.h"
 #include "chain/chain_stepper.h"
 #include "contacts.h"
+#include "internal_step.h"
 #include "musclesim/error.h"
 #include "musclesim/units.h"
 #include "ode_runtime.h"
@@ -56,12 +57,13 @@ Simulation::Simulation(SimulationOptions options)
   ode_runtime::prepareThread();
   if (options.substeps < 0 || options.substeps > 1000000)
     throw BadParameter("substeps", fmt::format("{}", options.substeps), "be a whole number in 1 .. 1000000, or 0 for automatic");
-  substeps_ = options.substeps > 0 ? options.substeps
-                                   : static_cast<int>(std::max(1.0, std::ceil(step_s_ / physics_.longest_internal_step_s - 1e-9)));
+  substeps_given_ = options.substeps > 0;
+  substeps_ = substeps_given_ ? options.substeps : automaticSubsteps(step_s_, physics_, {});
   world_ = dWorldCreate();
   dWorldSetData(world_, this);
   dWorldSetGravity(world_, 0, -physics_.gravity_mm_per_s2, 0);
-  dWorldSetERP(world_, physics_.errorReductionPerStep(internalStepS()));
+  error_reduction_ = physics_.errorReductionPerStep(internalStepS());
+  dWorldSetERP(world_, error_reduction_);
   dWorldSetCFM(world_, physics_.constraint_force_mixing);
   // The kind of space decides which of two bodies' several contacts counts. The published program has a hash table, which allocates memory
   // and is slower for robots of this size.
@@ -125,8 +127,19 @@ Robot& Simulation::adopt(std::unique_ptr<Robot> robot) {
   if (robot_) throw BadParameter("this simulation already has a robot");
   robot_ = std::move(robot);
   effects_->attach();
+  prepareSteps();
   stepper_->prepare();
   return *robot_;
+}
+
+/// Sets the length of internal steps by the muscles there are by now, and what depends on it.
+void Simulation::prepareSteps() {
+  const double before = dWorldGetERP(world_);
+  if (!substeps_given_) substeps_ = automaticSubsteps(step_s_, physics_, actuators_);
+  if (before == error_reduction_) dWorldSetERP(world_, physics_.errorReductionPerStep(internalStepS()));
+  adaptJoints(internalStepS(), error_reduction_, physics_, joints_, actuators_);
+  error_reduction_ = physics_.errorReductionPerStep(internalStepS());
+  prepared_actuator_count_ = actuators_.size();
 }
 
 Controller& Simulation::control(std::unique_ptr<Controller> controller) {
@@ -175,6 +188,7 @@ void Simulation::untilDiverged(const Function& move) {
 
 void Simulation::step() {
   makeCurrent();
+  if (prepared_actuator_count_ != actuators_.size()) prepareSteps();
   untilDiverged([&] {
     for (int i = 0; i < substeps_; ++i) internalStep(internalStepS());
     ++step_count_;
@@ -192,6 +206,7 @@ void Simulation::advance(double duration_s) {
     for (long i = 0; i < static_cast<long>(whole_steps); ++i) step();
     return;
   }
+  if (prepared_actuator_count_ != actuators_.size()) prepareSteps();
   const auto count = static_cast<long>(std::max(1.0, std::ceil(duration_s / internalStepS() - 1e-6)));
   const double h_s = duration_s / static_cast<double>(count);
   untilDiverged([&] {
@@ -221,13 +236,13 @@ void Simulation::internalStep(double h_s) {
           internal_time_s_, actuator->name(),
           fmt::format("its tension is {} N at {} mm and pressure {}", actuator->tensionN(), actuator->lengthMm(), actuator->pressure()));
   }
-  stepper_->applyForces(actuators_);
+  stepper_->applyForces(actuators_, h_s);
   effects_->body(h_s);
   effects_->track(h_s);
   auto& messages = ode_runtime::messagesOfThread();
   const long messages_before = messages.count;
   try {
-    contacts_->collide();
+    collide(h_s);
     stepper_->step(h_s);
     requireFinite();
   } catch (const OdeFault& fault) {
@@ -238,6 +253,15 @@ void Simulation::internalStep(double h_s) {
   }
   solver_message_count_ += messages.count - messages_before;
   internal_time_s_ += h_s;
+}
+
+void Simulation::collide(double h_s) {
+  if (!physics_.has_contacts) return;
+  if (physics_.contact_compliance > 0) {
+    const auto stop = PhysicsSettings::stop(physics_.contact_compliance, physics_.contact_time_constant_s, h_s);
+    contacts_->soften(stop.error_reduction, stop.softness);
+  }
+  contacts_->collide();
 }
 
 void Simulation::requireFinite() const {

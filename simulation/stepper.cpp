@@ -14,8 +14,11 @@ void BodyBounds::refuse(dBodyID body, const Vector& position_mm, const Vector& v
   throw BodyOutOfBounds(body, fmt::format("it moves at {:.3g} mm/s", velocity_mm_per_s.cwiseAbs().maxCoeff<Eigen::PropagateNaN>()));
 }
 
-void Stepper::applyForces(const Actuators& actuators) {
-  for (const auto& actuator : actuators) actuator->applyForces();
+void Stepper::applyForces(const Actuators& actuators, double h_s) {
+  for (const auto& actuator : actuators) {
+    actuator->applyForces();
+    actuator->applyBeadInertia(h_s);
+  }
 }
 
 StepperKind stepperFromName(const std::string& name) {

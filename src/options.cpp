@@ -23,6 +23,12 @@ void addModelOptions(CLI::App& command, ModelOptions& options) {
   command.add_option("--substeps", options.substeps, "Internal steps per control step (default: as many as the stepper needs)")
       ->group(model);
   command.add_option("--muscles", options.muscle_count, "Number of muscles of the arm, 1 .. 30 (default 10)")->group(model);
+  command.add_option("--muscle", options.muscle, "chain: chains of beads (default); line: massless straight lines, much faster")
+      ->group(model);
+  command
+      .add_option("--joint-friction", options.joint_friction,
+                  "Friction of the chains' joints; coulomb: dry (default); viscous: grows with the speed, faster to compute")
+      ->group(model);
   command.add_flag("--plane", options.plane, "Add a ground plane")->group(model);
   command.add_option("--seed", options.seed, "Seed of everything random")
       ->group(model)
@@ -42,6 +48,8 @@ Parameters parametersFrom(const ModelOptions& options) {
   Parameters parameters;
   if (options.config) parameters.readToml(*options.config);
   if (options.muscle_count) parameters.set("arm.muscle_count", static_cast<double>(*options.muscle_count), "--muscles");
+  if (options.muscle) parameters.set("muscle.model", *options.muscle, "--muscle");
+  if (options.joint_friction) parameters.set("muscle.joint_friction", *options.joint_friction, "--joint-friction");
   for (const auto& assignment : options.set) parameters.setFromText(assignment, "--set");
   return parameters;
 }

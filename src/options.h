@@ -19,6 +19,7 @@ struct ModelOptions {
   std::optional<int> substeps, muscle_count;
   bool plane = false;
   std::uint64_t seed = 1;
+  std::optional<std::string> muscle, joint_friction;
   std::vector<std::string> set;
   std::optional<std::string> config, effects;
   bool quiet = false, json = false;
@@ -27,7 +28,7 @@ struct ModelOptions {
 /// Adds the model options to a command; all commands write into the same ModelOptions, so their place among the arguments is free.
 void addModelOptions(CLI::App& command, ModelOptions& options);
 
-/// The named parameters: --config first, then --muscles, then --set.
+/// The named parameters: --config first, then --muscles, --muscle and --joint-friction, then --set.
 Parameters parametersFrom(const ModelOptions& options);
 
 /// The effects of --effects; none without it.

@@ -83,6 +83,7 @@ RecordingInfo describe(Simulation& simulation, const RunOptions& options, const 
   extra["task"] = options.task;
   extra["stepper"] = simulation.stepper().name();
   extra["substeps"] = simulation.substeps();
+  extra["internal_step_s"] = simulation.internalStepS();
   for (const Parameter& p : simulation.parameters().declared()) extra["parameters"][p.name] = toJson(p.value);
   info.extra_json = extra.dump();
   return info;

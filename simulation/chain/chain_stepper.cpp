@@ -9,11 +9,7 @@
 namespace musclesim {
 
 ChainStepper::ChainStepper(const Simulation& simulation, const Contacts& contacts, const BodyBounds& bounds, bool strict)
-    : simulation_(simulation),
-      contacts_(contacts),
-      bounds_(bounds),
-      strict_(strict),
-      registered_reduction_(dWorldGetERP(simulation.world())) {}
+    : simulation_(simulation), contacts_(contacts), bounds_(bounds), strict_(strict) {}
 
 ChainStepper::~ChainStepper() = default;
 
@@ -27,6 +23,7 @@ void ChainStepper::prepare() {
   body_count_ = simulation_.bodies().size();
   actuator_count_ = simulation_.actuators().size();
   prepared_ = true;
+  registered_reduction_ = simulation_.physics().errorReductionPerStep(simulation_.internalStepS());
   problem_.reset();
   state_is_current_ = false;
   reason_ = chain::registerModel(simulation_, model_);
@@ -42,8 +39,11 @@ std::string ChainStepper::message() const {
   return reason_.empty() ? "" : "dWorldStep is used, which is slow, because " + reason_;
 }
 
-void ChainStepper::applyForces(const Actuators&) {
+/// Line muscles only: chains are asked when their rows are made.
+void ChainStepper::applyForces(const Actuators& actuators, double) {
   if (!upToDate()) prepare();
+  for (const auto& actuator : actuators)
+    if (actuator->line()) actuator->applyForces();
 }
 
 void ChainStepper::step(double h_s) {
@@ -71,8 +71,13 @@ bool ChainStepper::solve(double h_s) {
   conditions.gravity = fromOde(gravity);
   conditions.force_per_N = physics.force_per_N;
   conditions.reduction = {registered_reduction_, physics.errorReductionPerStep(h_s)};
-  conditions.world_reduction = conditions.reduction.of(dWorldGetERP(world));
-  conditions.world_softness = dWorldGetCFM(world);
+  conditions.contact_reduction = conditions.reduction.of(dWorldGetERP(world));
+  conditions.world_softness = conditions.contact_softness = dWorldGetCFM(world);
+  if (physics.contact_compliance > 0) {
+    const auto stop = PhysicsSettings::stop(physics.contact_compliance, physics.contact_time_constant_s, h_s);
+    conditions.contact_reduction = stop.error_reduction;
+    conditions.contact_softness = stop.softness;
+  }
   conditions.friction_force = contacts_.frictionLimit();
   model_.bodies.gather();
   if (!problem_->begin(conditions, contacts_.points())) return false;
@@ -85,8 +90,11 @@ bool ChainStepper::solve(double h_s) {
 }
 
 void ChainStepper::leaveToOde(double h_s) {
-  Stepper::applyForces(simulation_.actuators());
+  for (const auto& actuator : simulation_.actuators())
+    if (!actuator->line()) actuator->applyForces();
+  for (const auto& actuator : simulation_.actuators()) actuator->applyBeadInertia(h_s);
   if (!dWorldStep(simulation_.world(), h_s)) throw OdeFault("dWorldStep ran out of memory");
+  for (const auto& actuator : simulation_.actuators()) actuator->applyBeadInertia(0);
 }
 
 std::optional<TornJoint> ChainStepper::largestGap() const {

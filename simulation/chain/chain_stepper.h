@@ -31,7 +31,7 @@ class ChainStepper final : public Stepper {
   ~ChainStepper() override;
 
   void prepare() override;
-  void applyForces(const Actuators& actuators) override;
+  void applyForces(const Actuators& actuators, double h_s) override;
   void step(double h_s) override;
   std::string name() const override { return reason_.empty() ? "chain" : "ode"; }
   std::string message() const override;
@@ -50,7 +50,7 @@ class ChainStepper final : public Stepper {
   const Contacts& contacts_;
   BodyBounds bounds_;
   bool strict_;
-  double registered_reduction_;  ///< ODE's ERP of the world as the simulation set it
+  double registered_reduction_ = 0;  ///< ODE's ERP of the world as the simulation set it
   bool prepared_ = false;
   std::size_t joint_count_ = 0, body_count_ = 0, actuator_count_ = 0;
   std::string reason_;  ///< why dWorldStep is used; empty: it is not

@@ -112,7 +112,7 @@ void setStopRow(const AxisLimits& limits, double position, double velocity_befor
   rows.lower = low ? 0 : -dInfinity;
   rows.upper = low || locked ? dInfinity : 0;
   if (locked) return;
-  if (limits.motor_force > 0) {
+  if (limits.motor_force > 0 && limits.motor_force < dInfinity) {
     const double v = limits.motor_velocity;
     const bool away = low ? v > 0 : v < 0;
     const double direction = v > 0 || (v == 0 && !low) ? 1 : -1;

@@ -73,9 +73,9 @@ void registerBeads(const Actuator& actuator, Chain& chain) {
       dBodyGetMass(bead, &mass);
       if (chain.bead_mass_g == 0) {
         chain.bead_mass_g = mass.mass;
-        chain.bead_inertia = mass.I[0];
+        chain.sphere_inertia = mass.I[0];
       }
-      const Eigen::Matrix3d sphere = chain.bead_inertia * Eigen::Matrix3d::Identity();
+      const Eigen::Matrix3d sphere = chain.sphere_inertia * Eigen::Matrix3d::Identity();
       if (mass.mass != chain.bead_mass_g || matrixFromOde(mass.I) != sphere)
         throw NotTaken{"the beads of " + actuator.name() + " are not equal spheres"};
       if (!dBodyGetGravityMode(bead)) throw NotTaken{"a bead of " + actuator.name() + " has no weight"};
@@ -133,7 +133,8 @@ std::string registerModel(const Simulation& simulation, Model& model) {
   try {
     registerBodies(simulation, model);
     std::vector<dJointID> known;
-    for (const auto& actuator : simulation.actuators()) model.chains.push_back(registerChain(*actuator, model.bodies, known));
+    for (const auto& actuator : simulation.actuators())
+      if (!actuator->line()) model.chains.push_back(registerChain(*actuator, model.bodies, known));
     registerSkeleton(simulation, model, known);
     std::sort(known.begin(), known.end());
     for (int body = 0; body < model.bodies.count(); ++body) {

@@ -27,7 +27,8 @@ struct Chain {
   const Actuator* actuator = nullptr;
   int first_bead = 0;  ///< number of the body at the chain's start; the others follow
   double bead_mass_g = 0;
-  double bead_inertia = 0;         ///< about any axis, g mm^2
+  double sphere_inertia = 0;       ///< of a bead about any axis, g mm^2
+  double bead_inertia = 0;         ///< the same with what it gains in the present step
   std::vector<JointModel> joints;  ///< 2L: joint k joins bead k and bead k + 1; the last is the ball at the end
   JointModel start;                ///< ball at the start, on bead 0
 

@@ -18,6 +18,12 @@ Vector gyroscopicTorque(const Eigen::Matrix3d& inertia, const Vector& spin, doub
   return (inertia * effective.inverse() - Eigen::Matrix3d::Identity()) * (l / h_s);
 }
 
+/// ODE's motors may rest at stops from a step that dWorldStep did.
+void setViscousMotor(JointModel& joint, const MuscleSettings& settings) {
+  const double dry = joint.kind == Joint::Kind::slider ? settings.slider_friction_N : settings.hinge_friction_Nm;
+  joint.limits.motor_force = dry > 0 ? dInfinity : 0;
+}
+
 }  // namespace
 
 StepProblem::StepProblem(Model& model) : model_(model) {
@@ -63,7 +69,7 @@ bool StepProblem::begin(const Conditions& conditions, const std::vector<ContactP
   model_.readBones();
   addLoads();
   makeJointRows();
-  if (!contacts_.make(contacts, model_.bodies, conditions.friction_force, conditions.world_reduction / conditions.h_s)) return false;
+  if (!contacts_.make(contacts, model_.bodies, conditions.friction_force, conditions.contact_reduction / conditions.h_s)) return false;
   setUpPairs();
   setUpBones();
   collectRows();
@@ -94,10 +100,13 @@ void StepProblem::makeJointRows() {
   for (std::size_t c = 0; c < chains_.size(); ++c) {
     Chain& chain = model_.chains[c];
     const double stop_rad = chain.actuator->hingeStopRad();
+    const MuscleSettings& settings = chain.actuator->settings();
+    chain.bead_inertia = chain.sphere_inertia + chain.actuator->beadInertiaIncrease(conditions_.h_s);
     const double tension = chain.actuator->tensionN() * conditions_.force_per_N;
     for (std::size_t k = 0; k < chain.joints.size(); ++k) {
       JointModel& joint = chain.joints[k];
       joint.readLimits();
+      if (settings.viscous) setViscousMotor(joint, settings);
       if (joint.kind == Joint::Kind::hinge) {
         joint.limits.low_stop = -stop_rad;
         joint.limits.high_stop = stop_rad;
@@ -174,7 +183,8 @@ void StepProblem::setUpBones() {
 
 void StepProblem::collectRow(JointState& joint, RowPlace place, double diagonal) {
   const AxisContact contact = joint.rows.contact;
-  joint.bounded = contact == AxisContact::motor || contact == AxisContact::low_stop || contact == AxisContact::high_stop;
+  const bool dry_friction = contact == AxisContact::motor && joint.rows.upper < dInfinity;
+  joint.bounded = dry_friction || contact == AxisContact::low_stop || contact == AxisContact::high_stop;
   if (contact != joint.contact_before || !joint.bounded) joint.state = RowState::free;
   joint.contact_before = contact;
   if (!joint.bounded) return;
@@ -189,7 +199,7 @@ void StepProblem::collectRow(JointState& joint, RowPlace place, double diagonal)
 }
 
 double StepProblem::diagonalOf(const ContactRows& contact, int row) const {
-  double sum = conditions_.world_softness / conditions_.h_s;
+  double sum = softnessOfContact(row) / conditions_.h_s;
   for (int side = 0; side < 2; ++side) {
     const int body = contact.body[side];
     if (body < 0) continue;

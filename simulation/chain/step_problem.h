@@ -24,9 +24,10 @@ class StepProblem final : public BoxProblem {
     Vector gravity;  ///< mm/s^2
     double force_per_N;
     ErrorReduction reduction;
-    double world_reduction;  ///< ODE's ERP of the world, for contacts
-    double world_softness;   ///< ODE's CFM of the world, for contacts
-    double friction_force;   ///< bound of a contact's friction
+    double contact_reduction;  ///< share of a contact's depth corrected in the step
+    double contact_softness;   ///< ODE's CFM of a contact's normal
+    double world_softness;     ///< ODE's CFM of the world, for a contact's friction
+    double friction_force;     ///< bound of a contact's friction
   };
   /// Sets up the step for the bodies' present state and the actuators' tensions. Returns false if a contact touches an unknown body.
   bool begin(const Conditions& conditions, const std::vector<ContactPoint>& contacts);
@@ -88,6 +89,7 @@ class StepProblem final : public BoxProblem {
   void addBones();
   void addChain(std::size_t number);
   void addSkeleton();
+  double softnessOfContact(int row) const { return row == 0 ? conditions_.contact_softness : conditions_.world_softness; }
   void addContact(std::size_t number, int row);
   void addContactPair(const ContactRows& contact, int row, const ContactRows& other, int other_row);
   double throughBead(int body, const double first[6], const double second[6]) const;

@@ -181,7 +181,7 @@ void StepProblem::addContact(std::size_t number, int row) {
   const int core_row = contact.core_row[row];
   if (core_row < 0) return;
   const double per_h = 1 / conditions_.h_s;
-  core_.addBlock(core_row, core_row, conditions_.world_softness * per_h);
+  core_.addBlock(core_row, core_row, softnessOfContact(row) * per_h);
   core_.addRight(core_row, contact.velocity[row] * per_h);
   for (int side = 0; side < 2; ++side) {
     const int body = contact.body[side];
@@ -262,7 +262,7 @@ double StepProblem::slackOfSkeleton(std::size_t number) const {
 }
 
 double StepProblem::slackOfContact(const ContactRows& contact, int row) const {
-  double slack = (conditions_.world_softness * givenForce(contact, row) - contact.velocity[row]) / conditions_.h_s;
+  double slack = (softnessOfContact(row) * givenForce(contact, row) - contact.velocity[row]) / conditions_.h_s;
   for (int side = 0; side < 2; ++side) slack += alongBody(contact.body[side], contact.jacobian[side][row]);
   return slack;
 }

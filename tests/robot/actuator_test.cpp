@@ -59,7 +59,7 @@ TEST(Actuator, MayHaveUnconnectedEnds) {
   for (int i = 0; i < 10; ++i) simulation.step();
   EXPECT_EQ(muscle->startJoint(), nullptr);
   EXPECT_EQ(muscle->endJoint(), nullptr);
-  EXPECT_NEAR(muscle->lengthMm(), 120, 1.5) << "nothing holds it: it contracts to its beads";
+  EXPECT_LT(muscle->tensionN(), 1) << "nothing holds it: it contracts until the friction of its sliders, 1 N, stops it";
   EXPECT_LT(dBodyGetPosition(muscle->links()[0].bead[0])[1], -45 - 7.5) << "and falls";
 }
 

@@ -16,10 +16,11 @@
 
 namespace musclesim {
 
+class LineOfPull;
 class Primitive;
 class Simulation;
 
-/// Numbers of all bead chains, read from the parameters "muscle.*".
+/// Numbers of all muscles, read from the parameters "muscle.*".
 struct MuscleSettings {
   explicit MuscleSettings(Parameters& parameters);
   double bead_radius_mm;  ///< a link is never shorter than two radii
@@ -28,6 +29,10 @@ struct MuscleSettings {
   double hinge_friction_Nm;  ///< dry friction of each hinge
   double hinge_limit_deg;    ///< stops of each hinge at full length; they close in proportion to the length ratio
   double hinge_bounce_ratio;
+  bool viscous;                          ///< joint friction grows with the speed instead of being constant (dry)
+  double slider_viscous_speed_mm_per_s;  ///< viscous friction equals the dry one's force at this speed
+  double hinge_viscous_speed_rad_per_s;
+  bool line;  ///< massless straight muscles instead of chains of beads
 };
 
 /// One link: the bead at its start, the bead at its end and the slider between them (position 0 as built, positive when shorter).
@@ -42,6 +47,9 @@ struct Link {
 /// Every internal step: pressure follows the command, tension = calculateForce(pressure, length), the tension acts on every slider of the
 /// chain, and the hinges' stops are set to +-limit * (l - l_min)/(l_max - l_min).
 /// Length l = sum of the distances of each link's two beads + link count * 2 bead radii.
+///
+/// With the parameter muscle.model = line there are no links: the tension acts along the straight line between the ends, or along its via
+/// points (LineOfPull), and is never negative. l is the length of that line. Such a muscle has no mass and touches nothing.
 class Actuator {
  public:
   virtual ~Actuator();
@@ -52,6 +60,9 @@ class Actuator {
   /// Throws BadParameter if that end is already connected.
   void connectStartTo(Primitive* primitive);
   void connectEndTo(Primitive* primitive);
+  /// Lets a line muscle pass through a point that is fixed to a primitive (null: the environment), after those added before.
+  /// Throws BadParameter for a chain.
+  void addViaPoint(Primitive* primitive, const Vector& point_mm);
 
   /// Tension in N, pulling positive, at a pressure (fraction of full scale) and a length. The default asks the force law (Eq. 1
   /// unless "force_law.name" says otherwise); a user's own actuator overrides it. A result that is not finite stops the run.
@@ -77,6 +88,9 @@ class Actuator {
   const std::string& name() const { return name_; }
   const std::vector<Link>& links() const { return links_; }
   const std::vector<Joint*>& hinges() const { return hinges_; }
+  /// The line of a line muscle, null for a chain.
+  const LineOfPull* line() const { return line_.get(); }
+  const MuscleSettings& settings() const { return settings_; }
   const ForceLaw& forceLaw() const { return *law_; }
   const Joint* startJoint() const { return start_joint_; }
   const Joint* endJoint() const { return end_joint_; }
@@ -96,8 +110,17 @@ class Actuator {
   /// Force stage: tension from pressure and length at present; where effects act on it, the tension that they make of it.
   void updateTension();
   void takeTension(double tension_N) { tension_N_ = tension_N; }
-  /// Hands the tension to the sliders and sets the hinges' stops, for ODE's steppers.
+  /// Hands the tension to the sliders and sets the hinges' stops, for ODE's steppers; a line pulls at its ends.
   void applyForces();
+  /// Geometric stiffness as inertia: what every bead's moment of inertia gains in a step h under the present tension F, in g mm^2,
+  ///     a h^2 F l / (2 n),   n links of length l / n.
+  /// With a = 1/4 the swaying of neighbouring links, driven by F, never gets faster than a step can follow.
+  double beadInertiaIncrease(double h_s) const;
+  /// Gives it to ODE's bodies.
+  void applyBeadInertia(double h_s);
+  /// Largest rate in rad/s at which neighbouring links can sway against each other, over all pressures and lengths:
+  ///     w^2 = F (d + 2 r) / (m d^2 / 2 + 2 I),   d distance of a link's beads, r, m, I radius, mass and moment of inertia of a bead.
+  double fastestSwayRadPerS() const;
   /// The hinges' stops at present, at minus and plus this angle.
   double hingeStopRad() const;
 
@@ -109,6 +132,10 @@ class Actuator {
            double maximum_length_mm);
 
  private:
+  double beadInertia() const;
+  double lineForceN() const;
+  void setViscousMotors();
+  void setFriction(dJointID joint, double force, double speed) const;
   void buildLinks(dSpaceID beads, const std::vector<Vector>& points);
   Joint* connect(dBodyID bead, const Vector& anchor, Primitive* primitive, const std::string& which);
 
@@ -118,6 +145,7 @@ class Actuator {
   std::unique_ptr<ForceLaw> law_;
   std::vector<Link> links_;
   std::vector<Joint*> hinges_;
+  std::unique_ptr<LineOfPull> line_;
   Joint* start_joint_ = nullptr;
   Joint* end_joint_ = nullptr;
   Vector start_mm_, end_mm_;

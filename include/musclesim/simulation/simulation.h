@@ -29,7 +29,7 @@ struct SimulationOptions {
   PhysicsKind physics = PhysicsKind::si;
   StepperKind stepper = StepperKind::automatic;
   double step_s = 0.01;  ///< control and logging step
-  int substeps = 0;      ///< internal steps per control step; 0: as many as the stepper needs
+  int substeps = 0;      ///< internal steps per control step; 0: as many as the muscles need
   bool plane = false;    ///< a ground plane at the height of the parameter "world.plane_height_mm"
   std::uint64_t seed = 1;
   Parameters parameters;              ///< overrides by name
@@ -70,7 +70,7 @@ class Simulation {
 
   /// Pressures and tensions as they are now that new commands have been set: nothing moves on.
   void sense();
-  /// One control step: pressures, forces, then the bodies, in as many internal steps as were set at construction.
+  /// One control step: pressures, forces, then the bodies, in substeps() internal steps.
   /// Throws Diverged with time, place and cause; the world is then frozen as it was, and further steps throw the same again.
   void step();
   /// The same for any duration, in equal internal steps no longer than those of step(). Throws BadParameter unless it is positive.
@@ -79,6 +79,7 @@ class Simulation {
   double time_s() const { return start_time_s_ + static_cast<double>(step_count_) * step_s_; }
   long stepCount() const { return step_count_; }
   double stepS() const { return step_s_; }
+  /// Internal steps per control step; if they were not given, they follow from the muscles once the robot is built.
   int substeps() const { return substeps_; }
   double internalStepS() const { return step_s_ / substeps_; }
   std::uint64_t seed() const { return seed_; }
@@ -125,6 +126,7 @@ class Simulation {
   friend class Primitive;
   friend class Actuator;
   Robot& adopt(std::unique_ptr<Robot> robot);
+  void prepareSteps();
   Body& addBody(dBodyID id, Primitive& part);
   void removeBody(Body& body);
   Joint& addJoint(Joint::Kind kind, dJointID id, const std::string& name);
@@ -132,6 +134,7 @@ class Simulation {
   void untilDiverged(const Function& move);
   void internalStep(double h_s);
   void updateForces(double h_s);
+  void collide(double h_s);
   void requireFinite() const;
   BodyBounds bodyBounds() const;
   void requireWhole();
@@ -143,6 +146,9 @@ class Simulation {
   PhysicsSettings physics_;
   double step_s_;
   int substeps_ = 1;
+  bool substeps_given_ = false;
+  std::size_t prepared_actuator_count_ = 0;
+  double error_reduction_ = 0;  ///< ODE's ERP as set by this class
   std::uint64_t seed_;
   double start_time_s_ = 0, internal_time_s_ = 0;
   long step_count_ = 0;

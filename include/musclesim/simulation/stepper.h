@@ -59,8 +59,9 @@ class Stepper {
   /// Makes ready for the robot as it is built by now; step() does so too where it is needed. Throws BadParameter for a robot that this
   /// stepper cannot take.
   virtual void prepare() {}
-  /// Hands the actuators' tensions and hinge stops to ODE's joints. Steppers that ask the actuators themselves leave this out.
-  virtual void applyForces(const Actuators& actuators);
+  /// Hands the actuators' tensions, hinge stops and the inertia of beads in a step of h_s to ODE. Steppers that ask the actuators
+  /// themselves leave this out.
+  virtual void applyForces(const Actuators& actuators, double h_s);
   /// Moves the bodies by h_s seconds under the forces accumulated so far, the joints and the contacts.
   virtual void step(double h_s) = 0;
   virtual std::string name() const = 0;

@@ -1,0 +1,125 @@
+#include "musclesim/robot/line_of_pull.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "musclesim/error.h"
+#include "musclesim/robot/actuator.h"
+#include "musclesim/robot/primitive.h"
+#include "musclesim/simulation/physics.h"
+#include "musclesim/units.h"
+#include "ode_vector.h"
+
+namespace musclesim {
+
+namespace {
+
+constexpr double dry_speed_mm_per_s = 100;      ///< dry friction is at 76 % of its force at this speed
+constexpr double stop_stiffness_N_per_mm = 10;  ///< beyond the longest length
+
+/// Speeds of the original's world are smaller by the square root of its forces' deficit.
+double speedRatio(const PhysicsSettings& physics) {
+  return std::sqrt(physics.force_per_N / world_force_per_N);
+}
+
+bool isFixed(dBodyID body) {
+  for (int i = 0; i < dBodyGetNumJoints(body); ++i)
+    if (dJointGetType(dBodyGetJoint(body, i)) == dJointTypeFixed) return true;
+  return false;
+}
+
+}  // namespace
+
+LineOfPull::LineOfPull(const Vector& start_mm, const Vector& end_mm) : points_{{nullptr, start_mm, false}, {nullptr, end_mm, false}} {}
+
+LineOfPull::Point LineOfPull::pointOn(Primitive* primitive, const Vector& point_mm) {
+  if (!primitive) return {nullptr, point_mm, true};
+  primitive->body().has_joint = true;  // its body must not be joined to another any more
+  const dBodyID body = primitive->body().id;
+  return {body, rotationOf(body).transpose() * (point_mm - musclesim::positionOf(body)), true};
+}
+
+void LineOfPull::connect(End end, Primitive* primitive, const std::string& muscle_name) {
+  Point& point = end == End::start ? points_.front() : points_.back();
+  if (point.connected)
+    throw BadParameter(std::string("the ") + (end == End::start ? "start" : "end") + " of " + muscle_name + " is already connected");
+  point = pointOn(primitive, point.place);
+}
+
+void LineOfPull::addViaPoint(Primitive* primitive, const Vector& point_mm) {
+  points_.insert(points_.end() - 1, pointOn(primitive, point_mm));
+}
+
+Vector LineOfPull::positionOf(const Point& point) {
+  return point.body ? Vector(musclesim::positionOf(point.body) + rotationOf(point.body) * point.place) : point.place;
+}
+
+Vector LineOfPull::velocityOf(const Point& point) {
+  if (!point.body) return Vector::Zero();
+  return fromOde(dBodyGetLinearVel(point.body)) + fromOde(dBodyGetAngularVel(point.body)).cross(rotationOf(point.body) * point.place);
+}
+
+double LineOfPull::lengthMm() const {
+  double sum_mm = 0;
+  for (std::size_t i = 0; i + 1 < points_.size(); ++i) sum_mm += (positionOf(points_[i + 1]) - positionOf(points_[i])).norm();
+  return sum_mm;
+}
+
+std::vector<Vector> LineOfPull::pointsMm() const {
+  std::vector<Vector> positions;
+  for (const Point& point : points_) positions.push_back(positionOf(point));
+  return positions;
+}
+
+Vector LineOfPull::gradient(std::size_t i) const {
+  const Vector here = positionOf(points_[i]);
+  Vector sum = Vector::Zero();
+  if (i > 0) sum += (here - positionOf(points_[i - 1])).stableNormalized();
+  if (i + 1 < points_.size()) sum -= (positionOf(points_[i + 1]) - here).stableNormalized();
+  return sum;
+}
+
+double LineOfPull::speedMmPerS() const {
+  double speed = 0;
+  for (std::size_t i = 0; i < points_.size(); ++i) speed += gradient(i).dot(velocityOf(points_[i]));
+  return speed;
+}
+
+double LineOfPull::totalForceN(double tension_N, double maximum_length_mm, const MuscleSettings& settings,
+                               const PhysicsSettings& physics) const {
+  const double speed = speedMmPerS() / speedRatio(physics);
+  const double friction_N = settings.slider_friction_N *
+                            (settings.viscous ? speed / settings.slider_viscous_speed_mm_per_s : std::tanh(speed / dry_speed_mm_per_s));
+  const double excess_mm = lengthMm() - maximum_length_mm;
+  return tension_N + friction_N + (excess_mm > 0 ? stop_stiffness_N_per_mm * excess_mm : 0);
+}
+
+void LineOfPull::pull(double force) const {
+  if (!points_.front().connected || !points_.back().connected) return;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    if (!points_[i].body) continue;
+    const Vector f = -force * gradient(i), x = positionOf(points_[i]);
+    dBodyAddForceAtPos(points_[i].body, f.x(), f.y(), f.z(), x.x(), x.y(), x.z());
+  }
+}
+
+std::vector<LineOfPull::Push> LineOfPull::pushes() const {
+  std::vector<Push> result;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const dBodyID body = points_[i].body;
+    if (!body || isFixed(body)) continue;
+    const Vector force = gradient(i);
+    result.push_back({body, force, (rotationOf(body) * points_[i].place).cross(force)});
+  }
+  return result;
+}
+
+double LineOfPull::stiffnessNPerMm(double of_tension_N_per_mm) {
+  return of_tension_N_per_mm + stop_stiffness_N_per_mm;
+}
+
+double LineOfPull::dampingNsPerMm(const MuscleSettings& settings) {
+  return settings.slider_friction_N / (settings.viscous ? settings.slider_viscous_speed_mm_per_s : dry_speed_mm_per_s);
+}
+
+}  // namespace musclesim

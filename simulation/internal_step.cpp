@@ -1,0 +1,144 @@
+#include "internal_step.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "../robot/ode_vector.h"
+#include "musclesim/robot/line_of_pull.h"
+#include "musclesim/units.h"
+
+namespace musclesim {
+
+namespace {
+
+constexpr double line_margin_ratio = 0.9;  ///< of the limit for bones without joints, which are on the safe side
+
+using Pushes = std::vector<LineOfPull::Push>;
+
+/// J_a M^-1 J_b^T: how fast line a gets longer under a force of 1 on line b, per time.
+double mobility(const Pushes& a, const Pushes& b) {
+  double sum = 0;
+  for (const auto& first : a)
+    for (const auto& second : b) {
+      if (first.body != second.body) continue;
+      dMass mass;
+      dBodyGetMass(first.body, &mass);
+      const Eigen::Matrix3d turn = rotationOf(first.body);
+      sum += first.force.dot(second.force) / mass.mass +
+             first.torque.dot(turn * matrixFromOde(mass.I).inverse() * turn.transpose() * second.torque);
+    }
+  return sum;
+}
+
+/// Largest eigenvalue of sqrt(k_a k_b) J_a M^-1 J_b^T over all line muscles: squared rate of the fastest vibration of springs k on the free
+/// bones (joints between them only slow it down).
+double largestEigenvalue(const std::vector<Pushes>& lines, const std::vector<double>& k) {
+  const auto count = static_cast<Eigen::Index>(lines.size());
+  Eigen::MatrixXd matrix(count, count);
+  for (Eigen::Index a = 0; a < count; ++a)
+    for (Eigen::Index b = 0; b < count; ++b) {
+      const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
+      matrix(a, b) = std::sqrt(k[i] * k[j]) * mobility(lines[i], lines[j]);
+    }
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
+}
+
+/// Longest step with h^2 K / 4 + h D / 2 = 1 for the fastest rates K, D of the line muscles' stiffness and friction.
+double longestLineStepS(const PhysicsSettings& physics, const std::vector<std::unique_ptr<Actuator>>& actuators) {
+  std::vector<Pushes> lines;
+  std::vector<double> stiffness, damping;
+  const double speed_ratio = std::sqrt(physics.force_per_N / world_force_per_N);
+  for (const auto& actuator : actuators) {
+    if (!actuator->line()) continue;
+    const double l = actuator->maximumLengthMm();
+    const double steepest = std::max(actuator->forceLaw().stiffnessNPerMm(0, l), actuator->forceLaw().stiffnessNPerMm(1, l));
+    lines.push_back(actuator->line()->pushes());
+    stiffness.push_back(LineOfPull::stiffnessNPerMm(std::max(0.0, steepest)) * physics.force_per_N);
+    damping.push_back(LineOfPull::dampingNsPerMm(actuator->settings()) * physics.force_per_N / speed_ratio);
+  }
+  const double k = lines.empty() ? 0 : largestEigenvalue(lines, stiffness), d = lines.empty() ? 0 : largestEigenvalue(lines, damping);
+  return k > 0 ? (std::sqrt(d * d + 4 * k) - d) / k : std::numeric_limits<double>::infinity();
+}
+
+double longestChainStepS(const std::vector<std::unique_ptr<Actuator>>& actuators) {
+  double fastest = 0;
+  for (const auto& actuator : actuators) fastest = std::max(fastest, actuator->fastestSwayRadPerS());
+  return fastest > 0 ? 2 / fastest : std::numeric_limits<double>::infinity();
+}
+
+void setParameter(const Joint& joint, int which, double value) {
+  switch (joint.kind()) {
+    case Joint::Kind::ball:
+      return dJointSetBallParam(joint.id(), which, value);
+    case Joint::Kind::hinge:
+      return dJointSetHingeParam(joint.id(), which, value);
+    case Joint::Kind::hinge2:
+      return dJointSetHinge2Param(joint.id(), which, value);
+    case Joint::Kind::universal:
+      return dJointSetUniversalParam(joint.id(), which, value);
+    case Joint::Kind::slider:
+      return dJointSetSliderParam(joint.id(), which, value);
+    case Joint::Kind::fixed:
+      return dJointSetFixedParam(joint.id(), which, value);
+  }
+}
+
+double parameterOf(const Joint& joint, int which) {
+  switch (joint.kind()) {
+    case Joint::Kind::ball:
+      return dJointGetBallParam(joint.id(), which);
+    case Joint::Kind::hinge:
+      return dJointGetHingeParam(joint.id(), which);
+    case Joint::Kind::hinge2:
+      return dJointGetHinge2Param(joint.id(), which);
+    case Joint::Kind::universal:
+      return dJointGetUniversalParam(joint.id(), which);
+    case Joint::Kind::slider:
+      return dJointGetSliderParam(joint.id(), which);
+    case Joint::Kind::fixed:
+      return dJointGetFixedParam(joint.id(), which);
+  }
+  return 0;
+}
+
+/// Balls and fixations have an error reduction of their own, the others one per axis at its stops; their positions follow the world's.
+void adaptErrorReduction(const Joint& joint, double before, double now) {
+  const bool of_position = joint.kind() == Joint::Kind::ball || joint.kind() == Joint::Kind::fixed;
+  const int first_axis = of_position ? dParamERP : dParamStopERP;
+  const bool two_axes = joint.kind() == Joint::Kind::hinge2 || joint.kind() == Joint::Kind::universal;
+  const int second_axis = dParamStopERP2;
+  if (parameterOf(joint, first_axis) == before) setParameter(joint, first_axis, now);
+  if (two_axes && parameterOf(joint, second_axis) == before) setParameter(joint, second_axis, now);
+}
+
+void setStop(const Joint& joint, const PhysicsSettings::Stop& stop) {
+  setParameter(joint, dParamStopERP, stop.error_reduction);
+  setParameter(joint, dParamStopCFM, stop.softness);
+}
+
+}  // namespace
+
+int automaticSubsteps(double step_s, const PhysicsSettings& physics, const std::vector<std::unique_ptr<Actuator>>& actuators) {
+  if (!std::isfinite(physics.longest_internal_step_s)) return 1;
+  const double longest_s = std::min({physics.longest_internal_step_s, physics.stability_margin_ratio * longestChainStepS(actuators),
+                                     line_margin_ratio * longestLineStepS(physics, actuators)});
+  return static_cast<int>(std::max(1.0, std::ceil(step_s / longest_s - 1e-9)));
+}
+
+void adaptJoints(double h_s, double before, const PhysicsSettings& physics, const std::vector<std::unique_ptr<Joint>>& joints,
+                 const std::vector<std::unique_ptr<Actuator>>& actuators) {
+  for (const auto& joint : joints) adaptErrorReduction(*joint, before, physics.errorReductionPerStep(h_s));
+  for (const auto& actuator : actuators) {
+    if (physics.slider_stop_compliance > 0)
+      for (const Link& link : actuator->links())
+        setStop(*link.slider, physics.stop(physics.slider_stop_compliance, physics.stop_time_constant_s, h_s));
+    if (physics.hinge_stop_compliance > 0)
+      for (const Joint* hinge : actuator->hinges())
+        setStop(*hinge, physics.stop(physics.hinge_stop_compliance, physics.stop_time_constant_s, h_s));
+  }
+}
+
+}  // namespace musclesim
