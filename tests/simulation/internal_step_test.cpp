@@ -109,13 +109,14 @@ TEST(ViscousFriction, HasNoStiction) {
   for (const bool viscous : {false, true}) {
     const auto rig = build("rig", {"rig.load_kg=2", viscous ? "muscle.joint_friction=viscous" : "muscle.joint_friction=coulomb"});
     rig->start("settled", {0.5});
+    rig->advance(3);
     const double before = rig->actuators().front()->lengthMm();
-    rig->robot().step({0.51});
+    rig->robot().step({0.505});
     rig->advance(3);
     moved_mm[viscous] = std::abs(rig->actuators().front()->lengthMm() - before);
   }
   EXPECT_LT(moved_mm[0], 0.05);
-  EXPECT_GT(moved_mm[1], 0.5);
+  EXPECT_GT(moved_mm[1], 0.2);
 }
 
 }  // namespace
