@@ -49,8 +49,7 @@ TEST(LineMuscle, PullsAtItsViaPointsAlongBothPieces) {
   muscle->connectEndTo(nullptr);
   muscle->addViaPoint(ring, {100, -100, 0});
   EXPECT_NEAR(muscle->lengthMm(), 2 * std::sqrt(2e4), 1e-9);
-  muscle->setPressure(1);
-  muscle->updatePressure(0);
+  muscle->takePressure(1);
   muscle->updateTension();
   muscle->applyForces();
   const dReal* force = dBodyGetForce(ring->body().id);
@@ -92,8 +91,7 @@ TEST(LineMuscle, SlackLinesDoNotPush) {
   muscle->connectStartTo(nullptr);
   muscle->connectEndTo(load);
   load->place({0, -60, 0}, Eigen::Matrix3d::Identity());
-  muscle->setPressure(1);
-  muscle->updatePressure(0);
+  muscle->takePressure(1);
   muscle->updateTension();
   EXPECT_LT(muscle->calculateForce(1, 60), 0) << "Eq. 1 continued below the shortest length";
   EXPECT_EQ(muscle->tensionN(), 0);
