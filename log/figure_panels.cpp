@@ -25,7 +25,8 @@ bool isMeasured(const Signal* signal) {
 Color muscleColor(std::size_t muscle, const std::vector<Color>& muscle_colors) {
   if (muscle < muscle_colors.size()) return muscle_colors[muscle];
   const std::size_t further = muscle - muscle_colors.size();
-  const double darkness = 1 / (1 + 0.45 * static_cast<double>(further / distinct_colors.size()));
+  const std::size_t times_through_all = further / distinct_colors.size();
+  const double darkness = 1 / (1 + 0.45 * static_cast<double>(times_through_all));
   Color color = darkened(distinct_colors[further % distinct_colors.size()], darkness);
   if (further >= distinct_colors.size()) color.name.clear();
   return color;

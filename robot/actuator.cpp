@@ -82,7 +82,9 @@ Actuator::Actuator(dWorldID world, dSpaceID space, const std::vector<Vector>& po
   updateTension();
 }
 
-Actuator::~Actuator() = default;
+Actuator::~Actuator() {
+  simulation_.disown(*this);  // it still owns this if a derived class's constructor threw
+}
 
 /// Dry friction is a motor at rest with a largest force; viscous friction one without, softened to `force` at `speed`.
 void Actuator::setFriction(dJointID joint, double force, double speed) const {
@@ -166,9 +168,13 @@ double Actuator::calculateForce(double pressure_ratio, double length_mm) const {
   return law_->tensionN(pressure_ratio, length_mm);
 }
 
-void Actuator::setPressure(double command_ratio) {
+void Actuator::requireCommand(double command_ratio) const {
   if (!(command_ratio >= 0 && command_ratio <= 1))
     throw BadParameter("command of " + name_, fmt::format("{}", command_ratio), "lie in 0 .. 1");
+}
+
+void Actuator::setPressure(double command_ratio) {
+  requireCommand(command_ratio);
   command_ratio_ = command_ratio;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "musclesim/error.h"
 #include "musclesim/simulation/simulation.h"
@@ -119,7 +120,7 @@ dJointID eulerMotor(dBodyID body, dBodyID other, const Vector& axis1, const Vect
 }  // namespace
 
 Primitive::Primitive(dWorldID world, dSpaceID space, const Vector& position, double mass, double density, Shape shape)
-    : world_(world), shape_(shape) {
+    : world_(world), shape_(std::move(shape)) {
   requireFinite("position of a primitive", position);
   if (!(density >= 0) || !std::isfinite(density))
     throw BadParameter("density of a primitive", fmt::format("{}", density), "be finite and not negative");
@@ -139,6 +140,8 @@ Primitive::Primitive(dWorldID world, dSpaceID space, const Vector& position, dou
 
 Primitive::~Primitive() {
   dGeomDestroy(geom_);
+  std::erase(body_->parts, this);
+  Simulation::of(world_).disown(*this);  // it still owns this if a derived class's constructor threw
 }
 
 Vector Primitive::getPosition() const {

@@ -132,9 +132,11 @@ void Robot::step(const Action& action) {
   if (action.size() != actuators_.size())
     throw BadParameter("number of commanded pressures", fmt::format("{}", action.size()),
                        fmt::format("be {}, one per muscle", actuators_.size()));
-  for (std::size_t i = 0; i < action.size(); ++i)
+  for (std::size_t i = 0; i < action.size(); ++i) {
     if (!std::isfinite(action[i]))
       throw Diverged(simulation_.time_s(), fmt::format("command_{}", i), fmt::format("the commanded pressure is {}", action[i]));
+    actuators_[i]->requireCommand(action[i]);
+  }
   for (std::size_t i = 0; i < action.size(); ++i) actuators_[i]->setPressure(action[i]);
   simulation_.sense();
 }

@@ -42,6 +42,24 @@ void abandon(AbandonedWorld world) {
   worlds->push_back(std::move(world));
 }
 
+/// What is destroyed is no longer in the list: its destructor may look itself up there.
+template <class Owned>
+void destroyAll(std::vector<std::unique_ptr<Owned>>& owned) {
+  while (!owned.empty()) {
+    const std::unique_ptr<Owned> last = std::move(owned.back());
+    owned.pop_back();
+  }
+}
+
+/// Forgets something that is being destroyed from elsewhere.
+template <class Owned>
+void release(std::vector<std::unique_ptr<Owned>>& owned, const Owned& which) {
+  const auto found = std::ranges::find_if(owned, [&](const auto& one) { return one.get() == &which; });
+  if (found == owned.end()) return;
+  static_cast<void>(found->release());
+  owned.erase(found);
+}
+
 double requireStep(double step_s) {
   if (!(step_s >= 1e-7 && step_s <= 10)) throw BadParameter("step", fmt::format("{} s", step_s), "be a number in 1e-7 .. 10 s");
   return step_s;
@@ -89,11 +107,13 @@ Simulation::~Simulation() {
   effects_.reset();
   robot_.reset();
   if (faulted_) {
+    destroyAll(actuators_);
     abandon({world_, space_, std::move(contacts_), std::move(primitives_)});
     return;
   }
   contacts_.reset();
-  primitives_.clear();
+  destroyAll(actuators_);
+  destroyAll(primitives_);
   dSpaceDestroy(space_);
   dWorldDestroy(world_);
 }
@@ -177,7 +197,7 @@ void Simulation::start(const std::string& initial_state, const Action& first_com
 
 template <class Function>
 void Simulation::untilDiverged(const Function& move) {
-  if (divergence_) throw *divergence_;
+  if (divergence_) throw Diverged(*divergence_);
   try {
     move();
   } catch (const Diverged& divergence) {
@@ -351,6 +371,14 @@ void Simulation::stop() {
   for (const auto& actuator : actuators_)
     for (const Link& link : actuator->links())
       for (const dBodyID bead : link.bead) halt(bead);
+}
+
+void Simulation::disown(const Primitive& primitive) {
+  release(primitives_, primitive);
+}
+
+void Simulation::disown(const Actuator& actuator) {
+  release(actuators_, actuator);
 }
 
 Body& Simulation::addBody(dBodyID id, Primitive& part) {

@@ -27,8 +27,28 @@ class Winch : public Actuator {
   double full_N = 30;
 };
 
+/// A user's actuator and a user's bone whose constructors find something wrong.
+class BrokenWinch : public Winch {
+ public:
+  explicit BrokenWinch(Simulation& simulation) : Winch(simulation, 100) { throw BadParameter("the winch is broken"); }
+};
+class BrokenBone : public Sphere {
+ public:
+  explicit BrokenBone(Simulation& simulation) : Sphere(simulation.world(), simulation.space(), {0, 0, 0}, 1, 0, 10) {
+    throw BadParameter("the bone is broken");
+  }
+};
+
 Muscle* hangingMuscle(Simulation& simulation) {
   return new Muscle(simulation.world(), simulation.space(), {0, 0, 0}, {0, -70, 0}, {0, -140, 0}, {0, -210, 0}, 120, 300);
+}
+
+TEST(Actuator, ThatThrowsWhileItIsBuiltIsForgotten) {
+  Simulation simulation;
+  EXPECT_THROW(new BrokenWinch(simulation), BadParameter);
+  EXPECT_THROW(new BrokenBone(simulation), BadParameter);
+  EXPECT_TRUE(simulation.actuators().empty());
+  EXPECT_TRUE(simulation.primitives().empty());
 }
 
 TEST(Actuator, ItsEndsAreConnectedOnce) {

@@ -30,11 +30,7 @@ inline ::testing::AssertionResult contains(const std::string& text, const std::s
 /// Tests that need them are skipped where they are absent.
 inline std::filesystem::path sharedFolder() {
   const char* given = std::getenv("MUSCLESIM_SHARED");
-#ifdef MUSCLESIM_SHARED_FOLDER
   return given ? given : MUSCLESIM_SHARED_FOLDER;
-#else
-  return given ? given : "";
-#endif
 }
 
 /// Whether tests may take minutes: set MUSCLESIM_LONG_TESTS=1.

@@ -70,6 +70,7 @@ class Actuator {
 
   /// Throws BadParameter unless the pressure is finite and lies in 0..1.
   void setPressure(double command_ratio);
+  void requireCommand(double command_ratio) const;
   /// Throws BadParameter for null.
   void setForceLaw(std::unique_ptr<ForceLaw> law);
   void setColor(double red, double green, double blue, const std::string& name = "");

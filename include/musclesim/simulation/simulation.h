@@ -127,6 +127,8 @@ class Simulation {
   friend class Actuator;
   Robot& adopt(std::unique_ptr<Robot> robot);
   void prepareSteps();
+  void disown(const Primitive& primitive);
+  void disown(const Actuator& actuator);
   Body& addBody(dBodyID id, Primitive& part);
   void removeBody(Body& body);
   Joint& addJoint(Joint::Kind kind, dJointID id, const std::string& name);
@@ -140,7 +142,7 @@ class Simulation {
   void requireWhole();
   TornJoint tornMost() const;
   static JointGap named(const TornJoint& torn);
-  std::string labelOf(dBodyID body) const;
+  std::string labelOf(dBodyID id) const;
 
   Parameters parameters_;
   PhysicsSettings physics_;
