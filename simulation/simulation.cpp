@@ -78,6 +78,10 @@ Simulation::Simulation(SimulationOptions options)
   substeps_given_ = options.substeps > 0;
   substeps_ = substeps_given_ ? options.substeps : automaticSubsteps(step_s_, physics_, {});
   world_ = dWorldCreate();
+  // ODE's own threading is shared by all worlds of the process and not safe where two threads step two worlds.
+  threading_ = dThreadingAllocateSelfThreadedImplementation();
+  if (!threading_) throw OdeFault("ODE cannot allocate a threading implementation");
+  dWorldSetStepThreadingImplementation(world_, dThreadingImplementationGetFunctions(threading_), threading_);
   dWorldSetData(world_, this);
   dWorldSetGravity(world_, 0, -physics_.gravity_mm_per_s2, 0);
   error_reduction_ = physics_.errorReductionPerStep(internalStepS());
@@ -116,6 +120,7 @@ Simulation::~Simulation() {
   destroyAll(primitives_);
   dSpaceDestroy(space_);
   dWorldDestroy(world_);
+  dThreadingFreeImplementation(threading_);
 }
 
 Simulation& Simulation::of(dWorldID world) {

@@ -30,7 +30,22 @@ void redirect(const std::filesystem::path& file, int descriptor) {
 
 }  // namespace
 
-ProgramResult interruptProgram(const std::vector<std::string>& arguments, int signal, int delay_ms, const std::filesystem::path& folder) {
+namespace {
+
+/// Until a file has that many bytes; a minute at most.
+void waitForBytes(const std::filesystem::path& file, std::uintmax_t bytes) {
+  for (int i = 0; i < 1200; ++i) {
+    std::error_code absent;
+    const auto size = std::filesystem::file_size(file, absent);
+    if (!absent && size >= bytes) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+}
+
+}  // namespace
+
+ProgramResult interruptProgram(const std::vector<std::string>& arguments, int signal, const std::string& file, std::uintmax_t bytes,
+                               const std::filesystem::path& folder) {
   static int call_count = 0;
   const auto stem =
       std::filesystem::temp_directory_path() / ("musclesim_program_" + std::to_string(getpid()) + "_" + std::to_string(++call_count));
@@ -50,7 +65,7 @@ ProgramResult interruptProgram(const std::vector<std::string>& arguments, int si
     _exit(127);
   }
   if (signal != 0) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(delay_ms));
+    waitForBytes(folder / file, bytes);
     kill(child, signal);
   }
   int status = 0;
@@ -62,7 +77,7 @@ ProgramResult interruptProgram(const std::vector<std::string>& arguments, int si
 }
 
 ProgramResult runProgram(const std::vector<std::string>& arguments, const std::filesystem::path& folder) {
-  return interruptProgram(arguments, 0, 0, folder);
+  return interruptProgram(arguments, 0, "", 0, folder);
 }
 
 }  // namespace musclesim

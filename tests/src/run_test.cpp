@@ -125,8 +125,9 @@ TEST_F(RunCommand, JsonVerdictIsTheLastLine) {
 }
 
 TEST_F(RunCommand, InterruptedRunsAreReadableAndNotComplete) {
-  const ProgramResult result = interruptProgram(
-      {"--simple", "--robot", "elbow", "--controller", "hold", "--duration", "1000", "--record", "cut.csv"}, SIGINT, 1500, folder_);
+  const ProgramResult result =
+      interruptProgram({"--simple", "--robot", "elbow", "--controller", "hold", "--duration", "1000", "--record", "cut.csv"}, SIGINT,
+                       "cut.csv", 2000, folder_);
   EXPECT_EQ(result.status, 130) << result.err;
   const Recording recording = readRecording((folder_ / "cut.csv").string());
   EXPECT_GT(recording.time_s.size(), 5u);

@@ -160,6 +160,7 @@ class Simulation {
   TornJoint worst_gap_;
 
   dWorldID world_ = nullptr;
+  dThreadingImplementationID threading_ = nullptr;  ///< the world's own
   dSpaceID space_ = nullptr;
   std::vector<std::unique_ptr<Body>> bodies_;
   std::vector<std::unique_ptr<Joint>> joints_;
