@@ -6,25 +6,83 @@
 #include <cmath>
 #include <mutex>
 
+#include "body/attachment_offset.h"
+#include "body/base_tilt.h"
+#include "body/contact.h"
+#include "body/external_force.h"
+#include "body/joint_coulomb_friction.h"
+#include "body/joint_stiffness.h"
+#include "body/joint_stop_offset.h"
 #include "body/joint_viscous_friction.h"
+#include "body/payload.h"
+#include "command/channel_swap.h"
+#include "command/command_dead_band.h"
+#include "command/command_quantisation.h"
 #include "command/transport_delay.h"
+#include "force/braid_hysteresis.h"
+#include "force/creep.h"
+#include "force/force_drift.h"
+#include "force/force_gain.h"
+#include "force/length_offset.h"
+#include "force/other_force_law.h"
+#include "force/series_elasticity.h"
+#include "force/threshold_pressure.h"
+#include "force/viscous_loss.h"
 #include "musclesim/error.h"
+#include "pressure/flow_limit.h"
+#include "pressure/leak.h"
+#include "pressure/pressure_calibration.h"
+#include "pressure/supply_droop.h"
 #include "pressure/valve_lag.h"
+#include "pressure/volume_coupling.h"
+#include "sensor/sensor_backlash.h"
 #include "sensor/sensor_bias.h"
+#include "sensor/sensor_delay.h"
+#include "sensor/sensor_dropout.h"
+#include "sensor/sensor_gain.h"
 
 namespace musclesim {
 
 std::vector<EffectInfo> builtInEffects() {
   return {
       // command: from the controller to the valve
+      ChannelSwap::info(),
+      CommandDeadBand::info(),
+      CommandQuantisation::info(),
       TransportDelay::info(),
-      // pressure: from the valve to the muscle
+      // pressure: from the supply to the muscle
+      SupplyDroop::info(),
+      PressureCalibration::info(),
       ValveLag::info(),
+      FlowLimit::info(),
+      Leak::info(),
+      VolumeCoupling::info(),
       // force: from inside, the force law, to outside, the bone
-      // body
+      OtherForceLaw::info(),
+      ThresholdPressure::info(),
+      ForceGain::info(),
+      ForceDrift::info(),
+      BraidHysteresis::info(),
+      LengthOffset::info(),
+      ViscousLoss::info(),
+      Creep::info(),
+      SeriesElasticity::info(),
+      // body: first what changes the robot, then what loads it
+      AttachmentOffset::info(),
+      BaseTilt::info(),
+      Payload::info(),
+      JointStopOffset::info(),
+      JointCoulombFriction::info(),
       JointViscousFriction::info(),
+      JointStiffness::info(),
+      ExternalForce::info(),
+      Contact::info(),
       // sensor: from the motion to the recording
+      SensorBacklash::info(),
+      SensorGain::info(),
       SensorBias::info(),
+      SensorDelay::info(),
+      SensorDropout::info(),
   };
 }
 

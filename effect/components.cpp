@@ -95,8 +95,8 @@ std::vector<EffectPlace> placesFor(const EffectInfo& info, const std::string& co
   for (const NamedPlace& place : all) {
     if (!chosen(place, component, all) || (component == "all" && !allowsAll(info))) continue;
     const bool is_signal = place.kind == ComponentKind::signal;
-    places.push_back(
-        {simulation, robot, place.kind, is_signal ? -1 : place.first, place.second, place.joint, is_signal ? place.first : -1, place.name});
+    places.push_back({simulation, robot, place.kind, is_signal ? -1 : place.first, place.second, place.joint, is_signal ? place.first : -1,
+                      place.name, component == "all"});
   }
   if (places.empty()) {
     const std::vector<std::string> names = componentsFor(info, robot);

@@ -19,9 +19,13 @@ std::string nameOf(Stage stage) {
   return names[static_cast<std::size_t>(stage)];
 }
 
+EffectValues::EffectValues(const std::vector<EffectParameter>& parameters, std::vector<double> values) : values_(std::move(values)) {
+  for (const EffectParameter& parameter : parameters) names_.push_back(parameter.name);
+}
+
 double EffectValues::operator[](const std::string& name) const {
-  for (std::size_t i = 0; i < parameters_->size(); ++i)
-    if ((*parameters_)[i].name == name) return values_[i];
+  for (std::size_t i = 0; i < names_.size(); ++i)
+    if (names_[i] == name) return values_[i];
   throw std::logic_error("there is no parameter " + name + " in the effect's list");
 }
 

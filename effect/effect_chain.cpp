@@ -55,6 +55,7 @@ void EffectChain::attach() {
   for (const ActiveEffect& effect : given_) placesFor(effectInfo(effect.id), effect.component, simulation_);
   for (const Planned& planned : planned_)
     for (const EffectPlace& place : placesFor(planned.info, planned.component, simulation_)) addObject(planned, place);
+  sensors_->addNoise(simulation_);
 }
 
 namespace {
@@ -190,6 +191,10 @@ void EffectChain::begin(double clock_s) {
     muscle.step_before_s = 0;
     if (!muscle.forces.empty()) muscle.forces.settle(inputOf(muscle, 0));
   }
+}
+
+const std::map<std::string, double>& EffectChain::noise() const {
+  return sensors_->noise();
 }
 
 double EffectChain::lengthRateMmPerS(std::size_t muscle) const {

@@ -1,7 +1,9 @@
 /// The last stage: what is read of the true state.
 #pragma once
 
+#include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "musclesim/effect/effect.h"
@@ -12,6 +14,10 @@ namespace musclesim {
 class SensorStage {
  public:
   void add(int signal, std::unique_ptr<SensorEffect> effect);
+  /// White noise on all signals whose parameter "sensor.<quantity>_noise_<unit>" is not 0.
+  void addNoise(Simulation& simulation);
+  /// Standard deviations of the noise by signal, where there is any.
+  const std::map<std::string, double>& noise() const { return noise_; }
   bool empty() const { return sensors_.empty(); }
   void reset();
   /// Tells the sensors that remember what the signals are now.
@@ -23,7 +29,9 @@ class SensorStage {
     int signal;
     std::unique_ptr<SensorEffect> effect;
   };
-  std::vector<Sensor> sensors_;  ///< of one signal in the order in which they act
+  std::vector<Sensor> sensors_;   ///< of one signal in the order in which they act
+  std::size_t sensor_count_ = 0;  ///< those that do not depend on the sample; they come first
+  std::map<std::string, double> noise_;
   bool tracks_ = false;
   long sample_ = -1;  ///< number of the present sample
   double sample_clock_s_ = 0;

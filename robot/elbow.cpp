@@ -23,7 +23,7 @@ Elbow::Elbow(Simulation& simulation) : Robot(simulation) {
   const double hand_mm = parameter("elbow.hand_mm", 250, "mm", 0, 1e4, "distance of the hand from the hinge");
   lever_mm_ = parameter("elbow.lever_mm", 35, "mm", 0, 1e3, "distance of the attachments from the middle plane");
   lower_mm_ = parameter("elbow.lower_attachment_mm", -20, "mm", -1e3, 1e3, "height of the attachments on the forearm at angle 0");
-  upper_mm_ = parameter("elbow.upper_attachment_mm", 240, "mm", 1, 1e4, "height of the attachments in the world");
+  const double upper_mm = parameter("elbow.upper_attachment_mm", 240, "mm", 1, 1e4, "height of the attachments in the world");
 
   constexpr double drawn_radius_mm = 12;
   const double own_inertia_kgm2 = inertia_kgm2 - forearm_kg * std::pow(center_of_mass_mm / mm_per_m, 2);
@@ -39,7 +39,8 @@ Elbow::Elbow(Simulation& simulation) : Robot(simulation) {
   addAngle("elbow", hinge_);
   for (int i = 0; i < 2; ++i) {
     const double side = i == 0 ? 1 : -1;
-    const Vector top = upperAttachment(side), bottom = lowerAttachment(side, 0);
+    const Vector bottom = lowerAttachment(side, 0);
+    const Vector& top = upper_mm_[i] = mountedStart({side * lever_mm_, upper_mm, 0}, {side, 0, 0});
     muscles_[i] = new Muscle(world(), space(), top, top + (bottom - top) / 3, top + (bottom - top) * 2 / 3, bottom, minimum_mm, maximum_mm);
     muscles_[i]->connectStartTo(nullptr);
     muscles_[i]->connectEndTo(forearm_);
@@ -47,10 +48,6 @@ Elbow::Elbow(Simulation& simulation) : Robot(simulation) {
   }
   const Vector hand(0, -hand_mm, 0);
   setHand(forearm_, forearm_->getRotation().transpose() * (hand - forearm_->getPosition()));
-}
-
-Vector Elbow::upperAttachment(double side) const {
-  return {side * lever_mm_, upper_mm_, 0};
 }
 
 Vector Elbow::lowerAttachment(double side, double angle_rad) const {
@@ -76,7 +73,7 @@ double Elbow::torqueNmm(double angle_rad) {
   for (int i = 0; i < 2; ++i) {
     const double side = i == 0 ? 1 : -1;
     const Vector lower = lowerAttachment(side, angle_rad);
-    const Vector along = upperAttachment(side) - lower;
+    const Vector along = upper_mm_[i] - lower;
     const Vector pull = effects.restingTensionN(i, along.norm()) * along.normalized();
     const Vector half_weight = muscles_[i]->massG() / 2 * gravity;
     torque += lower.cross(pull + half_weight).z();
@@ -91,7 +88,7 @@ void Elbow::settle(const Action& first_command) {
   placeForearm(angle);
   for (int i = 0; i < 2; ++i) {
     const double side = i == 0 ? 1 : -1;
-    muscles_[i]->placeStraight(upperAttachment(side), lowerAttachment(side, angle));
+    muscles_[i]->placeStraight(upper_mm_[i], lowerAttachment(side, angle));
   }
 }
 

@@ -45,6 +45,11 @@ Joint::Joint(Kind kind, dJointID id, std::string name)
   if (kind_ == Kind::slider || kind_ == Kind::fixed) reference_ = separation();
 }
 
+void Joint::takeReference() {
+  reference_pose_ = referenceOf(kind_, id_);
+  if (kind_ == Kind::slider || kind_ == Kind::fixed) reference_ = separation();
+}
+
 double Joint::angleDeg(int axis) const {
   if (kind_ == Kind::hinge && axis == 0) return dJointGetHingeAngle(id_) * deg_per_rad;
   if (kind_ == Kind::hinge2 && axis == 0) return dJointGetHinge2Angle1(id_) * deg_per_rad;

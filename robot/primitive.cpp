@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -175,6 +176,78 @@ void Primitive::setInertia(const Vector& moments_g_mm2) {
   dBodyGetMass(body_->id, &mass);
   dMassSetParameters(&mass, mass.mass, 0, 0, 0, moments_g_mm2.x(), moments_g_mm2.y(), moments_g_mm2.z(), 0, 0, 0);
   dBodySetMass(body_->id, &mass);
+}
+
+namespace {
+
+/// Sets the joint up again for the present pose, after a body's centre of mass has been moved to another point of the body.
+void reattach(Joint& joint, const Vector& anchor) {
+  const dJointID id = joint.id();
+  dVector3 axis;
+  switch (joint.kind()) {
+    case Joint::Kind::ball:
+      dJointSetBallAnchor(id, anchor.x(), anchor.y(), anchor.z());
+      break;
+    case Joint::Kind::hinge:
+      dJointSetHingeAnchor(id, anchor.x(), anchor.y(), anchor.z());
+      break;
+    case Joint::Kind::hinge2:
+      dJointSetHinge2Anchor(id, anchor.x(), anchor.y(), anchor.z());
+      break;
+    case Joint::Kind::universal:
+      dJointSetUniversalAnchor(id, anchor.x(), anchor.y(), anchor.z());
+      break;
+    case Joint::Kind::slider:
+      dJointGetSliderAxis(id, axis);
+      dJointSetSliderAxis(id, axis[0], axis[1], axis[2]);
+      break;
+    case Joint::Kind::fixed:
+      dJointSetFixed(id);
+      break;
+  }
+  joint.takeReference();
+}
+
+Vector anchorOf(const Joint& joint) {
+  dVector3 anchor = {};
+  if (joint.kind() == Joint::Kind::ball) dJointGetBallAnchor(joint.id(), anchor);
+  if (joint.kind() == Joint::Kind::hinge) dJointGetHingeAnchor(joint.id(), anchor);
+  if (joint.kind() == Joint::Kind::hinge2) dJointGetHinge2Anchor(joint.id(), anchor);
+  if (joint.kind() == Joint::Kind::universal) dJointGetUniversalAnchor(joint.id(), anchor);
+  return fromOde(anchor);
+}
+
+Eigen::Matrix3d pointInertia(double mass_g, const Vector& from_center) {
+  return mass_g * (from_center.squaredNorm() * Eigen::Matrix3d::Identity() - from_center * from_center.transpose());
+}
+
+}  // namespace
+
+void Primitive::addPointMass(double mass_g, const Vector& point_mm) {
+  requireFinite("point mass on " + name_, point_mm);
+  dMass mass;
+  dBodyGetMass(body_->id, &mass);
+  const double total_g = mass.mass + mass_g;
+  const Vector center = (mass.mass * getPosition() + mass_g * point_mm) / total_g;
+  const Eigen::Matrix3d to_body = getRotation().transpose();
+  const Eigen::Matrix3d inertia = matrixFromOde(mass.I) + pointInertia(mass.mass, to_body * (getPosition() - center)) +
+                                  pointInertia(mass_g, to_body * (point_mm - center));
+  const bool physical =
+      total_g > 0 && std::isfinite(total_g) && Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia).eigenvalues()[0] > 0;
+  if (!physical)
+    throw BadParameter("point mass on " + name_, fmt::format("{} g", mass_g), "leave mass and moments of inertia of its body positive");
+  std::vector<std::pair<Joint*, Vector>> joints;
+  for (const auto& joint : Simulation::of(world_).joints())
+    if (dJointGetBody(joint->id(), 0) == body_->id || dJointGetBody(joint->id(), 1) == body_->id)
+      joints.emplace_back(joint.get(), anchorOf(*joint));
+  std::vector<Vector> drawn;
+  for (const Primitive* part : body_->parts) drawn.push_back(fromOde(dGeomGetPosition(part->geom_)));
+  dMassSetParameters(&mass, total_g, 0, 0, 0, inertia(0, 0), inertia(1, 1), inertia(2, 2), inertia(0, 1), inertia(0, 2), inertia(1, 2));
+  dBodySetMass(body_->id, &mass);
+  dBodySetPosition(body_->id, center.x(), center.y(), center.z());
+  for (std::size_t i = 0; i < drawn.size(); ++i)
+    dGeomSetOffsetWorldPosition(body_->parts[i]->geom_, drawn[i].x(), drawn[i].y(), drawn[i].z());
+  for (const auto& [joint, anchor] : joints) reattach(*joint, anchor);
 }
 
 void Primitive::place(const Vector& position_mm, const Eigen::Matrix3d& rotation) {

@@ -1,6 +1,7 @@
 #include "musclesim/robot/rig.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "equilibrium.h"
 #include "musclesim/robot/muscle.h"
@@ -13,7 +14,9 @@ Rig::Rig(Simulation& simulation) : Robot(simulation) {
   const double minimum_mm = parameter("rig.minimum_length_mm", 120, "mm", 15, 1e4, "muscle: shortest length");
   const double maximum_mm = parameter("rig.maximum_length_mm", 300, "mm", 15, 1e4, "muscle: longest length");
   const double load_kg = parameter("rig.load_kg", 2.0, "kg", 1e-4, 1e3, "mass hanging from the muscle");
-  const Vector top(0, 0, 0), bottom(0, -(minimum_mm + maximum_mm) / 2, 0);
+  const Vector bottom(0, -(minimum_mm + maximum_mm) / 2, 0);
+  top_mm_ = mountedStart({0, 0, 0}, Vector::UnitX());
+  const Vector& top = top_mm_;
   muscle_ = new Muscle(world(), space(), top, top + (bottom - top) / 3, top + (bottom - top) * 2 / 3, bottom, minimum_mm, maximum_mm);
   constexpr double drawn_radius_mm = 20;
   load_ = new Sphere(world(), nullptr, bottom, load_kg * g_per_kg, 0, drawn_radius_mm);
@@ -32,16 +35,17 @@ void Rig::settle(const Action& first_command) {
   dMass load;
   dBodyGetMass(load_->body().id, &load);
   const double weight_N = (load.mass + muscle_->massG() / 2) * gravity;
-  auto place = [&](double length_mm) { load_->place({0, -length_mm, 0}, Eigen::Matrix3d::Identity()); };
   const auto stops = muscle_->straightLengthRange();
-  const double length_mm = rootBetween(
-      [&](double l) {
-        place(l);
-        return effects.restingTensionN(0, l) + effects.restingLoad(*load_).force_N.y() - weight_N;
-      },
-      stops.shortest_mm, stops.longest_mm);
-  place(length_mm);
-  muscle_->placeStraight(Vector::Zero(), {0, -length_mm, 0});
+  // The load hangs at this depth when the muscle has a length.
+  auto depth = [&](double length_mm) { return std::sqrt(length_mm * length_mm - top_mm_.x() * top_mm_.x()); };
+  auto surplus = [&](double length_mm) {
+    load_->place({0, -depth(length_mm), 0}, Eigen::Matrix3d::Identity());
+    return effects.restingTensionN(0, length_mm) * depth(length_mm) / length_mm + effects.restingLoad(*load_).force_N.y() - weight_N;
+  };
+  const double length_mm = rootBetween(surplus, stops.shortest_mm, stops.longest_mm);
+  const Vector bottom(0, -depth(length_mm), 0);
+  load_->place(bottom, Eigen::Matrix3d::Identity());
+  muscle_->placeStraight(top_mm_, bottom);
 }
 
 }  // namespace musclesim

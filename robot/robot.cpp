@@ -90,14 +90,27 @@ void Robot::addAngle(const std::string& name, const Joint* joint, int axis) {
   angles_.push_back({name, joint, axis});
 }
 
-void Robot::setHand(const Primitive* primitive, const Vector& offset_mm) {
+void Robot::setHand(Primitive* primitive, const Vector& offset_mm) {
   hand_ = primitive;
   hand_offset_mm_ = offset_mm;
   hand_reported_ = true;
 }
 
-void Robot::setLoad(const Primitive* primitive) {
+void Robot::setLoad(Primitive* primitive) {
   hand_ = primitive;
+}
+
+void Robot::loadHand(double mass_g) {
+  const Vector point = handMm();
+  hand_->addPointMass(mass_g, point);
+  hand_offset_mm_ = hand_->getRotation().transpose() * (point - hand_->getPosition());
+}
+
+Vector Robot::mountedStart(const Vector& start_mm, const Vector& lever) {
+  const int muscle = actuatorCount();
+  offset_muscles_.insert(muscle);
+  const double offset_mm = simulation_.effects().sumOf("attachment_offset", fmt::format("muscle_{}", muscle), "offset_mm");
+  return offset_mm == 0 ? start_mm : Vector(start_mm + offset_mm * lever.normalized());
 }
 
 Vector Robot::handMm() const {

@@ -12,6 +12,7 @@ namespace musclesim {
 namespace {
 
 using robotic_arm::Kind;
+using robotic_arm::MuscleRow;
 using robotic_arm::OperationRow;
 using robotic_arm::PrimitiveRow;
 using robotic_arm::Triple;
@@ -68,6 +69,22 @@ Joint* perform(const OperationRow& row, const Bones& bones) {
   return nullptr;
 }
 
+/// The joint that a muscle spans, by the bone that it ends on.
+Vector spannedJoint(const MuscleRow& muscle) {
+  const std::string end = muscle.connect_end_to;
+  const char* bone = end.starts_with("medius") ? "pollex" : end.starts_with("ulna") || end.starts_with("radius") ? "ulna" : "humerus";
+  for (const OperationRow& row : robotic_arm::operations())
+    if ((row.kind == Kind::hinge || row.kind == Kind::ball) && std::string(row.primitive) == bone) return toVector(row.anchor_mm);
+  return Vector::Zero();
+}
+
+/// From the joint to the straight line between the muscle's ends, perpendicular to it.
+Vector leverOf(const MuscleRow& muscle) {
+  const Vector start = toVector(muscle.start_mm), along = (toVector(muscle.end_mm) - start).normalized();
+  const Vector from_joint = start - spannedJoint(muscle);
+  return from_joint - along.dot(from_joint) * along;
+}
+
 }  // namespace
 
 RoboticArm::RoboticArm(Simulation& simulation) : Robot(simulation) {
@@ -86,8 +103,8 @@ RoboticArm::RoboticArm(Simulation& simulation) : Robot(simulation) {
   }
   for (int i = 0; i < muscle_count; ++i) {
     const auto& row = robotic_arm::muscles()[static_cast<std::size_t>(i)];
-    auto* muscle = new Muscle(world(), space(), toVector(row.start_mm), toVector(row.start_control_mm), toVector(row.end_control_mm),
-                              toVector(row.end_mm), row.minimum_length_mm, row.maximum_length_mm);
+    auto* muscle = new Muscle(world(), space(), mountedStart(toVector(row.start_mm), leverOf(row)), toVector(row.start_control_mm),
+                              toVector(row.end_control_mm), toVector(row.end_mm), row.minimum_length_mm, row.maximum_length_mm);
     muscle->connectStartTo(find(bones, row.connect_start_to));
     muscle->connectEndTo(find(bones, row.connect_end_to));
     muscle->setColor(row.cap_rgb[0], row.cap_rgb[1], row.cap_rgb[2], row.color_name);

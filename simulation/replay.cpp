@@ -64,7 +64,7 @@ ReplayResult replayRecording(const Recording& recording, const ReplayOptions& op
   result.simulated.info.initial_state = options.initial_state.value_or(info.initial_state.value_or(robot.initialState()));
   result.simulated.info.step_s = simulation.stepS();
   result.simulated.info.program = "musclesim " MUSCLESIM_VERSION;
-  result.simulated.info.noise_std.clear();
+  result.simulated.info.noise_std = simulation.effects().noise();
   result.simulated.info.active_effects = simulation.effects().active();
   for (const auto& name : robot.signalNames()) result.simulated.signals.push_back({name, {}});
   try {

@@ -75,6 +75,7 @@ RecordingInfo describe(Simulation& simulation, const RunOptions& options, const 
   info.robot_parameters = robotParameters(simulation);
   info.description = fmt::format("{} under {}, {} task", info.robot, options.controller, options.task);
   info.active_effects = simulation.effects().active();
+  info.noise_std = simulation.effects().noise();
   info.seed = simulation.seed();
   info.step_s = simulation.stepS();
   info.program = "musclesim " MUSCLESIM_VERSION;

@@ -1,4 +1,4 @@
-/// Command, pressure, body and sensor stage: limit cases in closed form.
+/// Command stage: limit cases in closed form.
 #include "effect_runs.h"
 
 namespace musclesim {
@@ -14,26 +14,30 @@ TEST(TransportDelay, ShiftsTheCommand) {
     EXPECT_EQ(valuesOf(run, "pressure_0")[row], run.simulated.time_s[row] < 0.144 ? 0.3 : 0.5) << run.simulated.time_s[row];
 }
 
-TEST(ValveLag, AnswersAStepExponentially) {
-  const std::vector<ActiveEffect> lag = {{"valve_lag", "all", {{"fill_time_constant_s", 0.08}, {"vent_time_constant_s", 0.15}}}};
-  const ReplayResult filling = replayWith(stepOfRig(0.3, 0.5), lag), venting = replayWith(stepOfRig(0.5, 0.3), lag);
-  for (std::size_t row = 0; row < filling.simulated.time_s.size(); ++row) {
-    const double t = std::max(0.0, filling.simulated.time_s[row] - 0.1);
-    EXPECT_NEAR(valuesOf(filling, "pressure_0")[row], 0.5 - 0.2 * std::exp(-t / 0.08), 1e-12);
-    EXPECT_NEAR(valuesOf(venting, "pressure_0")[row], 0.3 + 0.2 * std::exp(-t / 0.15), 1e-12);
+TEST(CommandQuantisation, RoundsToItsLevels) {
+  const Recording commands = wavesFor("rig", 0.3);
+  const ReplayResult run = replayWith(commands, {{"command_quantisation", "all", {{"bits", 4.0}}}});
+  for (std::size_t row = 0; row < commands.time_s.size(); ++row)
+    EXPECT_DOUBLE_EQ(valuesOf(run, "pressure_0")[row], std::round(commands.signals[0].values[row] * 15) / 15);
+}
+
+TEST(CommandDeadBand, LeavesSmallCommandsAtZero) {
+  const Recording commands = commandsFor("rig", 0.3, [](double t) { return Action{0.5 * t}; });
+  const ReplayResult run = replayWith(commands, {{"command_dead_band", "all", {{"threshold", 0.1}}}});
+  for (std::size_t row = 0; row < commands.time_s.size(); ++row) {
+    const double u = commands.signals[0].values[row];
+    EXPECT_EQ(valuesOf(run, "pressure_0")[row], u < 0.1 ? 0 : u);
   }
 }
 
-TEST(SensorBias, AddsToTheReadingOnly) {
+TEST(ChannelSwap, ExchangesTwoMusclesAndTwiceNothing) {
   const Recording commands = wavesFor("elbow", 0.3);
-  const ReplayResult clean = replayWith(commands, {});
-  const ReplayResult biased = replayWith(commands, {{"sensor_bias", "signal_angle_elbow", {{"offset", 2.5}}}});
-  for (std::size_t row = 0; row < commands.time_s.size(); ++row)
-    EXPECT_DOUBLE_EQ(valuesOf(biased, "angle_elbow_deg")[row], valuesOf(clean, "angle_elbow_deg")[row] + 2.5);
-  for (const SignalError& error : compareSignals(biased.simulated, clean.simulated)) {
-    if (error.name == "angle_elbow_deg") continue;
-    EXPECT_EQ(error.largest, 0) << error.name;
-  }
+  const ReplayResult run = replayWith(commands, {{"channel_swap", "muscle_1+muscle_0", {}}});
+  EXPECT_EQ(valuesOf(run, "pressure_0"), commands.signals[1].values);
+  EXPECT_EQ(valuesOf(run, "pressure_1"), commands.signals[0].values);
+  EXPECT_EQ(valuesOf(run, "command_0"), commands.signals[0].values);
+  expectSame(replayWith(commands, {{"channel_swap", "muscle_0+muscle_1", {}}, {"channel_swap", "muscle_0+muscle_1", {}}}).simulated,
+             replayWith(commands, {}).simulated);
 }
 
 }  // namespace

@@ -30,14 +30,14 @@ inline Recording commandsFor(const std::string& robot, double duration_s, const 
   return recording;
 }
 
-/// Slow waves with a step in them, different for each muscle.
+/// Slow waves, different for each muscle, and a large step after 60 % of the time.
 inline Recording wavesFor(const std::string& robot, double duration_s) {
   const std::size_t count = robot == "rig" ? 1 : robot == "elbow" ? 2 : 10;
-  return commandsFor(robot, duration_s, [count](double t) {
+  return commandsFor(robot, duration_s, [=](double t) {
     Action action;
     for (std::size_t i = 0; i < count; ++i) {
       const double k = static_cast<double>(i);
-      action.push_back(0.3 + 0.15 * std::sin(2 * std::numbers::pi * (0.8 + 0.1 * k) * t + k) + (t > 0.15 ? 0.1 : 0));
+      action.push_back(0.2 + 0.15 * std::sin(2 * std::numbers::pi * (0.8 + 0.1 * k) * t + k + 4) + (t > 0.6 * duration_s ? 0.5 : 0));
     }
     return action;
   });

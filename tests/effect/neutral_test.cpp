@@ -33,8 +33,13 @@ ActiveEffect neutralEffect(const EffectInfo& info, const std::string& component)
   return activeEffect(info, component, values);
 }
 
-/// As strong as is usual.
+/// As strong as is usual, or so that a short run meets it.
 ActiveEffect usualEffect(const EffectInfo& info, const std::string& component) {
+  if (info.id == "joint_stop_offset") return {info.id, component, {{"offset_deg", 75.0}}};
+  if (info.id == "contact")
+    return {info.id,
+            component,
+            {{"stiffness_Nm_per_deg", 1.0}, {"stiffness_N_per_mm", 1.0}, {"plane_deg", 90.0}, {"plane_mm", 1000.0}, {"side", "below"}}};
   std::vector<double> values;
   for (const EffectParameter& p : info.parameters) values.push_back(p.shape ? p.neutral : p.usual_high);
   return activeEffect(info, component, values);

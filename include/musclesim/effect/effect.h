@@ -41,14 +41,13 @@ struct EffectParameter {
 /// Values of all parameters of one effect, in the order of its list.
 class EffectValues {
  public:
-  EffectValues(const std::vector<EffectParameter>& parameters, std::vector<double> values)
-      : parameters_(&parameters), values_(std::move(values)) {}
+  EffectValues(const std::vector<EffectParameter>& parameters, std::vector<double> values);
   /// Throws std::logic_error for a name that is not in the list.
   double operator[](const std::string& name) const;
   const std::vector<double>& all() const { return values_; }
 
  private:
-  const std::vector<EffectParameter>* parameters_;
+  std::vector<std::string> names_;
   std::vector<double> values_;
 };
 
@@ -67,6 +66,7 @@ struct EffectPlace {
   std::string joint;         ///< name in angle_<joint>_deg
   int signal;                ///< number in Robot::signalNames(); -1: none
   std::string component;     ///< of this place, for messages
+  bool one_of_all;           ///< the effect was asked for on "all"
 };
 
 class Effect {
@@ -202,6 +202,8 @@ class SensorEffect : public Effect {
   /// What comes in, told at every internal step if tracks().
   virtual void track(double, const Moment&) {}
   virtual bool tracks() const { return false; }
+  /// Whether the reading depends on the sample; such effects act after all others.
+  virtual bool perSample() const { return false; }
 };
 
 }  // namespace musclesim

@@ -1,6 +1,7 @@
 /// The effects of one simulation, in the order in which a sample meets them.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -51,6 +52,8 @@ class EffectChain {
   /// The muscles have been at their present lengths for ever, and it is clock_s.
   void begin(double clock_s);
 
+  /// Standard deviations of the sensors' noise by signal, where there is any.
+  const std::map<std::string, double>& noise() const;
   double clockS() const { return clock_s_; }
   /// Rate of a muscle's length over the last internal step, mm/s.
   double lengthRateMmPerS(std::size_t muscle) const;

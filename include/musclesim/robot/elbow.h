@@ -21,9 +21,9 @@ class Elbow : public Robot {
   void placeForearm(double angle_rad);
   double torqueNmm(double angle_rad);
   Vector lowerAttachment(double side, double angle_rad) const;
-  Vector upperAttachment(double side) const;
 
-  double lever_mm_, lower_mm_, upper_mm_;
+  double lever_mm_, lower_mm_;
+  Vector upper_mm_[2];  ///< upper attachments
   Primitive* forearm_;
   Joint* hinge_;
   Actuator* muscles_[2];

@@ -35,6 +35,8 @@ class Joint {
   double angleDeg(int axis = 0) const;
   /// Distance in mm by which the joint is torn: between the anchor on one body and on the other; for sliders across the axis.
   double gapMm() const;
+  /// Makes the present pose the reference, after a body's centre of mass has been moved.
+  void takeReference();
   /// The pose of the two bodies against each other at construction; for joints of the kinds ball, hinge, slider and fixed.
   const JointReference& reference() const { return reference_pose_; }
 

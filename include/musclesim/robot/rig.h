@@ -15,6 +15,7 @@ class Rig : public Robot {
   std::string initialState() const override { return "settled"; }
 
  private:
+  Vector top_mm_;
   Actuator* muscle_;
   Primitive* load_;
 };

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -62,6 +63,11 @@ class Robot {
   const Primitive* hand() const { return hand_; }
   /// The hand's point in the world, mm.
   Vector handMm() const;
+  /// Adds a point mass at the hand, negative to take one away, before the robot has moved. The reported point stays where it is.
+  /// Throws BadParameter as Primitive::addPointMass.
+  void loadHand(double mass_g);
+  /// Whether the robot built a muscle at mountedStart().
+  bool asksForOffset(int muscle) const { return offset_muscles_.contains(muscle); }
   const std::string& name() const { return name_; }
 
   /// Registers a robot class under a name; a later registration of the same name replaces the earlier one.
@@ -88,9 +94,11 @@ class Robot {
   /// A joint whose angle is reported as angle_<name>_deg.
   void addAngle(const std::string& name, const Joint* joint, int axis = 0);
   /// The reported point: a point of a primitive's body, given in the body's frame relative to its centre of mass, mm.
-  void setHand(const Primitive* primitive, const Vector& offset_mm = Vector::Zero());
+  void setHand(Primitive* primitive, const Vector& offset_mm = Vector::Zero());
   /// A primitive whose centre carries what effects hang on the hand, but is not reported.
-  void setLoad(const Primitive* primitive);
+  void setLoad(Primitive* primitive);
+  /// Where the next muscle starts: at `start_mm`, unless an effect displaces it along the direction of its lever arm.
+  Vector mountedStart(const Vector& start_mm, const Vector& lever);
 
  private:
   using Factory = std::function<std::unique_ptr<Robot>(Simulation&)>;
@@ -104,7 +112,8 @@ class Robot {
   Simulation& simulation_;
   std::vector<Actuator*> actuators_;
   std::vector<Angle> angles_;
-  const Primitive* hand_ = nullptr;
+  std::set<int> offset_muscles_;
+  Primitive* hand_ = nullptr;
   bool hand_reported_ = false;
   Vector hand_offset_mm_ = Vector::Zero();
   std::string name_ = "robot";

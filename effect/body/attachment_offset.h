@@ -1,0 +1,20 @@
+/// Body stage: a muscle starts beside the place where the model has it.
+///     start' = start + d e
+/// d = offset_mm, e unit vector along the lever arm: perpendicular to the muscle's line in the pose as built, in the plane of the line and
+/// the joint that the muscle spans, away from the joint (rig: along x). The robot builds the muscle there; robots that do not ask for the
+/// offset (Robot::mountedStart) refuse the effect.
+/// Neutral: d = 0. Range -200 .. 200 mm, usually -8 .. 8.  Source: definition.
+#pragma once
+
+#include "musclesim/effect/catalogue.h"
+
+namespace musclesim {
+
+class AttachmentOffset final : public BodyEffect {
+ public:
+  static EffectInfo info();
+
+  void attach(const EffectPlace& place) override;
+};
+
+}  // namespace musclesim

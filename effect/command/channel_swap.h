@@ -1,0 +1,23 @@
+/// Command stage: the tubes or wires of two muscles are exchanged.
+///     u_i' = u_j,  u_j' = u_i
+/// u commanded, u' delivered pressure. The component muscle_i+muscle_j names the two. There is no neutral setting: the effect is there or
+/// not.  Source: definition.
+#pragma once
+
+#include "musclesim/effect/catalogue.h"
+
+namespace musclesim {
+
+class ChannelSwap final : public RatioEffect {
+ public:
+  static EffectInfo info();
+
+  void attach(const EffectPlace& place) override;
+  void apply(std::vector<double>& ratios, const Moment&) override { settle(ratios); }
+  void settle(std::vector<double>& ratios) override { std::swap(ratios[first_], ratios[second_]); }
+
+ private:
+  std::size_t first_ = 0, second_ = 0;
+};
+
+}  // namespace musclesim

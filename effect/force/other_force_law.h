@@ -1,0 +1,29 @@
+/// Force stage: the muscle follows another static law than the model's.
+///     F' = G(p, l)
+/// G one of the laws of musclesim/robot: Eq. 1 with other constants, Chou-Hannaford, Sarosi, or the measured map of the parameters
+/// "force_law.*". F tension, p pressure, l length; the constants are those of the law, see its header. rest_length_mm 0 stands for the
+/// muscle's own longest length.
+/// Neutral: law = own.  Source: Braun 2007; Chou and Hannaford 1996; Sarosi 2012.
+#pragma once
+
+#include "musclesim/effect/catalogue.h"
+#include "musclesim/robot/force_law.h"
+
+namespace musclesim {
+
+class OtherForceLaw final : public ForceEffect {
+ public:
+  explicit OtherForceLaw(EffectValues values) : values_(std::move(values)) {}
+  static EffectInfo info();
+
+  void attach(const EffectPlace& place) override;
+  double tensionN(const MuscleInput& input, const ForceBelow&) const override {
+    return law_->tensionN(input.pressure_ratio, input.length_mm);
+  }
+
+ private:
+  EffectValues values_;
+  std::unique_ptr<ForceLaw> law_;
+};
+
+}  // namespace musclesim

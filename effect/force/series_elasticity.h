@@ -1,0 +1,30 @@
+/// Force stage: a tendon between muscle and bone.
+///     F' = F(p, l - x) = k x,    x >= 0: the tendon goes slack where the muscle would push
+/// F tension, l length of muscle and tendon, x stretch of the tendon in mm, k = stiffness_N_per_mm. The tendon has no mass; x is found at
+/// each step to 1e-10 mm.
+/// Neutral: k infinite. Range 0.01 .. infinity N/mm, usually 5 .. 1000.  Source: springs in series.
+#pragma once
+
+#include "musclesim/effect/catalogue.h"
+
+namespace musclesim {
+
+class SeriesElasticity final : public ForceEffect {
+ public:
+  explicit SeriesElasticity(double stiffness_N_per_mm) : stiffness_(stiffness_N_per_mm) {}
+  static EffectInfo info();
+
+  double tensionN(const MuscleInput& input, const ForceBelow& below) const override;
+  void advance(const MuscleInput& input) override;
+  void settle(const MuscleInput&) override { step_s_ = 0; }
+
+ private:
+  /// Input of the muscle behind a tendon stretched by x.
+  MuscleInput inside(const MuscleInput& input, double stretch_mm) const;
+
+  double stiffness_;
+  mutable double stretch_mm_ = 0;              ///< x of the last answer
+  double stretch_before_mm_ = 0, step_s_ = 0;  ///< x at the begin of the last step, and its length
+};
+
+}  // namespace musclesim

@@ -1,0 +1,50 @@
+#include "volume_coupling.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "musclesim/robot/actuator.h"
+
+namespace musclesim {
+
+namespace {
+
+constexpr double atmosphere_ratio = 0.17;
+
+}  // namespace
+
+EffectInfo VolumeCoupling::info() {
+  return {.id = "volume_coupling",
+          .stage = Stage::pressure,
+          .acts_on = {ComponentKind::muscle},
+          .summary = "a muscle that is stretched compresses its own air",
+          .equation = "dp/dt = (u - p) / tau - n (p + p_atm) (dV/dt) / V, V ~ 1 + v_0 - r^2    u delivered, p actual, r length ratio",
+          .signature = "pressure moves when the joint is pushed at constant command",
+          .source = "polytropic gas in a changing volume; volume from virtual work as in Chou and Hannaford 1996",
+          .parameters = {{"polytropic_exponent", "", 0, 0, 2, 1, 1.4, "n; 1: isothermal, 1.4: adiabatic"},
+                         {"regulator_time_constant_s", "s", 0.1, 1e-4, 10, 0.02, 0.5, "tau", true},
+                         {"rest_volume_ratio", "", 1, 0.05, 100, 0.5, 3, "v_0: volume at full length per change of volume", true}},
+          .make = [](const EffectValues& values) {
+            return std::make_unique<VolumeCoupling>(values["polytropic_exponent"], values["regulator_time_constant_s"],
+                                                    values["rest_volume_ratio"]);
+          }};
+}
+
+double VolumeCoupling::relativeVolumeRatePerS() const {
+  const double range_mm = actuator().maximumLengthMm() - actuator().minimumLengthMm();
+  const double r = std::clamp(actuator().lengthRatio(), 0.0, 1.0);
+  return -2 * r * lengthRateMmPerS() / range_mm / (1 + rest_volume_ratio_ - r * r);
+}
+
+double VolumeCoupling::output(double input, const Moment& moment) {
+  const double squeeze_per_s = exponent_ * relativeVolumeRatePerS();
+  const double rate_per_s = 1 / regulator_s_ + squeeze_per_s;
+  const double drive_per_s = input / regulator_s_ - squeeze_per_s * atmosphere_ratio;
+  const double x = rate_per_s * moment.h_s;
+  // p(h) = p e^-x + drive h (1 - e^-x)/x; the muscle may lose volume faster than the valve lets out.
+  const double share = std::abs(x) > 1e-12 ? -std::expm1(-x) / x : 1;
+  pressure_ = std::max(0.0, pressure_ * std::exp(-x) + drive_per_s * moment.h_s * share);
+  return pressure_;
+}
+
+}  // namespace musclesim

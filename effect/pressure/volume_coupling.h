@@ -1,0 +1,31 @@
+/// Pressure stage: a muscle whose volume changes compresses its own air while the valve is too slow to let it out.
+///     dp/dt = (u - p) / tau - n (p + p_atm) (dV/dt) / V
+///     V ~ 1 + v_0 - r^2,    r = (l - l_min) / (l_max - l_min)
+/// u delivered, p actual pressure, fractions of full scale; n = polytropic_exponent, tau = regulator_time_constant_s, p_atm = 0.17 of full
+/// scale (1 bar of 6), l length. V is the volume, up to a factor, that makes the work p dV equal to the work of Eq. 1's tension c p r over
+/// dl; v_0 = rest_volume_ratio is the volume at full length in units of the change from l_min to l_max. Exact for u and dV/dt held over the
+/// step.
+/// Neutral: n = 0, p = u. Range of n 0 .. 2, usually 1 (slow) .. 1.4 (fast, adiabatic).  Source: polytropic gas in a changing volume;
+/// virtual work as in Chou and Hannaford 1996.
+#pragma once
+
+#include "musclesim/effect/catalogue.h"
+
+namespace musclesim {
+
+class VolumeCoupling final : public MuscleRatioEffect {
+ public:
+  VolumeCoupling(double polytropic_exponent, double regulator_time_constant_s, double rest_volume_ratio)
+      : exponent_(polytropic_exponent), regulator_s_(regulator_time_constant_s), rest_volume_ratio_(rest_volume_ratio) {}
+  static EffectInfo info();
+
+ private:
+  double output(double input, const Moment& moment) override;
+  double settled(double input) override { return pressure_ = input; }
+  double relativeVolumeRatePerS() const;
+
+  double exponent_, regulator_s_, rest_volume_ratio_;
+  double pressure_ = 0;
+};
+
+}  // namespace musclesim

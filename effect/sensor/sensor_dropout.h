@@ -1,0 +1,38 @@
+/// Sensor stage: samples are lost; the last value is held.
+///     y'_k = y'_(k-1) while a gap lasts, y_k otherwise
+/// fraction: share of the samples that are held, in gaps whose length is geometric with mean mean_gap_samples. Samples are the times at
+/// which the robot is read. Random, from the run's seed and the signal's name; the first sample is never held. Neutral: fraction = 0. Range
+/// 0 .. 0.99, usually 0.01 .. 0.3.  Source: Gilbert 1960, two-state channel.
+#pragma once
+
+#include <optional>
+
+#include "musclesim/effect/catalogue.h"
+#include "musclesim/random.h"
+
+namespace musclesim {
+
+class SensorDropout final : public SensorEffect {
+ public:
+  SensorDropout(double fraction, double mean_gap_samples) : fraction_(fraction), mean_gap_samples_(mean_gap_samples) {}
+  static EffectInfo info();
+
+  void attach(const EffectPlace& place) override;
+  void reset() override;
+  double reading(double value, const Moment&, long sample) override;
+  bool perSample() const override { return true; }
+
+ private:
+  /// Whether the next sample is lost.
+  bool drawGap();
+
+  double fraction_, mean_gap_samples_;
+  std::uint64_t seed_ = 0;
+  std::string owner_;
+  std::optional<RandomStream> random_;
+  long sample_ = -1;
+  bool in_gap_ = false;
+  double held_ = 0, last_ = 0;
+};
+
+}  // namespace musclesim

@@ -1,0 +1,184 @@
+/// Force stage: limit cases in closed form, on a muscle whose length is prescribed.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "effect_runs.h"
+#include "length_machine.h"
+#include "musclesim/robot/chou_hannaford.h"
+#include "musclesim/robot/sarosi.h"
+
+namespace musclesim {
+namespace {
+
+constexpr double h_s = 3e-4;
+
+TEST(ThresholdPressure, IsTheLawAtLessPressure) {
+  LengthMachine machine({{"threshold_pressure", "all", {{"threshold", 0.1}}}});
+  EXPECT_NEAR(machine.tensionAt(230), machine.lawN(0.4 / 0.9, 230), 1e-9);
+  machine.setPressure(0.07);
+  EXPECT_NEAR(machine.tensionAt(230), machine.lawN(0, 230), 1e-9);
+}
+
+TEST(ForceGain, IsAFactor) {
+  LengthMachine machine({{"force_gain", "muscle_0", {{"gain", 0.8}}}});
+  EXPECT_NEAR(machine.tensionAt(230), 0.8 * machine.lawN(0.5, 230), 1e-9);
+}
+
+TEST(ForceDrift, GrowsWithTime) {
+  LengthMachine machine({{"force_drift", "all", {{"rate_per_min", 0.05}}}});
+  EXPECT_NEAR(machine.tensionAt(230), machine.lawN(0.5, 230), 1e-9);
+  for (int i = 0; i < 900; ++i) machine.hold(0.1);
+  EXPECT_NEAR(machine.tensionAt(230), 1.075 * machine.lawN(0.5, 230), 1e-9);
+}
+
+TEST(LengthOffset, IsTheLawAtAnotherLength) {
+  LengthMachine machine({{"length_offset", "all", {{"offset_mm", -7.0}}}});
+  EXPECT_NEAR(machine.tensionAt(230), machine.lawN(0.5, 223), 1e-9);
+}
+
+TEST(ForceLaw, IsTheOtherLaw) {
+  LengthMachine sarosi({{"force_law", "all", {{"law", "sarosi"}, {"a5_N", 100.0}}}});
+  SarosiConstants constants;
+  constants.a5_N = 100;
+  EXPECT_NEAR(sarosi.tensionAt(230), SarosiForceLaw(300, constants).tensionN(0.5, 230), 1e-9);
+  LengthMachine braid({{"force_law", "all", {{"law", "chou-hannaford"}, {"rest_length_mm", 310.0}}}});
+  EXPECT_NEAR(braid.tensionAt(230), ChouHannafordForceLaw(310, {}).tensionN(0.5, 230), 1e-9);
+  LengthMachine map({{"force_law", "all", {{"law", "map"}}}});
+  EXPECT_NEAR(map.tensionAt(230), map.lawN(0.5, 230), 1.0);  // its defaults resemble Eq. 1
+  LengthMachine same({{"force_law", "all", {{"law", "braun"}}}});
+  EXPECT_EQ(same.tensionAt(230), same.lawN(0.5, 230));
+}
+
+TEST(BraidHysteresis, LoopIsTwiceTheWidthAtAnySpeed) {
+  for (const double pressure : {0.3, 0.6})
+    for (const double rate_mm_per_s : {10.0, 100.0}) {
+      LengthMachine machine({{"braid_hysteresis", "all", {{"relative_width", 0.08}, {"presliding_mm", 1.5}}}}, pressure, 210);
+      machine.moveTo(225, rate_mm_per_s, h_s);
+      const double longer = machine.tensionAt(machine.lengthMm());
+      machine.moveTo(230, rate_mm_per_s, h_s);
+      machine.moveTo(225, rate_mm_per_s, h_s);
+      const double shorter = machine.tensionAt(machine.lengthMm()), law = machine.lawN(pressure, 225);
+      EXPECT_NEAR(longer, 1.08 * law, 1e-6) << rate_mm_per_s;
+      EXPECT_NEAR(shorter, 0.92 * law, 1e-6) << rate_mm_per_s;
+    }
+}
+
+TEST(BraidHysteresis, ReversesOverTwicePresliding) {
+  LengthMachine machine({{"braid_hysteresis", "all", {{"relative_width", 0.1}, {"presliding_mm", 1.5}}}}, 0.5, 210);
+  machine.moveTo(225, 50, h_s);
+  machine.moveTo(223.5, 50, h_s);  // half of the way from one side to the other
+  EXPECT_NEAR(machine.tensionAt(223.5), machine.lawN(0.5, 223.5), 1e-6);
+}
+
+TEST(ViscousLoss, GrowsWithSpeedAndDirection) {
+  for (const double rate_mm_per_s : {10.0, 100.0}) {
+    LengthMachine machine({{"viscous_loss", "all", {{"damping_Ns_per_m", 200.0}, {"shortening_ratio", 1.5}}}}, 0.5, 205);
+    machine.moveTo(225, rate_mm_per_s, h_s);
+    const double law = machine.lawN(0.5, 225);
+    EXPECT_NEAR(machine.tensionAt(225) - law, 0.2 * rate_mm_per_s, 1e-3 * rate_mm_per_s);
+    machine.moveTo(230, rate_mm_per_s, h_s);
+    machine.moveTo(225, rate_mm_per_s, h_s);
+    EXPECT_NEAR(machine.tensionAt(225) - law, -0.3 * rate_mm_per_s, 1e-3 * rate_mm_per_s);
+  }
+}
+
+/// The length at which the machine's muscle carries a load now.
+double lengthUnder(LengthMachine& machine, double load_N) {
+  double low_mm = 130, high_mm = 295;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = (low_mm + high_mm) / 2;
+    (machine.tensionAt(middle) < load_N ? low_mm : high_mm) = middle;
+  }
+  machine.tensionAt(low_mm);
+  return low_mm;
+}
+
+TEST(Creep, ReachesItsShareAtOnceAndTheRestWithItsTimeConstant) {
+  const double amount = 0.2, tau_s = 0.6, load_N = 20;
+  LengthMachine machine({{"creep", "all", {{"amount", amount}, {"time_constant_s", tau_s}}}}, 0.4, 220);
+  for (int i = 0; i < 10000; ++i) {  // creep under the load until it is complete
+    lengthUnder(machine, load_N);
+    machine.hold(1e-3);
+  }
+  const double before_mm = lengthUnder(machine, load_N);
+  machine.setPressure(0.6);
+  const double first_mm = lengthUnder(machine, load_N);
+  double later_mm = 0;
+  for (int i = 0; i < 10000; ++i) {
+    machine.hold(1e-3);
+    const double length_mm = lengthUnder(machine, load_N);
+    if (i == 599) later_mm = length_mm;
+  }
+  const double final_mm = lengthUnder(machine, load_N);
+  EXPECT_LT(final_mm, before_mm - 10);
+  EXPECT_NEAR((first_mm - before_mm) / (final_mm - before_mm), 1 / (1 + amount), 1e-5);
+  EXPECT_NEAR((later_mm - final_mm) / (first_mm - final_mm), std::exp(-1), 2e-3);
+}
+
+TEST(Creep, RelaxesAtConstantLength) {
+  const double amount = 0.2, tau_s = 0.6;
+  LengthMachine machine({{"creep", "all", {{"amount", amount}, {"time_constant_s", tau_s}}}}, 0.5, 220);
+  const double share = amount / (1 + amount), from_mm = share * (220 - 300.0), to_mm = share * (240 - 300.0);
+  EXPECT_NEAR(machine.tensionAt(220), machine.lawN(0.5, 220 - from_mm), 1e-9);
+  machine.tensionAt(240);
+  for (int i = 0; i < 500; ++i) machine.hold(1e-3);
+  const double creep_mm = to_mm + (from_mm - to_mm) * std::exp(-0.5 * (1 + amount) / tau_s);
+  EXPECT_NEAR(machine.tensionAt(240), machine.lawN(0.5, 240 - creep_mm), 1e-6);
+}
+
+TEST(SeriesElasticity, IsInSeriesWithTheLaw) {
+  for (const double stiffness : {0.3, 5.0, 1000.0}) {
+    LengthMachine machine({{"series_elasticity", "all", {{"stiffness_N_per_mm", stiffness}}}});
+    const double tension = machine.tensionAt(240);
+    EXPECT_GT(tension, 1);
+    EXPECT_NEAR(tension, machine.lawN(0.5, 240 - tension / stiffness), 1e-6) << stiffness;
+  }
+}
+
+TEST(SeriesElasticity, IsSlackWhereTheMuscleWouldPush) {
+  LengthMachine machine({{"series_elasticity", "all", {{"stiffness_N_per_mm", 5.0}}}}, 0.5, 125);
+  EXPECT_LT(machine.lawN(0.5, 118), 0);
+  EXPECT_EQ(machine.tensionAt(120), machine.tensionAt(120));
+  LengthMachine short_one({{"series_elasticity", "all", {{"stiffness_N_per_mm", 5.0}}}, {"length_offset", "all", {{"offset_mm", -20.0}}}},
+                          0.5, 125);
+  EXPECT_EQ(short_one.tensionAt(125), 0);
+}
+
+/// Work that a machine spends on a muscle along a random walk of its length, beyond what the law gives back.
+double workAlongRandomWalk(const std::vector<ActiveEffect>& effects, unsigned seed) {
+  LengthMachine machine(effects, 0.5, 220);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> length_mm(200, 250), rate_mm_per_s(20, 200);
+  double work_Nmm = 0, lowest_Nmm = 0, before_mm = 220, before_N = 0;
+  for (int leg = 0; leg < 30; ++leg)
+    machine.moveTo(length_mm(random), rate_mm_per_s(random), h_s, [&](double now_mm, double tension_N) {
+      const double loss_N = tension_N - machine.lawN(0.5, now_mm);
+      work_Nmm += (now_mm - before_mm) * (loss_N + before_N) / 2;
+      lowest_Nmm = std::min(lowest_Nmm, work_Nmm);
+      before_mm = now_mm;
+      before_N = loss_N;
+    });
+  EXPECT_GE(lowest_Nmm, -1e-3) << "energy came out of it";
+  return work_Nmm;
+}
+
+TEST(DissipativeForces, NeverGiveEnergy) {
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    EXPECT_GT(workAlongRandomWalk({{"braid_hysteresis", "all", {{"relative_width", 0.1}, {"presliding_mm", 3.0}}}}, seed), 100);
+    EXPECT_GT(workAlongRandomWalk({{"viscous_loss", "all", {{"damping_Ns_per_m", 3000.0}}}}, seed), 100);
+  }
+}
+
+TEST(ForceEffects, EncloseEachOther) {
+  // Gain inside, offset around it, tendon outermost.
+  LengthMachine machine({{"series_elasticity", "all", {{"stiffness_N_per_mm", 2.0}}},
+                         {"length_offset", "all", {{"offset_mm", 4.0}}},
+                         {"force_gain", "all", {{"gain", 0.9}}}});
+  const double tension = machine.tensionAt(240);
+  EXPECT_NEAR(tension, 0.9 * machine.lawN(0.5, 240 - tension / 2 + 4), 1e-6);
+}
+
+}  // namespace
+}  // namespace musclesim

@@ -1,0 +1,75 @@
+/// A muscle in a machine that prescribes its length: the rig's muscle, moved by hand.
+#pragma once
+
+#include "musclesim/robot/muscle.h"
+#include "musclesim/simulation/simulation.h"
+
+namespace musclesim {
+
+class LengthMachine {
+ public:
+  explicit LengthMachine(std::vector<ActiveEffect> effects, double pressure_ratio = 0.5, double length_mm = 220)
+      : simulation_(optionsWith(std::move(effects))), robot_(simulation_.build("rig")) {
+    simulation_.effects().settlePressures({pressure_ratio});
+    setLength(length_mm);
+    simulation_.effects().begin(0);
+    look();
+  }
+
+  /// Law without effects.
+  double lawN(double pressure_ratio, double length_mm) const { return muscle().calculateForce(pressure_ratio, length_mm); }
+  double lengthMm() const { return muscle().lengthMm(); }
+  void setPressure(double ratio) {
+    muscle().setPressure(ratio);
+    look();
+  }
+  /// The tension now that the length has been set, without time passing.
+  double tensionAt(double length_mm) {
+    setLength(length_mm);
+    return look();
+  }
+  /// Holds the present length for h_s.
+  double hold(double h_s) {
+    stages(h_s);
+    simulation_.effects().track(h_s);
+    return look();
+  }
+  /// Goes to a length at a constant rate in steps of h_s; calls `each(length_mm, tension_N)` after each.
+  template <class Function>
+  void moveTo(double length_mm, double rate_mm_per_s, double h_s, const Function& each) {
+    const double begin_mm = lengthMm();
+    const auto count = static_cast<int>(std::lround(std::abs(length_mm - begin_mm) / rate_mm_per_s / h_s));
+    for (int i = 1; i <= count; ++i) {
+      stages(h_s);
+      simulation_.effects().track(h_s);
+      setLength(begin_mm + (length_mm - begin_mm) * i / count);
+      each(lengthMm(), look());
+    }
+  }
+  void moveTo(double length_mm, double rate_mm_per_s, double h_s) {
+    moveTo(length_mm, rate_mm_per_s, h_s, [](double, double) {});
+  }
+
+ private:
+  static SimulationOptions optionsWith(std::vector<ActiveEffect> effects) {
+    SimulationOptions options;
+    options.effects = std::move(effects);
+    return options;
+  }
+  Actuator& muscle() const { return *robot_.actuators()[0]; }
+  void setLength(double length_mm) { muscle().placeStraight({0, 0, 0}, {0, -length_mm, 0}); }
+  void stages(double h_s) {
+    simulation_.effects().command(h_s);
+    simulation_.effects().pressure(h_s);
+    simulation_.effects().force(h_s);
+  }
+  double look() {
+    stages(0);
+    return muscle().tensionN();
+  }
+
+  Simulation simulation_;
+  Robot& robot_;
+};
+
+}  // namespace musclesim

@@ -1,0 +1,101 @@
+/// Pressure stage: limit cases in closed form.
+#include "effect_runs.h"
+
+namespace musclesim {
+namespace {
+
+Recording stepOf(const std::string& robot, const Action& from, const Action& to, double duration_s = 0.5) {
+  return commandsFor(robot, duration_s, [=](double t) { return t < 0.0999 ? from : to; });
+}
+
+double sinceStep(double time_s) {
+  return std::max(0.0, time_s - 0.1);
+}
+
+TEST(ValveLag, AnswersAStepExponentially) {
+  const std::vector<ActiveEffect> lag = {{"valve_lag", "all", {{"fill_time_constant_s", 0.08}, {"vent_time_constant_s", 0.15}}}};
+  const ReplayResult filling = replayWith(stepOf("rig", {0.3}, {0.5}), lag), venting = replayWith(stepOf("rig", {0.5}, {0.3}), lag);
+  for (std::size_t row = 0; row < filling.simulated.time_s.size(); ++row) {
+    const double t = sinceStep(filling.simulated.time_s[row]);
+    EXPECT_NEAR(valuesOf(filling, "pressure_0")[row], 0.5 - 0.2 * std::exp(-t / 0.08), 1e-12);
+    EXPECT_NEAR(valuesOf(venting, "pressure_0")[row], 0.3 + 0.2 * std::exp(-t / 0.15), 1e-12);
+  }
+}
+
+TEST(FlowLimit, IsARampByDirection) {
+  const std::vector<ActiveEffect> limit = {{"flow_limit", "all", {{"fill_rate_per_s", 1.0}, {"vent_rate_per_s", 0.5}}}};
+  const ReplayResult filling = replayWith(stepOf("rig", {0.3}, {0.5}), limit), venting = replayWith(stepOf("rig", {0.5}, {0.3}), limit);
+  for (std::size_t row = 0; row < filling.simulated.time_s.size(); ++row) {
+    const double t = sinceStep(filling.simulated.time_s[row]);
+    EXPECT_NEAR(valuesOf(filling, "pressure_0")[row], std::min(0.3 + 1.0 * t, 0.5), 1e-12);
+    EXPECT_NEAR(valuesOf(venting, "pressure_0")[row], std::max(0.5 - 0.5 * t, 0.3), 1e-12);
+  }
+}
+
+TEST(FlowLimit, LeavesSlowCommandsAlone) {
+  const Recording commands = commandsFor("rig", 0.4, [](double t) { return Action{0.3 + 0.2 * t}; });
+  const ReplayResult run = replayWith(commands, {{"flow_limit", "all", {{"fill_rate_per_s", 1.0}}}});
+  // Within the first internal steps after each row a staircase of 0.002 is followed.
+  for (std::size_t row = 1; row < commands.time_s.size(); ++row)
+    EXPECT_NEAR(valuesOf(run, "pressure_0")[row], commands.signals[0].values[row - 1], 1e-12);
+}
+
+TEST(Leak, HoldsLessAndFollowsItsRegulator) {
+  const double k = 2, u = 0.5, held = u / (1 + k * 0.05);
+  const ReplayResult run = replayWith(stepOf("rig", {0.3}, {u}), {{"leak", "all", {{"leak_per_s", k}}}});
+  EXPECT_NEAR(valuesOf(run, "pressure_0").front(), 0.3 / (1 + k * 0.05), 1e-12);
+  for (std::size_t row = 0; row < run.simulated.time_s.size(); ++row) {
+    const double t = sinceStep(run.simulated.time_s[row]);
+    const double expected = held + (0.3 / (1 + k * 0.05) - held) * std::exp(-t * (1 / 0.05 + k));
+    EXPECT_NEAR(valuesOf(run, "pressure_0")[row], expected, 1e-12);
+  }
+}
+
+TEST(SupplyDroop, LimitsAllMusclesByTheirCommonDemand) {
+  const double droop = 0.1;
+  const ReplayResult run = replayWith(stepOf("elbow", {0.9, 0.2}, {0.9, 0.7}), {{"supply_droop", "all", {{"droop", droop}}}});
+  for (std::size_t row = 0; row < run.simulated.time_s.size(); ++row) {
+    const double t = run.simulated.time_s[row];
+    const bool after = t > 0.0999;
+    const double rise = after ? 0.5 / 0.2 * std::exp(-(t - 0.1) / 0.2) : 0;
+    const double supply = 1 - droop * (rise + (after ? 0.8 : 0.55));
+    EXPECT_NEAR(valuesOf(run, "pressure_0")[row], std::min(0.9, supply), 1e-9) << t;
+    EXPECT_NEAR(valuesOf(run, "pressure_1")[row], std::min(after ? 0.7 : 0.2, supply), 1e-9) << t;
+  }
+}
+
+TEST(VolumeCoupling, ConservesThePolytropicProductWhereTheValveIsSlow) {
+  // Built, the rig's load falls or is pulled up from the middle of the range.
+  const double n = 1.3, atmosphere = 0.17;
+  ReplayOptions options;
+  options.initial_state = "built";
+  const Recording commands = commandsFor("rig", 0.15, [](double) { return Action{0.5}; });
+  options.effects = {{"volume_coupling", "all", {{"polytropic_exponent", n}, {"regulator_time_constant_s", 10.0}}}};
+  const ReplayResult run = replayRecording(commands, options);
+  auto product = [&](std::size_t row) {
+    const double r = (valuesOf(run, "length_0_mm")[row] - 120) / 180;
+    return (valuesOf(run, "pressure_0")[row] + atmosphere) * std::pow(2 - r * r, n);
+  };
+  const auto& length = valuesOf(run, "length_0_mm");
+  EXPECT_GT(std::abs(length.back() - length.front()), 5);
+  EXPECT_GT(std::abs(valuesOf(run, "pressure_0").back() - 0.5), 0.01);
+  for (std::size_t row = 0; row < commands.time_s.size(); ++row) EXPECT_NEAR(product(row), product(0), 0.005 * product(0)) << row;
+}
+
+TEST(VolumeCoupling, VanishesWithAFastValve) {
+  const Recording commands = wavesFor("rig", 0.3);
+  const ReplayResult run =
+      replayWith(commands, {{"volume_coupling", "all", {{"polytropic_exponent", 1.4}, {"regulator_time_constant_s", 1e-4}}}});
+  for (std::size_t row = 1; row < commands.time_s.size(); ++row)
+    EXPECT_NEAR(valuesOf(run, "pressure_0")[row], commands.signals[0].values[row - 1], 1e-3);
+}
+
+TEST(PressureCalibration, IsAStraightLineAboveZero) {
+  const std::vector<ActiveEffect> calibration = {{"pressure_calibration", "all", {{"gain", 0.9}, {"offset", -0.05}}}};
+  const ReplayResult run = replayWith(stepOf("rig", {0.02}, {0.5}), calibration);
+  EXPECT_EQ(valuesOf(run, "pressure_0").front(), 0);
+  EXPECT_DOUBLE_EQ(valuesOf(run, "pressure_0").back(), 0.9 * 0.5 - 0.05);
+}
+
+}  // namespace
+}  // namespace musclesim

@@ -1,0 +1,152 @@
+/// Sensor stage: readings in closed form, noise and lost samples by their statistics.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "effect_runs.h"
+#include "musclesim/error.h"
+
+namespace musclesim {
+namespace {
+
+/// Only one signal of a run may differ from the clean one.
+void expectOnly(const std::string& signal, const ReplayResult& run, const ReplayResult& clean) {
+  for (const SignalError& error : compareSignals(run.simulated, clean.simulated)) {
+    if (error.name == signal) continue;
+    EXPECT_EQ(error.largest, 0) << error.name;
+  }
+}
+
+TEST(SensorBias, AddsToTheReadingOnly) {
+  const Recording commands = wavesFor("elbow", 0.3);
+  const ReplayResult clean = replayWith(commands, {});
+  const ReplayResult run = replayWith(commands, {{"sensor_bias", "signal_angle_elbow", {{"offset", 2.5}}}});
+  for (std::size_t row = 0; row < commands.time_s.size(); ++row)
+    EXPECT_DOUBLE_EQ(valuesOf(run, "angle_elbow_deg")[row], valuesOf(clean, "angle_elbow_deg")[row] + 2.5);
+  expectOnly("angle_elbow_deg", run, clean);
+}
+
+TEST(SensorGain, MultipliesTheReadingOnly) {
+  const Recording commands = wavesFor("elbow", 0.3);
+  const ReplayResult clean = replayWith(commands, {});
+  const ReplayResult run = replayWith(commands, {{"sensor_gain", "signal_force_1", {{"gain", 1.1}}}});
+  for (std::size_t row = 0; row < commands.time_s.size(); ++row)
+    EXPECT_DOUBLE_EQ(valuesOf(run, "force_1_N")[row], 1.1 * valuesOf(clean, "force_1_N")[row]);
+  expectOnly("force_1_N", run, clean);
+}
+
+TEST(SensorDelay, ShowsWhatWas) {
+  const Recording commands = wavesFor("rig", 0.5);
+  const ReplayResult clean = replayWith(commands, {});
+  const ReplayResult run = replayWith(commands, {{"sensor_delay", "signal_length_0", {{"delay_s", 0.05}}}});
+  for (std::size_t row = 5; row < commands.time_s.size(); ++row)
+    EXPECT_NEAR(valuesOf(run, "length_0_mm")[row], valuesOf(clean, "length_0_mm")[row - 5], 1e-6) << row;
+  expectOnly("length_0_mm", run, clean);
+}
+
+TEST(SensorBacklash, IsFlatAfterAReversalForItsWidth) {
+  const EffectInfo info = effectInfo("sensor_backlash");
+  SimulationOptions options;
+  Simulation simulation(options);
+  Robot& robot = simulation.build("elbow");
+  auto effect = info.make(EffectValues(info.parameters, {2.0, 0.0}));
+  auto& sensor = dynamic_cast<SensorEffect&>(*effect);
+  const std::vector<std::string> names = robot.signalNames();
+  const int angle = static_cast<int>(std::find(names.begin(), names.end(), "angle_elbow_deg") - names.begin());
+  sensor.attach({simulation, robot, ComponentKind::signal, -1, -1, "", angle, "signal_angle_elbow", false});
+  sensor.reset();
+  auto read = [&](double value) {
+    sensor.track(value, {0, 1e-3});
+    return sensor.reading(value, {0, 0}, 0);
+  };
+  EXPECT_EQ(read(5), 5);    // at the start
+  EXPECT_EQ(read(5.5), 5);  // within the play
+  EXPECT_EQ(read(10), 9);   // pulled along
+  EXPECT_EQ(read(8.5), 9);  // reversal: flat
+  EXPECT_EQ(read(8), 9);    // for the whole width
+  EXPECT_EQ(read(4), 5);    // and pulled along again
+}
+
+TEST(SensorBacklash, NeedsAWidthInTheSignalsUnit) {
+  const Recording commands = wavesFor("elbow", 0.05);
+  EXPECT_THROW(replayWith(commands, {{"sensor_backlash", "signal_angle_elbow", {{"width_mm", 1.0}}}}), BadParameter);
+  EXPECT_THROW(replayWith(commands, {{"sensor_backlash", "signal_pressure_0", {{"width_mm", 1.0}}}}), BadParameter);
+  EXPECT_NO_THROW(replayWith(commands, {{"sensor_backlash", "all", {{"width_mm", 1.0}}}}));
+}
+
+TEST(SensorDropout, HoldsItsShareOfTheSamples) {
+  const Recording commands = commandsFor("rig", 20, [](double t) { return Action{0.4 + 0.02 * t}; });
+  ReplayOptions options;
+  options.step_s = 0.01;
+  options.substeps = 4;
+  const ReplayResult clean = replayWith(commands, {}, options);
+  const std::vector<ActiveEffect> lost = {{"sensor_dropout", "signal_pressure_0", {{"fraction", 0.2}, {"mean_gap_samples", 3.0}}}};
+  const ReplayResult run = replayWith(commands, lost, options);
+  const auto &held = valuesOf(run, "pressure_0"), &truth = valuesOf(clean, "pressure_0");
+  long lost_count = 0;
+  for (std::size_t row = 1; row < held.size(); ++row) {
+    if (held[row] == truth[row]) continue;
+    ++lost_count;
+    EXPECT_EQ(held[row], held[row - 1]);
+  }
+  EXPECT_NEAR(static_cast<double>(lost_count) / static_cast<double>(held.size()), 0.2, 0.06);
+  expectSame(replayWith(commands, lost, options).simulated, run.simulated);
+  options.seed = 2;
+  EXPECT_NE(valuesOf(replayWith(commands, lost, options), "pressure_0"), held);
+}
+
+TEST(SensorNoise, HasItsDeviationAndIsPartOfTheRecording) {
+  const Recording commands = commandsFor("rig", 10, [](double) { return Action{0.5}; });
+  ReplayOptions options;
+  options.substeps = 4;
+  const ReplayResult clean = replayWith(commands, {}, options);
+  options.parameters.set("sensor.length_noise_mm", 0.3, "test");
+  const ReplayResult run = replayWith(commands, {}, options);
+  double sum = 0, squares = 0;
+  std::set<double> different;
+  for (std::size_t row = 0; row < commands.time_s.size(); ++row) {
+    const double noise = valuesOf(run, "length_0_mm")[row] - valuesOf(clean, "length_0_mm")[row];
+    sum += noise;
+    squares += noise * noise;
+    different.insert(noise);
+  }
+  const double count = static_cast<double>(commands.time_s.size());
+  EXPECT_NEAR(sum / count, 0, 4 * 0.3 / std::sqrt(count));
+  EXPECT_NEAR(std::sqrt(squares / count), 0.3, 4 * 0.3 / std::sqrt(2 * count));
+  EXPECT_EQ(different.size(), commands.time_s.size());
+  EXPECT_EQ(run.simulated.info.noise_std, (std::map<std::string, double>{{"length_0_mm", 0.3}}));
+  expectOnly("length_0_mm", run, clean);
+}
+
+TEST(Sensors, ReadingTwiceReadsTheSame) {
+  SimulationOptions options;
+  options.parameters.set("sensor.length_noise_mm", 0.3, "test");
+  options.effects = {{"sensor_dropout", "all", {{"fraction", 0.5}}}, {"sensor_delay", "all", {{"delay_s", 0.02}}}};
+  Simulation simulation(options);
+  Robot& robot = simulation.build("elbow");
+  simulation.start("settled", {0.3, 0.4});
+  for (int i = 0; i < 20; ++i) {
+    const State first = robot.getState(), second = robot.getState();
+    EXPECT_EQ(first.length_mm, second.length_mm);
+    EXPECT_EQ(first.pressure, second.pressure);
+    simulation.step();
+  }
+}
+
+TEST(Sensors, EverySignalOfEveryRobotHasThem) {
+  for (const char* name : {"rig", "elbow", "arm"}) {
+    SimulationOptions options;
+    options.effects = {{"sensor_bias", "all", {{"offset", 1.0}}}};
+    Simulation simulation(options);
+    Robot& robot = simulation.build(name);
+    simulation.start("built", Action(robot.actuators().size(), 0.5));
+    const std::vector<double> readings = robot.signalValues(robot.getState()), truth = robot.signalValues(robot.truth());
+    const std::vector<std::string> signals = robot.signalNames();
+    for (std::size_t i = 0; i < signals.size(); ++i)
+      EXPECT_DOUBLE_EQ(readings[i] - truth[i], signals[i].starts_with("command_") ? 0 : 1) << signals[i];
+  }
+}
+
+}  // namespace
+}  // namespace musclesim
