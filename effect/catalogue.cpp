@@ -28,6 +28,7 @@
 #include "force/series_elasticity.h"
 #include "force/threshold_pressure.h"
 #include "force/viscous_loss.h"
+#include "musclesim/effect/foreign.h"
 #include "musclesim/error.h"
 #include "pressure/flow_limit.h"
 #include "pressure/leak.h"
@@ -137,6 +138,8 @@ EffectInfo effectInfo(const std::string& id) {
       ids.push_back(info.id);
     }
   }
+  for (const ForeignEffect& foreign : foreignEffects())
+    if (foreign.info.id == id) return foreign.info;
   const std::string nearest = nearestName(id, ids);
   throw BadParameter(fmt::format("there is no effect \"{}\"{} (musclesim effects lists all)", id,
                                  nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?"));

@@ -121,7 +121,8 @@ void EffectChain::force(double h_s) {
     if (muscle.forces.empty()) {
       muscle.actuator->updateTension();
     } else {
-      muscle.actuator->takeTension(muscle.forces.tensionN(inputOf(muscle, h_s)));
+      const double tension_N = muscle.forces.tensionN(inputOf(muscle, h_s));
+      muscle.actuator->takeTension(muscle.actuator->line() && tension_N < 0 ? 0 : tension_N);  // a thread does not push
       if (h_s > 0) muscle.forces.advance(h_s);
     }
     if (h_s > 0 && (!pressure_.empty() || !muscle.forces.empty())) {

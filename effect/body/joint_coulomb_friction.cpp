@@ -20,7 +20,11 @@ void JointCoulombFriction::attach(const EffectPlace& place) {
   JointEffect::attach(place);
   const double before = dJointGetHingeParam(joint().id(), dParamFMax);
   dJointSetHingeParam(joint().id(), dParamVel, 0);
-  dJointSetHingeParam(joint().id(), dParamFMax, before + torque_Nm_ * mm_per_m * forcePerN());
+  const double largest = before + torque_Nm_ * mm_per_m * forcePerN();
+  dJointSetHingeParam(joint().id(), dParamFMax, largest);
+  // A softness (CFM) is a speed per torque: the joint creeps at this speed under the full torque.
+  constexpr double creep_rad_per_s = 1e-6;
+  dJointSetHingeParam(joint().id(), dParamCFM, creep_rad_per_s / largest);
 }
 
 }  // namespace musclesim

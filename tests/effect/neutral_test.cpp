@@ -3,6 +3,7 @@
 #include <map>
 
 #include "effect_runs.h"
+#include "musclesim/effect/foreign.h"
 #include "musclesim/error.h"
 #include "support/support.h"
 
@@ -35,6 +36,7 @@ ActiveEffect neutralEffect(const EffectInfo& info, const std::string& component)
 
 /// As strong as is usual, or so that a short run meets it.
 ActiveEffect usualEffect(const EffectInfo& info, const std::string& component) {
+  if (info.id == "foreign.hunt_crossley") return {info.id, component, {{"stiffness_Nm_per_deg15", 0.5}, {"plane_deg", 0.0}}};
   if (info.id == "joint_stop_offset") return {info.id, component, {{"offset_deg", 75.0}}};
   if (info.id == "contact")
     return {info.id,
@@ -106,10 +108,17 @@ TEST_P(EveryEffect, IsRefusedOnAComponentThatTheRobotDoesNotHave) {
 std::vector<std::string> allIds() {
   std::vector<std::string> ids;
   for (const EffectInfo& info : effectCatalogue()) ids.push_back(info.id);
+  for (const ForeignEffect& foreign : foreignEffects()) ids.push_back(foreign.info.id);
   return ids;
 }
 
-INSTANTIATE_TEST_SUITE_P(Catalogue, EveryEffect, ::testing::ValuesIn(allIds()), [](const auto& place) { return place.param; });
+std::string testName(const ::testing::TestParamInfo<std::string>& place) {
+  std::string name = place.param;
+  std::replace(name.begin(), name.end(), '.', '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalogue, EveryEffect, ::testing::ValuesIn(allIds()), testName);
 
 }  // namespace
 }  // namespace musclesim
