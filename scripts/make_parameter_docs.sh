@@ -94,6 +94,10 @@ tables() {
   echo
   echo 'In `original` and `scaled` physics the default of `arm.composite_inertia` is `summed`.'
   config --robot arm --controller hold | rows arm | table
+  section 'Sensors'
+  echo
+  echo 'White noise, 0 unless given; [effects.md](effects.md) has what else sensors do.'
+  config --robot elbow --controller hold | rows sensor | table
   section 'Height task'
   config --robot arm --controller asm --task height | rows height_task | table
   section 'Reach task'

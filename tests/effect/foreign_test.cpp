@@ -41,7 +41,9 @@ TEST(Foreign, HasALawForEveryEffectAndSixCausesMore) {
 
 /// The same parameters, as far as both laws have them, give another motion or reading: the law is not the catalogue's.
 TEST(Foreign, IsAnotherLaw) {
-  const Recording commands = wavesFor("elbow", 0.4);
+  const Recording commands = commandsFor("elbow", 0.5, [](double t) {
+    return Action{0.1 + 0.7 * std::min(1.0, 2 * std::abs(std::sin(7 * t))), 0.15 + 0.1 * t};
+  });
   Simulation probe;
   const Robot& robot = probe.build("elbow");
   for (const ForeignEffect& foreign : foreignEffects()) {
