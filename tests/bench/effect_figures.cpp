@@ -2,6 +2,7 @@
 // Usage: effect_figures DOCUMENT.md   (its section "catalogue" is written, the figures go to figures/effects beside it)
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -62,8 +63,8 @@ std::string settingOf(const ActiveEffect& effect) {
   std::string text;
   for (const auto& [name, value] : effect.parameters) {
     const EffectInfo info = effectInfo(effect.id);
-    const bool shown = effect.parameters.size() <= 3 || std::holds_alternative<std::string>(value);
-    if (!shown) continue;
+    const auto parameter = std::find_if(info.parameters.begin(), info.parameters.end(), [&](const auto& p) { return p.name == name; });
+    if (std::holds_alternative<double>(value) && std::get<double>(value) == parameter->neutral) continue;
     const std::string number =
         std::holds_alternative<double>(value) ? fmt::format("{:g}", std::get<double>(value)) : std::get<std::string>(value);
     text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", name, number);
@@ -101,13 +102,16 @@ int main(int count, char** arguments) {
   std::string text;
   Stage stage = Stage::sensor;
   std::filesystem::create_directories(folder);
-  const Recording rig = study::standardRig(), elbow = study::standardElbow();
-  const Recording clean_rig = study::simulate(rig, {}), clean_elbow = study::simulate(elbow, {});
+  const Recording rig = study::standardRig(), elbow = study::standardElbow(), tense_elbow = study::standardElbow(0.7);
+  const Recording clean_rig = study::simulate(rig, {}), clean_elbow = study::simulate(elbow, {}),
+                  clean_tense_elbow = study::simulate(tense_elbow, {});
   for (const EffectInfo& info : effectCatalogue()) {
     const Case shown = caseOf(info);
-    const bool on_rig = shown.robot == "rig";
+    const bool on_rig = shown.robot == "rig", tense = info.id == "supply_droop";  // a demand that the supply cannot meet
+    const Recording& commands = on_rig ? rig : tense ? tense_elbow : elbow;
+    const Recording& clean = on_rig ? clean_rig : tense ? clean_tense_elbow : clean_elbow;
     const ActiveEffect effect = study::shownEffect(info, shown.component);
-    const Recording with = study::simulate(on_rig ? rig : elbow, {effect});
+    const Recording with = study::simulate(commands, {effect});
     Svg svg(width, height, info.id);
     svg.text({left, 20}, fmt::format("{} on {} of the {}", info.id, effect.component, shown.robot),
              {14, SvgAnchor::start, "#111111", true, false});
@@ -116,8 +120,8 @@ int main(int count, char** arguments) {
     svg.text({left + 24, 40}, "clean", {11, SvgAnchor::start, "#333333", false, false});
     svg.sample({left + 80, 36}, 18, effect_color, 1.6);
     svg.text({left + 104, 40}, "with the effect", {11, SvgAnchor::start, "#333333", false, false});
-    drawPanel(svg, on_rig ? clean_rig : clean_elbow, with, shown.signals[0], 50, false);
-    drawPanel(svg, on_rig ? clean_rig : clean_elbow, with, shown.signals[1], 50 + panel_height + 12, true);
+    drawPanel(svg, clean, with, shown.signals[0], 50, false);
+    drawPanel(svg, clean, with, shown.signals[1], 50 + panel_height + 12, true);
     replaceFile((folder / (info.id + ".svg")).string(), svg.document());
     if (info.stage != stage) text += fmt::format("## {}\n\n", nameOf(info.stage));
     stage = info.stage;

@@ -44,7 +44,7 @@ double misfit(const Recording& a, const Recording& b, const std::vector<std::str
   return largest;
 }
 
-/// Compass search: a step along each parameter, halved when none helps.
+/// Compass search from the best of some values of the first parameter: a step along each parameter, halved when none helps.
 double bestFit(const Setup& setup, const Recording& data, const Candidate& candidate) {
   auto trial = [&](const std::vector<double>& values) {
     ActiveEffect effect = candidate.effect;
@@ -57,6 +57,14 @@ double bestFit(const Setup& setup, const Recording& data, const Candidate& candi
   };
   std::vector<double> best = candidate.start, step = candidate.step;
   double best_value = trial(best);
+  for (const double steps : {-1.3, -1.0, -0.66, -0.33, 1.0, 2.0, 4.0}) {
+    std::vector<double> other = candidate.start;
+    other[0] += steps * step[0];
+    if (const double value = trial(other); value < best_value) {
+      best_value = value;
+      best = other;
+    }
+  }
   constexpr int halvings = 9;
   for (int halving = 0; halving < halvings;) {
     bool better = false;
@@ -77,10 +85,20 @@ double bestFit(const Setup& setup, const Recording& data, const Candidate& candi
   return best_value;
 }
 
-Recording elbowWave(double amplitude, double frequency_Hz, double both = 0.4) {
-  return recordingOf("elbow", 5, [=](double t) {
-    return Action{both + amplitude * wave(frequency_Hz, t), both - amplitude * wave(frequency_Hz, t)};
+/// A slow wave that begins gently, so that nothing rings.
+Recording elbowWave(double amplitude, double both = 0.4) {
+  constexpr double frequency_Hz = 0.2, rise_s = 1.5;
+  return recordingOf("elbow", 10, [=](double t) {
+    const double now = amplitude * (1 - std::exp(-t * t / (rise_s * rise_s))) * wave(frequency_Hz, t);
+    return Action{both + now, both - now};
   });
+}
+
+/// The same where the friction of the chains grows with speed: dry friction tells a delay from a damping even in slow motion.
+Recording smoothElbowWave() {
+  Recording recording = elbowWave(0.02);
+  recording.info.robot_parameters["muscle.joint_friction"] = "viscous";
+  return recording;
 }
 
 Recording coContraction() {
@@ -103,14 +121,15 @@ std::vector<Pair> pairs() {
                                  all = {"pressure_0",  "pressure_1",      "force_0_N", "force_1_N", "length_0_mm",
                                         "length_1_mm", "angle_elbow_deg", "hand_x_mm", "hand_y_mm"},
                                  pressure_angle = {"pressure_0", "pressure_1", "angle_elbow_deg"};
-  const Setup small_wave{elbowWave(0.01, 0.4), angle, "elbow, wave of 0.01 at 0.4 Hz, angle"};
+  const Setup smooth_wave{smoothElbowWave(), angle, "elbow, wave of 0.02 at 0.2 Hz, angle; viscous friction in the muscles"};
+  const Setup small_wave{elbowWave(0.02), angle, "elbow, wave of 0.02 at 0.2 Hz, angle"};
   const Setup rich{study::standardElbow(), all, "elbow, standard recording, all signals"};
   const Setup rich_angle{study::standardElbow(), angle, "elbow, standard recording, angle"};
   const Setup rich_pressure{study::standardElbow(), pressure_angle, "elbow, standard recording, pressure and angle"};
-  const ActiveEffect lag{"valve_lag", "all", {{"fill_time_constant_s", 0.05}, {"vent_time_constant_s", 0.05}}};
-  const Candidate viscous{{"viscous_loss", "all", {}}, {"damping_Ns_per_m"}, {20}, {15}};
-  const Candidate oil{{"joint_viscous_friction", "all", {}}, {"damping_Nms_per_rad"}, {0.05}, {0.04}};
-  const ActiveEffect viscous_truth{"viscous_loss", "all", {{"damping_Ns_per_m", 40.0}}};
+  const ActiveEffect lag{"valve_lag", "all", {{"fill_time_constant_s", 0.03}, {"vent_time_constant_s", 0.03}}};
+  const Candidate viscous{{"viscous_loss", "all", {}}, {"damping_Ns_per_m"}, {6}, {4}};
+  const Candidate oil{{"joint_viscous_friction", "all", {}}, {"damping_Nms_per_rad"}, {0.012}, {0.008}};
+  const ActiveEffect viscous_truth{"viscous_loss", "all", {{"damping_Ns_per_m", 6.0}}};
   const Candidate late_angle{{"sensor_delay", "signal_angle_elbow", {}}, {"delay_s"}, {0.03}, {0.02}};
   const Candidate pressure_gain{{"pressure_calibration", "all", {}}, {"gain"}, {1.0}, {0.05}};
   const Candidate creep{{"creep", "all", {}}, {"amount", "time_constant_s"}, {0.02, 0.05}, {0.02, 0.04}};
@@ -120,21 +139,21 @@ std::vector<Pair> pairs() {
   const Candidate push{{"external_force", "hand", {}}, {"force_x_N"}, {0.3}, {0.3}};
   const Candidate bias{{"sensor_bias", "signal_angle_elbow", {}}, {"offset"}, {1}, {2}};
   const ActiveEffect tilt{"base_tilt", "base", {{"tilt_z_deg", 4.0}}};
-  const Setup still{elbowWave(0.0, 1), angle, "elbow, held still, angle"};
+  const Setup still{elbowWave(0), angle, "elbow, held still, angle"};
   return {
-      {lag, viscous, small_wave, rich},
-      {lag, oil, small_wave, rich},
-      {viscous_truth, oil, small_wave, rich},
+      {lag, viscous, smooth_wave, rich},
+      {lag, oil, smooth_wave, rich},
+      {viscous_truth, oil, smooth_wave, rich},
       {{"transport_delay", "all", {{"delay_s", 0.05}}}, late_angle, rich_angle, rich_pressure},
       {{"force_gain", "all", {{"gain", 0.9}}}, pressure_gain, small_wave, rich_pressure},
       {{"leak", "all", {{"leak_per_s", 0.05}}}, creep, small_wave, rich_pressure},
       {{"braid_hysteresis", "all", {{"relative_width", 0.05}}},
        dry,
-       {elbowWave(0.01, 0.4), pressure_angle, "elbow, wave of 0.01 at 0.4 Hz, pressure and angle"},
+       {elbowWave(0.02), pressure_angle, "elbow, wave of 0.02 at 0.2 Hz, pressure and angle"},
        {coContraction(), pressure_angle, "elbow, co-contraction 0.15 .. 0.75, pressure and angle"}},
       {{"length_offset", "muscle_0", {{"offset_mm", 1.0}}},
        start,
-       {elbowWave(0.01, 0.4), pressure_angle, "elbow, wave of 0.01 at 0.4 Hz, pressure and angle"},
+       {elbowWave(0.02), pressure_angle, "elbow, wave of 0.02 at 0.2 Hz, pressure and angle"},
        rich},
       {{"payload", "hand", {{"mass_kg", 0.2}}},
        weak,

@@ -41,7 +41,7 @@ inline double triangle(double period_s, double time_s) {
 inline double standardShape(double t) {
   if (t < 2) return 2 * triangle(2, t + 0.5) - 1;
   if (t < 4) return std::fmod(t, 1) < 0.5 ? 0.8 : -0.8;
-  return 0.6 * wave(2, t);
+  return 0.3 * wave(2, t);
 }
 
 inline Recording standardRig() {
@@ -49,9 +49,9 @@ inline Recording standardRig() {
 }
 
 /// Flexor and extensor against each other, with co-contraction that grows.
-inline Recording standardElbow() {
-  return recordingOf("elbow", 6, [](double t) {
-    const double both = 0.3 + 0.02 * t, difference = 0.12 * standardShape(t);
+inline Recording standardElbow(double co_contraction = 0.3) {
+  return recordingOf("elbow", 6, [=](double t) {
+    const double both = co_contraction + 0.02 * t, difference = 0.05 * standardShape(t);
     return Action{both + difference, both - difference};
   });
 }
@@ -79,6 +79,7 @@ inline ActiveEffect shownEffect(const EffectInfo& info, const std::string& compo
   if (info.id == "leak") return {info.id, component, {{"leak_per_s", 2.0}}};
   if (info.id == "viscous_loss") return {info.id, component, {{"damping_Ns_per_m", 150.0}}};
   if (info.id == "series_elasticity") return {info.id, component, {{"stiffness_N_per_mm", 1.0}}};
+  if (info.id == "joint_coulomb_friction") return {info.id, component, {{"torque_Nm", 0.2}}};
   if (info.id == "force_drift") return {info.id, component, {{"rate_per_min", -2.0}}};
   if (info.id == "force_law") return {info.id, component, {{"law", "chou-hannaford"}}};
   if (info.id == "joint_stop_offset") return {info.id, component, {{"offset_deg", -60.0}}};

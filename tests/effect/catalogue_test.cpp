@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "musclesim/effect/relevance.h"
 #include "musclesim/error.h"
 #include "musclesim/simulation/simulation.h"
 #include "support/support.h"
@@ -65,6 +66,24 @@ TEST(Catalogue, ListsTheComponentsOfARobot) {
   EXPECT_EQ(signals.size(), 1u + 2 + 2 + 2 + 1 + 3);
   Simulation rig;
   EXPECT_TRUE(componentsFor(effectInfo("joint_viscous_friction"), rig.build("rig")).empty());
+}
+
+std::vector<std::string> relevantNames(const std::string& id, const std::string& component) {
+  const EffectInfo info = effectInfo(id);
+  std::vector<std::string> names;
+  for (const std::size_t i : relevantParameters(info, component)) names.push_back(info.parameters[i].name);
+  return names;
+}
+
+TEST(Catalogue, KnowsWhichParametersCountOnAComponent) {
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(relevantNames("contact", "joint_elbow"), (Names{"stiffness_Nm_per_deg", "plane_deg", "side"}));
+  EXPECT_EQ(relevantNames("contact", "hand"), (Names{"stiffness_N_per_mm", "plane_mm", "axis", "side"}));
+  EXPECT_EQ(relevantNames("sensor_backlash", "signal_angle_elbow"), Names{"width_deg"});
+  EXPECT_EQ(relevantNames("sensor_backlash", "signal_length_0"), Names{"width_mm"});
+  EXPECT_EQ(relevantNames("sensor_backlash", "all").size(), 2u);
+  EXPECT_EQ(relevantNames("attachment_offset", "muscle_0"), Names{"offset_mm"});
+  EXPECT_EQ(relevantNames("joint_stiffness", "joint_elbow").size(), 2u);
 }
 
 TEST(Catalogue, RefusesEntriesThatCannotBeUsed) {
