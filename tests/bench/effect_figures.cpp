@@ -27,8 +27,8 @@ struct Case {
 
 /// Where the effect is shown.
 Case caseOf(const EffectInfo& info) {
-  const bool on_rig = info.stage == Stage::force || (info.stage == Stage::pressure && info.id != "supply_droop") ||
-                      (info.stage == Stage::command && info.id != "channel_swap");
+  const bool on_rig =
+      info.stage == Stage::force || info.stage == Stage::pressure || (info.stage == Stage::command && info.id != "channel_swap");
   if (on_rig) return {"rig", "all", {info.stage == Stage::force ? "force_0_N" : "pressure_0", "length_0_mm"}};
   if (info.stage == Stage::sensor) return {"elbow", "signal_angle_elbow", {"angle_elbow_deg", "length_0_mm"}};
   Simulation simulation;
@@ -102,14 +102,14 @@ int main(int count, char** arguments) {
   std::string text;
   Stage stage = Stage::sensor;
   std::filesystem::create_directories(folder);
-  const Recording rig = study::standardRig(), elbow = study::standardElbow(), tense_elbow = study::standardElbow(0.7);
+  const Recording rig = study::standardRig(), elbow = study::standardElbow(), tense_rig = study::standardRig(0.75);
   const Recording clean_rig = study::simulate(rig, {}), clean_elbow = study::simulate(elbow, {}),
-                  clean_tense_elbow = study::simulate(tense_elbow, {});
+                  clean_tense_rig = study::simulate(tense_rig, {});
   for (const EffectInfo& info : effectCatalogue()) {
     const Case shown = caseOf(info);
     const bool on_rig = shown.robot == "rig", tense = info.id == "supply_droop";  // a demand that the supply cannot meet
-    const Recording& commands = on_rig ? rig : tense ? tense_elbow : elbow;
-    const Recording& clean = on_rig ? clean_rig : tense ? clean_tense_elbow : clean_elbow;
+    const Recording& commands = tense ? tense_rig : on_rig ? rig : elbow;
+    const Recording& clean = tense ? clean_tense_rig : on_rig ? clean_rig : clean_elbow;
     const ActiveEffect effect = study::shownEffect(info, shown.component);
     const Recording with = study::simulate(commands, {effect});
     Svg svg(width, height, info.id);

@@ -44,14 +44,14 @@ inline double standardShape(double t) {
   return 0.3 * wave(2, t);
 }
 
-inline Recording standardRig() {
-  return recordingOf("rig", 6, [](double t) { return Action{0.45 + 0.2 * standardShape(t)}; });
+inline Recording standardRig(double middle = 0.45) {
+  return recordingOf("rig", 6, [=](double t) { return Action{middle + 0.2 * standardShape(t)}; });
 }
 
 /// Flexor and extensor against each other, with co-contraction that grows.
-inline Recording standardElbow(double co_contraction = 0.3) {
-  return recordingOf("elbow", 6, [=](double t) {
-    const double both = co_contraction + 0.02 * t, difference = 0.05 * standardShape(t);
+inline Recording standardElbow() {
+  return recordingOf("elbow", 6, [](double t) {
+    const double both = 0.3 + 0.02 * t, difference = 0.05 * standardShape(t);
     return Action{both + difference, both - difference};
   });
 }
@@ -79,13 +79,13 @@ inline ActiveEffect shownEffect(const EffectInfo& info, const std::string& compo
   if (info.id == "leak") return {info.id, component, {{"leak_per_s", 2.0}}};
   if (info.id == "viscous_loss") return {info.id, component, {{"damping_Ns_per_m", 150.0}}};
   if (info.id == "series_elasticity") return {info.id, component, {{"stiffness_N_per_mm", 1.0}}};
-  if (info.id == "joint_coulomb_friction") return {info.id, component, {{"torque_Nm", 0.2}}};
+  if (info.id == "joint_coulomb_friction") return {info.id, component, {{"torque_Nm", 0.05}}};
   if (info.id == "force_drift") return {info.id, component, {{"rate_per_min", -2.0}}};
   if (info.id == "force_law") return {info.id, component, {{"law", "chou-hannaford"}}};
   if (info.id == "joint_stop_offset") return {info.id, component, {{"offset_deg", -60.0}}};
   if (info.id == "contact") return {info.id, component, {{"stiffness_Nm_per_deg", 0.3}, {"plane_deg", 5.0}}};
   if (info.id == "base_tilt") return {info.id, component, {{"tilt_z_deg", 8.0}}};
-  if (info.id == "external_force") return {info.id, component, {{"force_x_N", 3.0}}};
+  if (info.id == "external_force") return {info.id, component, {{"force_x_N", 0.5}}};
   if (info.id == "payload") return {info.id, component, {{"mass_kg", 0.3}}};
   if (info.id == "creep") return {info.id, component, {{"amount", 0.2}, {"time_constant_s", 1.0}}};
   if (info.id == "sensor_dropout") return {info.id, component, {{"fraction", 0.3}, {"mean_gap_samples", 8.0}}};
