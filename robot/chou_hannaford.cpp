@@ -28,9 +28,13 @@ ChouHannafordForceLaw::ChouHannafordForceLaw(double rest_length_mm, const ChouHa
 }
 
 double ChouHannafordForceLaw::tensionN(double pressure_ratio, double length_mm) const {
+  return std::max(0.0, formulaN(pressure_ratio, length_mm));
+}
+
+double ChouHannafordForceLaw::formulaN(double pressure_ratio, double length_mm) const {
   const auto& [A, B, C, D, E, beta] = constants_;
   const double p = pressure_ratio, s = length_mm / rest_length_mm_;
-  return std::max(0.0, p * (A * s * s - B) + C * (s - 1) - D + E * exponentialUpTo0(beta * (s - 1)));
+  return p * (A * s * s - B) + C * (s - 1) - D + E * exponentialUpTo0(beta * (s - 1));
 }
 
 }  // namespace musclesim

@@ -80,8 +80,12 @@ ForceMap::ForceMap(double rest_length_mm, const ForceMapTable& table)
 }
 
 double ForceMap::tensionN(double pressure_ratio, double length_mm) const {
+  return std::max(0.0, formulaN(pressure_ratio, length_mm));
+}
+
+double ForceMap::formulaN(double pressure_ratio, double length_mm) const {
   const double along = (length_mm / rest_length_mm_ - table_.shortest_ratio) / (table_.longest_ratio - table_.shortest_ratio);
-  return std::max(0.0, over_pressure_.weights(pressure_ratio).dot(table_.force_N * over_length_.weights(along)));
+  return over_pressure_.weights(pressure_ratio).dot(table_.force_N * over_length_.weights(along));
 }
 
 }  // namespace musclesim

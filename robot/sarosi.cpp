@@ -38,10 +38,14 @@ SarosiForceLaw::SarosiForceLaw(double rest_length_mm, const SarosiConstants& con
 }
 
 double SarosiForceLaw::tensionN(double pressure_ratio, double length_mm) const {
+  return std::max(0.0, formulaN(pressure_ratio, length_mm));
+}
+
+double SarosiForceLaw::formulaN(double pressure_ratio, double length_mm) const {
   const auto& [a1, a2, a3, a4, a5, a6] = constants_;
   const double p = pressure_ratio, k = 1 - length_mm / rest_length_mm_;
   const double exponential = k >= 0 ? std::exp(a3 * k) : 1 + a3 * k;
-  return std::max(0.0, (a1 * p + a2) * exponential + a4 * k * p + a5 * p + a6);
+  return (a1 * p + a2) * exponential + a4 * k * p + a5 * p + a6;
 }
 
 }  // namespace musclesim

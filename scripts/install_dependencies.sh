@@ -19,6 +19,7 @@ build_packages=(
   "nlohmann-json3-dev     JSON files"
   "libtomlplusplus-dev    configuration files"
   "libcli11-dev           command line"
+  "libceres-dev           fits of force laws"
 )
 test_packages=(
   "libgtest-dev           test framework"

@@ -19,5 +19,7 @@ Action addRun(CLI::App& app, ModelOptions& model);
 Action addReplay(CLI::App& command, ModelOptions& model);
 /// `effects`: the catalogue of effects.
 Action addEffects(CLI::App& command);
+/// `fit`: force laws from measured static points.
+Action addFit(CLI::App& command);
 
 }  // namespace musclesim::program

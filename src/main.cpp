@@ -44,7 +44,9 @@ int parseAndRun(int argument_count, char** arguments) {
   const program::Action replay = addReplay(*replay_command, model);
   CLI::App* effects_command = app.add_subcommand("effects", "Lists the effects that a clean model leaves out, or describes one");
   const program::Action effects = addEffects(*effects_command);
-  for (CLI::App* command : {&app, replay_command, effects_command}) refuseEmptyValues(*command);
+  CLI::App* fit_command = app.add_subcommand("fit", "Fits force laws to measured static points");
+  const program::Action fit = addFit(*fit_command);
+  for (CLI::App* command : {&app, replay_command, effects_command, fit_command}) refuseEmptyValues(*command);
   try {
     app.parse(argument_count, arguments);
   } catch (const CLI::ParseError& error) {
@@ -53,6 +55,7 @@ int parseAndRun(int argument_count, char** arguments) {
     return bad_usage;
   }
   if (effects_command->parsed()) return effects();
+  if (fit_command->parsed()) return fit();
   return replay_command->parsed() ? replay() : run();
 }
 

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ctime>
 
 #include "musclesim/error.h"
 #include "musclesim/version.h"
+#include "output_folder.h"
 
 namespace musclesim::program {
 
@@ -17,19 +17,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::array<const char*, 4> model_groups = {"physics.", "muscle.", "force_law.", "world."};
-
-/// log/runs/<date-time>-<task>-<seed>, with a number appended if that exists.
-fs::path freshRunFolder(const RunOptions& options, std::uint64_t seed) {
-  const std::time_t now = std::time(nullptr);
-  std::tm local{};
-  localtime_r(&now, &local);
-  char stamp[32];
-  std::strftime(stamp, sizeof stamp, "%Y-%m-%d-%H%M%S", &local);
-  const fs::path first = fs::path("log") / "runs" / fmt::format("{}-{}-{}", stamp, options.task, seed);
-  fs::path folder = first;
-  for (int i = 2; fs::exists(folder); ++i) folder = fmt::format("{}-{}", first.string(), i);
-  return folder;
-}
 
 nlohmann::json toJson(const Parameter::Value& value) {
   if (const auto* number = std::get_if<double>(&value)) return *number;
@@ -56,14 +43,11 @@ std::map<std::string, Parameter::Value> robotParameters(Simulation& simulation) 
 }  // namespace
 
 fs::path recordingPath(const RunOptions& options, std::uint64_t seed) {
-  const fs::path file =
-      options.record ? fs::path(*options.record) : (options.out ? fs::path(*options.out) : freshRunFolder(options, seed)) / "run.csv";
+  const fs::path file = options.record
+                            ? fs::path(*options.record)
+                            : (options.out ? fs::path(*options.out) : freshFolder(fmt::format("{}-{}", options.task, seed))) / "run.csv";
   if (file.extension() != ".csv") throw BadParameter("record", file.string(), "end in .csv");
-  if (file.has_parent_path()) {
-    std::error_code error;
-    fs::create_directories(file.parent_path(), error);
-    if (error) throw IoError(fmt::format("{}: the folder cannot be made: {}", file.parent_path().string(), error.message()));
-  }
+  if (file.has_parent_path()) makeFolder(file.parent_path());
   return file;
 }
 

@@ -28,6 +28,7 @@ class ChouHannafordForceLaw final : public ForceLaw {
   /// Throws BadParameter unless the rest length is positive, all constants are finite and beta is not negative.
   ChouHannafordForceLaw(double rest_length_mm, const ChouHannafordConstants& constants);
   double tensionN(double pressure_ratio, double length_mm) const override;
+  double formulaN(double pressure_ratio, double length_mm) const override;
   std::string name() const override { return "chou-hannaford"; }
 
  private:

@@ -14,6 +14,8 @@ class ForceLaw {
   virtual ~ForceLaw() = default;
   /// Tension in N, pulling positive, at pressure `pressure_ratio` (fraction of full scale) and length `length_mm`.
   virtual double tensionN(double pressure_ratio, double length_mm) const = 0;
+  /// The law's formula, which may be negative where tensionN keeps a slack muscle from pushing: what a fit compares with measurements.
+  virtual double formulaN(double pressure_ratio, double length_mm) const { return tensionN(pressure_ratio, length_mm); }
   /// dF/dl in N/mm. The default is a central difference over 0.02 mm.
   virtual double stiffnessNPerMm(double pressure_ratio, double length_mm) const;
   virtual std::string name() const = 0;

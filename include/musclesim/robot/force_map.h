@@ -39,6 +39,7 @@ class ForceMap final : public ForceLaw {
   /// forces are finite.
   ForceMap(double rest_length_mm, const ForceMapTable& table);
   double tensionN(double pressure_ratio, double length_mm) const override;
+  double formulaN(double pressure_ratio, double length_mm) const override;
   std::string name() const override { return "map"; }
 
  private:

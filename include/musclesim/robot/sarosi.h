@@ -30,6 +30,7 @@ class SarosiForceLaw final : public ForceLaw {
   /// Throws BadParameter unless the rest length is positive and all constants are finite.
   SarosiForceLaw(double rest_length_mm, const SarosiConstants& constants);
   double tensionN(double pressure_ratio, double length_mm) const override;
+  double formulaN(double pressure_ratio, double length_mm) const override;
   std::string name() const override { return "sarosi"; }
 
  private:

@@ -1,0 +1,122 @@
+#include "fit_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "musclesim/error.h"
+
+namespace musclesim {
+
+namespace {
+
+/// A number with three digits, or a dash where there is none.
+std::string share(const FitError& error) {
+  return error.count > 0 && error.measured_squares_N2 > 0 ? fmt::format("{:.2e}", error.relativeSquaredError()) : "-";
+}
+
+nlohmann::json shareJson(const FitError& error) {
+  if (error.count == 0 || !(error.measured_squares_N2 > 0)) return nullptr;
+  return error.relativeSquaredError();
+}
+
+std::string pressureText(const StaticPoints& points) {
+  return points.full_scale_kPa ? fmt::format("pressure 1 is {:g} kPa", *points.full_scale_kPa)
+                               : std::string("pressures are the fractions of the file");
+}
+
+}  // namespace
+
+std::vector<LawReport> fitLaws(const std::vector<std::string>& names, const StaticPoints& points, const Specimen& specimen,
+                               const BraunLengths& lengths) {
+  std::vector<LawReport> reports;
+  for (const auto& name : names) {
+    LawReport report;
+    report.model = makeLawModel(name, specimen, lengths);
+    try {
+      report.fit = fitLaw(*report.model, points);
+      report.validation = crossValidate(*report.model, points, report.fit);
+    } catch (const Error& error) {
+      report.failure = error.what();
+    }
+    reports.push_back(std::move(report));
+  }
+  if (std::all_of(reports.begin(), reports.end(), [](const auto& report) { return !report.failure.empty(); }))
+    throw BadFile(points.file, "no law can be fitted: " + reports.front().failure);
+  return reports;
+}
+
+std::string errorTable(const std::vector<LawReport>& reports) {
+  std::string out =
+      "| law | constants | in-sample | cross-validated | inner lengths | inner pressures | outer lengths | outer pressures | largest error "
+      "N |\n"
+      "|---|---|---|---|---|---|---|---|---|\n";
+  for (const auto& report : reports) {
+    if (!report.failure.empty()) {
+      out += fmt::format("| {} | {} | not fitted | | | | | | |\n", report.model->name(), report.model->parameters().size());
+      continue;
+    }
+    const auto& v = report.validation;
+    out += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {:.1f} |\n", report.model->name(), report.model->parameters().size(),
+                       share(report.fit.error), share(v.both()), share(v.lengths), share(v.pressures), share(v.outer_lengths),
+                       share(v.outer_pressures), report.fit.error.largest_N);
+  }
+  return out;
+}
+
+std::string constantsText(const LawReport& report) {
+  if (!report.failure.empty()) return fmt::format("{}: {}\n", report.model->name(), report.failure);
+  if (report.model->isTable())
+    return fmt::format("{}: {} node forces, in the configuration file\n", report.model->name(), report.fit.constants.size());
+  std::string out = fmt::format("{}:\n", report.model->name());
+  for (const auto& constant : report.fit.constants)
+    out += fmt::format(
+        "  {:<6} {:>12.6g} {:<4} {}\n", constant.name, constant.value, constant.unit,
+        constant.low ? fmt::format("95 %: {:.6g} .. {:.6g}", *constant.low, *constant.high) : std::string("not determined by the points"));
+  for (const auto& warning : report.fit.warnings) out += "  warning: " + warning + "\n";
+  return out;
+}
+
+nlohmann::json toJson(const LawReport& report) {
+  nlohmann::json json;
+  if (!report.failure.empty()) {
+    json["failure"] = report.failure;
+    return json;
+  }
+  const auto& v = report.validation;
+  json["relative_squared_error"] = shareJson(report.fit.error);
+  json["relative_squared_error_cross_validated"] = shareJson(v.both());
+  json["cross_validation"] = {{"inner_lengths", shareJson(v.lengths)},       {"inner_pressures", shareJson(v.pressures)},
+                              {"outer_lengths", shareJson(v.outer_lengths)}, {"outer_pressures", shareJson(v.outer_pressures)},
+                              {"inner_length_count", v.length_count},        {"inner_pressure_count", v.pressure_count}};
+  json["maximum_error_N"] = report.fit.error.largest_N;
+  json["maximum_error_line"] = report.fit.error.largest_line;
+  for (const auto& constant : report.fit.constants) {
+    auto& entry = json["constants"][constant.name];
+    entry = {{"value", constant.value}, {"unit", constant.unit}};
+    if (!report.model->isTable())
+      entry["interval_95"] = constant.low ? nlohmann::json({*constant.low, *constant.high}) : nlohmann::json(nullptr);
+  }
+  json["warnings"] = report.fit.warnings;
+  return json;
+}
+
+std::string configurationToml(const LawReport& report, const StaticPoints& points) {
+  const std::string name = report.model->name();
+  // File names may hold anything, comments end at a line's end.
+  std::string file = std::filesystem::path(points.file).filename().string();
+  std::replace_if(
+      file.begin(), file.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }, '?');
+  std::string out = fmt::format("# The muscle of {}, by musclesim fit: law {}, relative squared error {:.3g} over {} points.\n", file, name,
+                                report.fit.error.relativeSquaredError(), report.fit.error.count);
+  out +=
+      fmt::format("# {}. A robot's muscle at its maximum length corresponds to the measured one at {:g} mm, shorter ones in proportion;\n",
+                  pressureText(points), report.model->restLengthMm(report.fit.parameters));
+  out += "# rest_length_mm = 250 would make it correspond at 250 mm instead.\n[force_law]\n";
+  out += fmt::format("name = \"{}\"\n", name.starts_with("chou-hannaford") ? "chou-hannaford" : name);
+  for (const auto& [key, value] : report.model->configuration(report.fit.parameters)) out += fmt::format("{} = {}\n", key, value);
+  return out;
+}
+
+}  // namespace musclesim

@@ -1,0 +1,34 @@
+/// What a fit tells: tables, JSON, and the configuration file that drives any robot with the fitted muscle.
+#pragma once
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cross_validation.h"
+
+namespace musclesim {
+
+/// One law fitted to one muscle, or why it could not be.
+struct LawReport {
+  std::shared_ptr<const LawModel> model;
+  LawFit fit;
+  CrossValidation validation;
+  std::string failure;  ///< empty if fitted
+  std::unique_ptr<ForceLaw> law() const { return model->build(fit.parameters); }
+};
+
+/// Fits and validates each of the laws named. A law with too many constants for the points gets a failure; throws BadFile if all do.
+std::vector<LawReport> fitLaws(const std::vector<std::string>& names, const StaticPoints& points, const Specimen& specimen,
+                               const BraunLengths& lengths);
+
+/// One line per law, as Markdown: constants, relative squared errors in-sample and cross-validated, largest error.
+std::string errorTable(const std::vector<LawReport>& reports);
+/// One line per constant with its 95 % interval, then the warnings. Maps have no constants worth listing: one line says so.
+std::string constantsText(const LawReport& report);
+nlohmann::json toJson(const LawReport& report);
+/// A TOML file that --config accepts.
+std::string configurationToml(const LawReport& report, const StaticPoints& points);
+
+}  // namespace musclesim

@@ -1,0 +1,261 @@
+#include "law_fit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "intervals.h"
+#include "least_squares.h"
+#include "musclesim/error.h"
+#include "point_checks.h"
+
+namespace musclesim {
+
+namespace {
+
+/// How far a law is from a point, in N. Small forces are compared with the tension: where a law would push, a muscle hangs slack, and its
+/// sensor shows about 0. Larger ones are compared with the formula, so that a search that begins with a slack muscle finds its way. Of a
+/// censored point only an excess over the floor counts.
+double offN(const ForceLaw& law, const StaticPoint& point, double floor_N, double force_scale_N) {
+  constexpr double small_share = 0.05;
+  if (point.censored) return std::max(0.0, law.formulaN(point.pressure_ratio, point.length_mm) - floor_N);
+  const bool is_small = point.force_N < small_share * force_scale_N;
+  return (is_small ? law.tensionN(point.pressure_ratio, point.length_mm) : law.formulaN(point.pressure_ratio, point.length_mm)) -
+         point.force_N;
+}
+
+/// The points as a least-squares problem. `loss_N`: scale of Cauchy's loss, 0 for plain squares.
+LeastSquaresProblem problemOf(const LawModel& model, const StaticPoints& points, double loss_N) {
+  LeastSquaresProblem problem;
+  std::vector<StaticPoint> used;
+  for (const auto& point : points.points)
+    if (!point.outlier) used.push_back(point);
+  const auto count = static_cast<Eigen::Index>(used.size());
+  problem.residuals = [&model, used, count, floor_N = points.floor_N, force_scale_N = points.largestForceN(), loss_N](
+                          const Eigen::VectorXd& x, Eigen::VectorXd& r) {
+    const auto law = model.build(x);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const auto& point = used[static_cast<std::size_t>(i)];
+      const double off_N = offN(*law, point, floor_N, force_scale_N);
+      r(i) = loss_N > 0 ? std::copysign(loss_N * std::sqrt(std::log1p(off_N * off_N / (loss_N * loss_N))), off_N) : off_N;
+    }
+    r.tail(r.size() - count) = std::sqrt(static_cast<double>(count)) * model.penaltiesN(x);
+  };
+  problem.residual_count = static_cast<int>(count + model.penaltiesN(model.starts().front()).size());
+  const auto& parameters = model.parameters();
+  problem.lowest.resize(static_cast<Eigen::Index>(parameters.size()));
+  problem.highest = problem.lowest;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    problem.lowest(static_cast<Eigen::Index>(i)) = parameters[i].lowest;
+    problem.highest(static_cast<Eigen::Index>(i)) = parameters[i].highest;
+  }
+  return problem;
+}
+
+/// 1.4826 times the median of the measured points' distances from a law: the standard deviation, were they normal.
+double robustDeviationN(const ForceLaw& law, const StaticPoints& points) {
+  std::vector<double> off_N;
+  for (const auto& point : points.measured()) off_N.push_back(std::abs(offN(law, point, points.floor_N, points.largestForceN())));
+  std::nth_element(off_N.begin(), off_N.begin() + static_cast<std::ptrdiff_t>(off_N.size() / 2), off_N.end());
+  constexpr double deviation_per_median = 1.4826;
+  return deviation_per_median * off_N[off_N.size() / 2];
+}
+
+double largestOffN(const ForceLaw& law, const StaticPoints& points) {
+  double largest_N = 0;
+  for (const auto& point : points.points)
+    largest_N = std::max(largest_N, std::abs(offN(law, point, points.floor_N, points.largestForceN())));
+  return largest_N;
+}
+
+/// d constants / d parameters.
+Eigen::MatrixXd constantsJacobian(const LawModel& model, const Eigen::VectorXd& x) {
+  LeastSquaresProblem problem;
+  problem.residuals = [&](const Eigen::VectorXd& at, Eigen::VectorXd& constants) { constants = model.constantsAt(at); };
+  problem.residual_count = static_cast<int>(model.constants().size());
+  problem.lowest = Eigen::VectorXd::Constant(x.size(), -1e300);
+  problem.highest = -problem.lowest;
+  return jacobianOf(problem, x);
+}
+
+/// Intervals and warnings of a fit whose parameters are known.
+class Judgement {
+ public:
+  Judgement(const LawModel& model, const StaticPoints& points, LawFit& fit) : model_(model), fit_(fit), names_(model.constants()) {
+    const LeastSquaresProblem problem = problemOf(model, points, 0);
+    Eigen::VectorXd residuals(problem.residual_count);
+    problem.residuals(fit.parameters, residuals);
+    const Eigen::MatrixXd jacobian = jacobianOf(problem, fit.parameters);
+    const Scatter scatter = scatterOf(jacobian, residuals);
+    const Eigen::MatrixXd to_constants = constantsJacobian(model, fit.parameters);
+    influence_ = to_constants * scatter.influence;
+    variances_ = scatter.variances;
+    covariance_ = influence_ * variances_.asDiagonal() * influence_.transpose();
+    const Eigen::VectorXd scale = jacobian.colwise().norm().transpose().cwiseMax(1e-300);
+    undetermined_ = to_constants * scale.cwiseInverse().asDiagonal() * scatter.undetermined;
+  }
+
+  void addConstants() {
+    const Eigen::VectorXd values = model_.constantsAt(fit_.parameters);
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      FittedConstant constant{names_[i].name, names_[i].unit, values(row), {}, {}};
+      if (!isUndetermined(row, values(row))) setInterval(constant, halfWidth(row), names_[i].is_factor);
+      fit_.constants.push_back(constant);
+    }
+  }
+
+  void addWarnings() {
+    warnOfUndetermined();
+    warnOfCorrelations();
+    warnOfBounds();
+    if (!fit_.converged) fit_.warnings.push_back("the search ended before it converged; the constants may not be the best");
+  }
+
+ private:
+  bool isUndetermined(Eigen::Index row, double value) const {
+    constexpr double noticeable_ratio = 1e-6;
+    return undetermined_.cols() > 0 && undetermined_.row(row).norm() > noticeable_ratio * std::max(std::abs(value), 1e-12) *
+                                                                           undetermined_.cwiseAbs().maxCoeff() /
+                                                                           std::max(fit_.parameters.cwiseAbs().maxCoeff(), 1e-12);
+  }
+
+  /// Of the 95 % interval.
+  double halfWidth(Eigen::Index row) const {
+    const double degrees = std::min(degreesOfFreedom(influence_.row(row).transpose(), variances_),
+                                    static_cast<double>(std::max<Eigen::Index>(1, influence_.cols() - influence_.rows())));
+    return student975(degrees) * std::sqrt(covariance_(row, row));
+  }
+
+  static void setInterval(FittedConstant& constant, double half_width, bool is_factor) {
+    const double relative = std::abs(half_width / constant.value);
+    if (is_factor && relative < 1) {
+      const double one = constant.value * std::exp(-relative), other = constant.value * std::exp(relative);
+      constant.low = std::min(one, other);
+      constant.high = std::max(one, other);
+    } else {
+      constant.low = constant.value - half_width;
+      constant.high = constant.value + half_width;
+    }
+  }
+
+  void warnOfUndetermined() {
+    std::vector<std::string> names;
+    for (const auto& constant : fit_.constants)
+      if (!constant.low) names.push_back(constant.name);
+    if (!names.empty())
+      fit_.warnings.push_back(fmt::format(
+          "the points cannot tell {} apart: many values of them together give the same forces; hold one of them", fmt::join(names, ", ")));
+  }
+
+  void warnOfCorrelations() {
+    constexpr double strong = 0.98;
+    for (Eigen::Index i = 0; i < covariance_.rows(); ++i)
+      for (Eigen::Index j = 0; j < i; ++j) {
+        const auto& a = fit_.constants[static_cast<std::size_t>(j)];
+        const auto& b = fit_.constants[static_cast<std::size_t>(i)];
+        const double correlation = covariance_(i, j) / std::sqrt(covariance_(i, i) * covariance_(j, j));
+        if (a.low && b.low && std::abs(correlation) > strong)
+          fit_.warnings.push_back(
+              fmt::format("{} and {} can hardly be told apart (correlation {:.4f}): compare them with another muscle's only "
+                          "together",
+                          a.name, b.name, correlation));
+      }
+  }
+
+  void warnOfBounds() {
+    const auto& parameters = model_.parameters();
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      const double x = fit_.parameters(static_cast<Eigen::Index>(i));
+      for (const double bound : {parameters[i].lowest, parameters[i].highest})
+        if (std::abs(x - bound) <= 1e-6 * std::abs(bound))
+          fit_.warnings.push_back(fmt::format("{} rests at its bound {:g}: intervals do not hold", parameters[i].name, bound));
+    }
+  }
+
+  const LawModel& model_;
+  LawFit& fit_;
+  std::vector<LawConstant> names_;
+  Eigen::MatrixXd influence_, covariance_, undetermined_;  ///< rows: constants
+  Eigen::VectorXd variances_;                              ///< of the residuals
+};
+
+}  // namespace
+
+void FitError::add(const FitError& other) {
+  sum_of_squares_N2 += other.sum_of_squares_N2;
+  measured_squares_N2 += other.measured_squares_N2;
+  count += other.count;
+  if (std::abs(other.largest_N) <= std::abs(largest_N)) return;
+  largest_N = other.largest_N;
+  largest_line = other.largest_line;
+}
+
+FitError errorOf(const ForceLaw& law, const std::vector<StaticPoint>& points) {
+  FitError error;
+  for (const auto& point : points) {
+    if (point.censored || point.outlier) continue;
+    const double off_N = law.tensionN(point.pressure_ratio, point.length_mm) - point.force_N;
+    error.add({off_N * off_N, point.force_N * point.force_N, off_N, point.line, 1});
+  }
+  return error;
+}
+
+Specimen specimenOf(const StaticPoints& points, std::optional<double> rest_length_mm) {
+  return {rest_length_mm.value_or(points.longestMm()), points.shortestMm(), points.largestForceN()};
+}
+
+Eigen::VectorXd fitParameters(const LawModel& model, const StaticPoints& points, const std::vector<Eigen::VectorXd>& starts,
+                              bool* converged) {
+  // The penalties of a table stand for points.
+  const std::size_t needed = model.isTable() ? fewest_points : 2 * model.parameters().size();
+  if (points.measured().size() < needed)
+    throw BadFile(points.file, fmt::format("{} points above the floor are too few for the law {} with {} constants; at least {} are needed",
+                                           points.measured().size(), model.name(), model.parameters().size(), needed));
+  const LeastSquaresResult result = minimise(problemOf(model, points, 0), starts);
+  if (converged) *converged = result.converged;
+  return result.x;
+}
+
+LawFit fitLaw(const LawModel& model, const StaticPoints& points) {
+  LawFit fit;
+  fit.parameters = fitParameters(model, points, model.starts(), &fit.converged);
+  fit.error = errorOf(*model.build(fit.parameters), points.points);
+  Judgement judgement(model, points, fit);
+  judgement.addConstants();
+  if (!model.isTable()) judgement.addWarnings();
+  return fit;
+}
+
+void markOutliers(StaticPoints& points, const Specimen& specimen) {
+  constexpr double deviations = 6, force_share = 0.1;
+  const double force_limit_N = force_share * specimen.force_scale_N;
+  // Where a law of six constants comes near to all points, none is far from its neighbours, and the costlier map need not be asked.
+  const auto law = makeLawModel("sarosi", specimen, {});
+  const auto law_x = minimise(problemOf(*law, points, 0), law->starts()).x;
+  if (largestOffN(*law->build(law_x), points) < force_limit_N / 2) return;
+  const auto model = makeLawModel("map", specimen, {});
+  Eigen::VectorXd x = minimise(problemOf(*model, points, 0), model->starts()).x;
+  constexpr double cauchy_per_deviation = 2.385;  // 95 % as good as least squares where errors are normal
+  constexpr double least_share = 1e-6;
+  double deviation_N = 0;
+  for (int round = 0; round < 3; ++round) {
+    deviation_N = std::max(robustDeviationN(*model->build(x), points), least_share * specimen.force_scale_N);
+    x = minimise(problemOf(*model, points, cauchy_per_deviation * deviation_N), {x}).x;
+  }
+  const double limit_N = std::max(deviations * deviation_N, force_limit_N);
+  const auto map = model->build(x);
+  std::vector<std::string> lines;
+  for (auto& point : points.points) {
+    if (point.censored) continue;
+    const double off_N = -offN(*map, point, points.floor_N, specimen.force_scale_N);
+    point.outlier = std::abs(off_N) > limit_N;
+    if (point.outlier) lines.push_back(fmt::format("{} ({:g} N, {:+.3g} N)", point.line, point.force_N, off_N));
+  }
+  if (!lines.empty())
+    points.notes.push_back(fmt::format("{} points are further than {:.3g} N from their neighbours and are left out; lines {}", lines.size(),
+                                       limit_N, fmt::join(lines, ", ")));
+}
+
+}  // namespace musclesim

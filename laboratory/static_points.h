@@ -1,0 +1,54 @@
+/// Measured static points of a muscle: pressure, length, force.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace musclesim {
+
+/// One equilibrium of a measured muscle.
+struct StaticPoint {
+  double pressure_ratio = 0;  ///< fraction of full scale
+  double length_mm = 0;
+  double force_N = 0;     ///< pulling positive
+  int line = 0;           ///< of the file
+  bool censored = false;  ///< the force is at or below the sensor's floor; all that is known is that it is not above it
+  bool outlier = false;   ///< far from its neighbours; see markOutliers
+};
+
+/// All points of one muscle.
+struct StaticPoints {
+  std::string file;
+  std::vector<StaticPoint> points;
+  std::optional<double> full_scale_kPa;  ///< pressure of ratio 1; empty where the file holds fractions
+  double floor_N = 0;                    ///< of the censored points
+  std::vector<std::string> notes;        ///< what a user should know: columns ignored, rows skipped, points censored
+
+  double shortestMm() const;
+  double longestMm() const;
+  double largestForceN() const;
+  /// Points that are neither censored nor outliers.
+  std::vector<StaticPoint> measured() const;
+  int censoredCount() const;
+};
+
+/// How a file is read.
+struct StaticPointsOptions {
+  /// "pressure", "length" or "force" and the column that holds it. The unit is the name's ending (_kPa, _cm), or follows a colon (L:mm).
+  std::vector<std::pair<std::string, std::string>> columns;
+  /// Column and value of the rows to keep; all must hold.
+  std::vector<std::pair<std::string, std::string>> where;
+  std::optional<double> full_scale_kPa;    ///< default: the largest pressure of the file
+  std::optional<double> censored_below_N;  ///< default: a lowest force that occurs again and again is the sensor's floor
+};
+
+/// Reads a CSV file with one column each of pressure (fraction), pressure_kPa, _bar or _MPa; length_mm, _cm or _m; force_N.
+/// Throws BadFile, with line, value and allowed range, for what no static test of a muscle can have given: missing units, values out of
+/// range, lengths that differ too much, forces that fall with pressure or length (columns swapped), fewer than two pressures or lengths.
+StaticPoints readStaticPoints(const std::string& file, const StaticPointsOptions& options = {});
+/// The same from text; `file` is used in messages.
+StaticPoints parseStaticPoints(const std::string& text, const std::string& file, const StaticPointsOptions& options = {});
+
+}  // namespace musclesim

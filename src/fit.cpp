@@ -1,0 +1,138 @@
+/// `musclesim fit`: force laws from measured static points.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "commands.h"
+#include "laboratory/fit_report.h"
+#include "musclesim/error.h"
+#include "musclesim/log/file.h"
+#include "output_folder.h"
+
+namespace musclesim::program {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct FitArguments {
+  std::string data, law = "all";
+  std::vector<std::string> columns, where;
+  std::optional<double> full_scale_kPa, censored_below_N, rest_length_mm;
+  std::optional<std::string> out;
+  std::string minimum_length = "free", maximum_length = "rest";
+  bool quiet = false, json = false;
+};
+
+std::pair<std::string, std::string> splitAssignment(const std::string& option, const std::string& assignment) {
+  const auto equals = assignment.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == assignment.size())
+    throw BadParameter(option, assignment, "have the form name=value");
+  return {assignment.substr(0, equals), assignment.substr(equals + 1)};
+}
+
+StaticPointsOptions pointsOptions(const FitArguments& arguments) {
+  StaticPointsOptions options;
+  for (const auto& column : arguments.columns) options.columns.push_back(splitAssignment("--columns", column));
+  for (const auto& filter : arguments.where) options.where.push_back(splitAssignment("--where", filter));
+  options.full_scale_kPa = arguments.full_scale_kPa;
+  options.censored_below_N = arguments.censored_below_N;
+  return options;
+}
+
+/// A length of Eq. 1 in mm, or nothing where it shall be fitted.
+std::optional<double> lengthMm(const std::string& option, const std::string& written) {
+  if (written == "free") return std::nullopt;
+  char* end = nullptr;
+  const double value = std::strtod(written.c_str(), &end);
+  if (end != written.c_str() + written.size() || !(value > 0 && value < 1e4))
+    throw BadParameter(option, written, "be free or a length in mm, 0 .. 10000");
+  return value;
+}
+
+BraunLengths braunLengths(const FitArguments& arguments, const Specimen& specimen) {
+  BraunLengths lengths;
+  lengths.minimum_mm = lengthMm("--minimum-length", arguments.minimum_length);
+  lengths.maximum_mm =
+      arguments.maximum_length == "rest" ? specimen.rest_length_mm : lengthMm("--maximum-length", arguments.maximum_length);
+  if (lengths.minimum_mm && lengths.maximum_mm && *lengths.minimum_mm >= *lengths.maximum_mm)
+    throw BadParameter("--minimum-length", arguments.minimum_length, fmt::format("be below the maximum, {} mm", *lengths.maximum_mm));
+  return lengths;
+}
+
+/// Writes the configuration of each fitted law; returns their paths by law.
+std::map<std::string, std::string> writeFiles(const std::vector<LawReport>& reports, const StaticPoints& points, const fs::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& report : reports) {
+    if (!report.failure.empty()) continue;
+    const std::string file = (folder / (report.model->name() + ".toml")).string();
+    replaceFile(file, configurationToml(report, points));
+    files[report.model->name()] = file;
+  }
+  return files;
+}
+
+nlohmann::json verdictOf(const FitArguments& arguments, const StaticPoints& points, const std::vector<LawReport>& reports,
+                         const std::map<std::string, std::string>& files, const fs::path& folder) {
+  nlohmann::json json = {{"command", "fit"}, {"status", "done"}, {"data", arguments.data}, {"out", folder.string()}};
+  json["points"] = points.points.size();
+  json["censored_points"] = points.censoredCount();
+  json["outlier_lines"] = nlohmann::json::array();
+  for (const auto& point : points.points)
+    if (point.outlier) json["outlier_lines"].push_back(point.line);
+  if (points.full_scale_kPa) json["pressure_full_scale_kPa"] = *points.full_scale_kPa;
+  for (const auto& report : reports) {
+    auto& law = json["laws"][report.model->name()];
+    law = toJson(report);
+    if (const auto file = files.find(report.model->name()); file != files.end()) law["config"] = file->second;
+  }
+  return json;
+}
+
+int fit(const FitArguments& arguments) {
+  StaticPoints points = readStaticPoints(arguments.data, pointsOptions(arguments));
+  const Specimen specimen = specimenOf(points, arguments.rest_length_mm);
+  const BraunLengths lengths = braunLengths(arguments, specimen);
+  const std::vector<std::string> names = arguments.law == "all" ? lawModelNames() : std::vector{arguments.law};
+  for (const auto& name : names) makeLawModel(name, specimen, lengths);
+  markOutliers(points, specimen);
+  if (!arguments.quiet)
+    for (const auto& note : points.notes) std::fprintf(stderr, "musclesim: %s\n", note.c_str());
+  const auto reports = fitLaws(names, points, specimen, lengths);
+  const fs::path folder = outputFolder(arguments.out, "fit-" + fs::path(arguments.data).stem().string());
+  const auto files = writeFiles(reports, points, folder);
+  fmt::print("{}\n", errorTable(reports));
+  for (const auto& report : reports) fmt::print("{}", constantsText(report));
+  for (const auto& [name, file] : files) fmt::print("config  {}\n", file);
+  if (arguments.json) fmt::print("{}\n", verdictOf(arguments, points, reports, files, folder).dump());
+  return done;
+}
+
+}  // namespace
+
+Action addFit(CLI::App& command) {
+  auto arguments = std::make_shared<FitArguments>();
+  command.add_option("data", arguments->data, "Table of static points: pressure or pressure_kPa|bar|MPa, length_mm|cm|m, force_N")
+      ->required();
+  command.add_option("--law", arguments->law, fmt::format("all, or one of {}", fmt::join(lawModelNames(), ", ")))->capture_default_str();
+  command.add_option("--columns", arguments->columns, "pressure=NAME,length=NAME,force=NAME: other columns; NAME:unit gives a unit")
+      ->delimiter(',');
+  command.add_option("--where", arguments->where, "column=value: only these rows; may be repeated")->delimiter(',');
+  command.add_option("--full-scale-kPa", arguments->full_scale_kPa, "Pressure of fraction 1 (default: the largest of the file)")
+      ->check(CLI::Range(1.0, 1e4));
+  command.add_option("--censored-below", arguments->censored_below_N,
+                     "Force in N at and below which the sensor shows nothing (default: found where the lowest force repeats)");
+  command
+      .add_option("--rest-length", arguments->rest_length_mm, "Rest length of the measured muscle in mm (default: the longest measured)")
+      ->check(CLI::Range(5.0, 1e4));
+  command.add_option("--minimum-length", arguments->minimum_length, "l_min of Eq. 1 in mm, or free")->capture_default_str();
+  command.add_option("--maximum-length", arguments->maximum_length, "l_max of Eq. 1 in mm, free, or rest: the rest length")
+      ->capture_default_str();
+  command.add_option("--out", arguments->out, "Folder for configuration files and figures (default: log/runs/<date-time>-fit-<data>)");
+  command.add_flag("--quiet", arguments->quiet, "No messages on standard error except errors");
+  command.add_flag("--json", arguments->json, "Print the verdict as one JSON object, the last line of standard output");
+  return [arguments] { return fit(*arguments); };
+}
+
+}  // namespace musclesim::program
