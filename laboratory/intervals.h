@@ -22,7 +22,7 @@ Scatter scatterOf(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& residu
 double degreesOfFreedom(const Eigen::VectorXd& weights, const Eigen::VectorXd& variances);
 
 /// The number that Student's t with these degrees of freedom stays below with 97.5 %. Source: Abramowitz and Stegun 26.7.5; error below
-/// 0.2 % from 4 degrees on, which are the fewest it is used with.
+/// 0.3 % from 4 degrees on, which are the fewest it is used with.
 double student975(double degrees_of_freedom);
 
 }  // namespace musclesim

@@ -148,4 +148,17 @@ void Svg::sample(SvgPoint from, double length, const Color& color, double width)
   casedPath(pathData({{from, {from.x + length, from.y}}}), color, width, "", "");
 }
 
+void Svg::mark(SvgPoint where, SvgMark mark, const Color& color, const std::string& hint) {
+  constexpr double radius = 2.6;
+  if (mark == SvgMark::none) return;
+  if (mark == SvgMark::cross) {
+    for (const double way : {-1.0, 1.0})
+      line({where.x - radius, where.y - way * radius}, {where.x + radius, where.y + way * radius}, hexColor(color), 1.3);
+    return;
+  }
+  const std::string ink = hexColor(color), title = hint.empty() ? "" : "<title>" + escapedXml(hint) + "</title>";
+  out_ += fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"{}\" stroke=\"{}\" stroke-width=\"1\">{}</circle>\n", pixels(where.x),
+                      pixels(where.y), pixels(radius), mark == SvgMark::disc ? ink : "none", ink, title);
+}
+
 }  // namespace musclesim

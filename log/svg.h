@@ -21,6 +21,9 @@ struct SvgBox {
   double bottom() const { return top + height; }
 };
 
+/// How a point is drawn: not at all (only lines), as a disc, as a ring, as a cross.
+enum class SvgMark { none, disc, ring, cross };
+
 enum class SvgAnchor { start, middle, end };
 
 struct SvgTextStyle {
@@ -57,6 +60,9 @@ class Svg {
              const std::string& hint);
   /// A short piece of a curve for a legend.
   void sample(SvgPoint from, double length, const Color& color, double width);
+
+  /// A point. `hint` is shown where the mouse rests.
+  void mark(SvgPoint where, SvgMark mark, const Color& color, const std::string& hint);
 
   /// The finished document.
   std::string document() const { return out_ + "</svg>\n"; }

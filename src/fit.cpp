@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
+#include "laboratory/fit_figure.h"
 #include "laboratory/fit_report.h"
 #include "musclesim/error.h"
 #include "musclesim/log/file.h"
@@ -61,13 +62,14 @@ BraunLengths braunLengths(const FitArguments& arguments, const Specimen& specime
   return lengths;
 }
 
-/// Writes the configuration of each fitted law; returns their paths by law.
+/// Writes configuration and figure of each fitted law; returns the configurations' paths by law.
 std::map<std::string, std::string> writeFiles(const std::vector<LawReport>& reports, const StaticPoints& points, const fs::path& folder) {
   std::map<std::string, std::string> files;
   for (const auto& report : reports) {
     if (!report.failure.empty()) continue;
     const std::string file = (folder / (report.model->name() + ".toml")).string();
     replaceFile(file, configurationToml(report, points));
+    replaceFile((folder / (report.model->name() + ".svg")).string(), fitFigureSvg(report, points));
     files[report.model->name()] = file;
   }
   return files;
@@ -85,7 +87,10 @@ nlohmann::json verdictOf(const FitArguments& arguments, const StaticPoints& poin
   for (const auto& report : reports) {
     auto& law = json["laws"][report.model->name()];
     law = toJson(report);
-    if (const auto file = files.find(report.model->name()); file != files.end()) law["config"] = file->second;
+    if (const auto file = files.find(report.model->name()); file != files.end()) {
+      law["config"] = file->second;
+      law["figure"] = fs::path(file->second).replace_extension(".svg").string();
+    }
   }
   return json;
 }
@@ -104,7 +109,7 @@ int fit(const FitArguments& arguments) {
   const auto files = writeFiles(reports, points, folder);
   fmt::print("{}\n", errorTable(reports));
   for (const auto& report : reports) fmt::print("{}", constantsText(report));
-  for (const auto& [name, file] : files) fmt::print("config  {}\n", file);
+  for (const auto& [name, file] : files) fmt::print("config  {}\nfigure  {}\n", file, fs::path(file).replace_extension(".svg").string());
   if (arguments.json) fmt::print("{}\n", verdictOf(arguments, points, reports, files, folder).dump());
   return done;
 }

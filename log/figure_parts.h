@@ -1,0 +1,33 @@
+/// What all figures draw alike: axes, grid, legend.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "axis.h"
+#include "svg.h"
+
+namespace musclesim {
+
+namespace figure_style {
+inline constexpr double label_size = 12, axis_title_size = 13, title_size = 16, legend_height = 22;
+inline const std::string grid_color = "#e4e4e4", frame_color = "#555555", text_color = "#333333", title_color = "#111111";
+}  // namespace figure_style
+
+/// How a legend shows a curve: by a piece of line or by a mark.
+struct LegendEntry {
+  std::string label;
+  Color color;
+  SvgMark mark = SvgMark::none;
+};
+
+/// The entries of a legend, row by row, none wider than `width`.
+std::vector<std::vector<LegendEntry>> legendRows(const std::vector<LegendEntry>& entries, double width);
+void drawLegend(Svg& svg, const std::vector<std::vector<LegendEntry>>& rows, double left, double top);
+
+/// Grid lines and ticks of the axis below a box; with labels and a title unless it is empty.
+void drawLowerAxis(Svg& svg, const Axis& axis, const SvgBox& box, const std::string& title);
+/// Grid lines, ticks, labels and title of the axis at the left of a box; the title stands at `title_x`.
+void drawLeftAxis(Svg& svg, const Axis& axis, const SvgBox& box, const std::string& title, double title_x);
+
+}  // namespace musclesim
