@@ -19,6 +19,8 @@ Action addRun(CLI::App& app, ModelOptions& model);
 Action addReplay(CLI::App& command, ModelOptions& model);
 /// `effects`: the catalogue of effects.
 Action addEffects(CLI::App& command);
+/// `experiment`: the load frame of the paper in the simulator.
+Action addExperiment(CLI::App& command, ModelOptions& model);
 /// `fit`: force laws from measured static points.
 Action addFit(CLI::App& command);
 

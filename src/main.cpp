@@ -46,7 +46,9 @@ int parseAndRun(int argument_count, char** arguments) {
   const program::Action effects = addEffects(*effects_command);
   CLI::App* fit_command = app.add_subcommand("fit", "Fits force laws to measured static points");
   const program::Action fit = addFit(*fit_command);
-  for (CLI::App* command : {&app, replay_command, effects_command, fit_command}) refuseEmptyValues(*command);
+  CLI::App* experiment_command = app.add_subcommand("experiment", "The paper's load-frame experiment in the simulator");
+  const program::Action experiment = addExperiment(*experiment_command, model);
+  for (CLI::App* command : {&app, replay_command, effects_command, fit_command, experiment_command}) refuseEmptyValues(*command);
   try {
     app.parse(argument_count, arguments);
   } catch (const CLI::ParseError& error) {
@@ -56,6 +58,7 @@ int parseAndRun(int argument_count, char** arguments) {
   }
   if (effects_command->parsed()) return effects();
   if (fit_command->parsed()) return fit();
+  if (experiment_command->parsed()) return experiment();
   return replay_command->parsed() ? replay() : run();
 }
 

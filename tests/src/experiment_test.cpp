@@ -1,0 +1,45 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "src/program.h"
+
+namespace musclesim {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(ExperimentCommand, ShortMuscleFollowsItsLawAndItsPointsCanBeFitted) {
+  const fs::path folder = fs::temp_directory_path() / ("musclesim_experiment_test_" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  const ProgramResult result = runProgram({"experiment", "--specimen", "short", "--out", "out", "--json", "--quiet"}, folder);
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_TRUE(fs::exists(folder / "out" / "short.svg"));
+  const auto json = nlohmann::json::parse(result.out.substr(result.out.rfind("\n{") + 1));
+  for (const char* experiment : {"loads_hung", "lengths_imposed"}) {
+    const auto& errors = json.at("specimens").at("short").at(experiment);
+    EXPECT_LE(errors.at("relative_squared_error"), 1e-3) << experiment;
+    EXPECT_GT(errors.at("points"), 150) << experiment;
+  }
+  EXPECT_GT(json.at("specimens").at("short").at("loads_hung").at("relative_squared_error_at_stops"), 1e-3) << "the kink";
+  const ProgramResult fitted = runProgram({"fit", "out/short.csv", "--where", "experiment=lengths", "--law", "braun", "--minimum-length",
+                                           "60", "--maximum-length", "200", "--json", "--quiet", "--out", "fitted"},
+                                          folder);
+  ASSERT_EQ(fitted.status, 0) << fitted.err;
+  const auto law = nlohmann::json::parse(fitted.out.substr(fitted.out.rfind("\n{") + 1)).at("laws").at("braun");
+  EXPECT_NEAR(law.at("constants").at("c").at("value"), 9.7996, 0.15) << "and back to Eq. 1, up to friction";
+  fs::remove_all(folder);
+}
+
+TEST(ExperimentCommand, UnknownSpecimensAreRefused) {
+  for (const char* specimen : {"tiny", "200/100", "60/", "5/100"}) {
+    const ProgramResult result = runProgram({"experiment", "--specimen", specimen});
+    EXPECT_EQ(result.status, 2) << specimen;
+    EXPECT_NE(result.err.find("short, medium, long, or MIN/MAX"), std::string::npos) << result.err;
+  }
+}
+
+}  // namespace
+}  // namespace musclesim
