@@ -177,11 +177,11 @@ std::string frameCsv(const FrameReport& report) {
   return out;
 }
 
-std::unique_ptr<ForceLaw> frameLaw(const FrameSpecimen& specimen, const Parameters& given) {
-  Parameters parameters = given;
+std::unique_ptr<ForceLaw> frameLaw(const FrameSpecimen& specimen, const Parameters& parameters) {
+  Parameters declared = parameters;
   // A muscle of links: its shortest length is theirs.
-  const double link_mm = 2 * MuscleSettings(parameters).bead_radius_mm;
-  return makeForceLaw(parameters, std::max(2.0, std::round(specimen.minimum_mm / link_mm)) * link_mm, specimen.maximum_mm);
+  const double link_mm = 2 * MuscleSettings(declared).bead_radius_mm;
+  return makeForceLaw(declared, std::max(2.0, std::round(specimen.minimum_mm / link_mm)) * link_mm, specimen.maximum_mm);
 }
 
 std::string frameFigureSvg(const FrameReport& report, const ForceLaw& law) {
