@@ -34,7 +34,7 @@ PhysicsSettings::PhysicsSettings(PhysicsKind physics_kind, Parameters& parameter
   const double cfm = kind == PhysicsKind::scaled ? 1e-10 / std::sqrt(original_force_deficit_ratio) : 1e-10;
   constraint_force_mixing =
       parameters.number("physics.constraint_force_mixing", cfm, "s/g", 0, 1, "softness of all constraints (CFM of ODE)");
-  contact_friction_N = parameters.number("physics.contact_friction_N", 1e-4, "N", 0, 1e3,
+  contact_friction_N = parameters.number("physics.contact_friction_N", si ? 0 : 1e-4, "N", 0, 1e3,
                                          "limit of the tangential force of one contact, practically frictionless");
   has_contacts = parameters.choice("physics.contacts", "on", {"on", "off"}, "whether bodies touch or pass through each other") == "on";
   composite_inertia = parameters.choice("physics.composite_inertia", si ? "exact" : "summed", {"exact", "summed"},

@@ -23,5 +23,7 @@ Action addEffects(CLI::App& command);
 Action addExperiment(CLI::App& command, ModelOptions& model);
 /// `fit`: force laws from measured static points.
 Action addFit(CLI::App& command);
+/// `bench`: real-time ratio over the number of muscles.
+Action addBench(CLI::App& command, ModelOptions& model);
 
 }  // namespace musclesim::program

@@ -48,7 +48,10 @@ int parseAndRun(int argument_count, char** arguments) {
   const program::Action fit = addFit(*fit_command);
   CLI::App* experiment_command = app.add_subcommand("experiment", "The paper's load-frame experiment in the simulator");
   const program::Action experiment = addExperiment(*experiment_command, model);
-  for (CLI::App* command : {&app, replay_command, effects_command, fit_command, experiment_command}) refuseEmptyValues(*command);
+  CLI::App* bench_command = app.add_subcommand("bench", "Measures r(n), CPU time over simulated time, for all steppers and muscle models");
+  const program::Action bench = addBench(*bench_command, model);
+  for (CLI::App* command : {&app, replay_command, effects_command, fit_command, experiment_command, bench_command})
+    refuseEmptyValues(*command);
   try {
     app.parse(argument_count, arguments);
   } catch (const CLI::ParseError& error) {
@@ -59,6 +62,7 @@ int parseAndRun(int argument_count, char** arguments) {
   if (effects_command->parsed()) return effects();
   if (fit_command->parsed()) return fit();
   if (experiment_command->parsed()) return experiment();
+  if (bench_command->parsed()) return bench();
   return replay_command->parsed() ? replay() : run();
 }
 

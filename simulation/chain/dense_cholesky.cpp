@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "wide.h"
+
 namespace musclesim::chain {
 
 namespace {
@@ -19,11 +21,15 @@ void DenseCholesky::reset(int size) {
   for (int j = 0; j < size; ++j) std::fill(column(j) + j, column(j) + size, 0.0);
 }
 
+/// Panels of four columns, two at a time: the columns behind are read and written once for both.
 void DenseCholesky::factorise() {
-  for (int first = 0; first < size_; first += panel_width) {
-    const int width = std::min(panel_width, size_ - first);
-    factorPanel(first, width);
-    if (width == panel_width) updateBehind(first, width);
+  for (int first = 0; first < size_; first += 2 * panel_width) {
+    const int middle = std::min(first + panel_width, size_), last = std::min(first + 2 * panel_width, size_);
+    factorPanel(first, middle - first);
+    if (middle == last) return;
+    update(first, panel_width, middle, last);
+    factorPanel(middle, last - middle);
+    if (last - middle == panel_width) update(first, 2 * panel_width, last, size_);
   }
 }
 
@@ -40,16 +46,16 @@ void DenseCholesky::factorPanel(int first, int width) {
   }
 }
 
-/// Subtracts the panel's four columns from all columns behind it.
-void DenseCholesky::updateBehind(int first, int width) {
-  const double* __restrict a = column(first);
-  const double* __restrict b = column(first + 1);
-  const double* __restrict c = column(first + 2);
-  const double* __restrict d = column(first + 3);
-  for (int j = first + width; j < size_; ++j) {
-    double* __restrict target = column(j);
-    const double fa = a[j], fb = b[j], fc = c[j], fd = d[j];
-    for (int i = j; i < size_; ++i) target[i] -= (fa * a[i] + fb * b[i]) + (fc * c[i] + fd * d[i]);
+/// Subtracts the `width` columns from `first` on, four or eight, from the columns begin .. end - 1 behind them.
+void DenseCholesky::update(int first, int width, int begin, int end) {
+  const double* columns[2 * panel_width];
+  double factors[2 * panel_width];
+  for (int j = begin; j < end; ++j) {
+    for (int k = 0; k < width; ++k) {
+      columns[k] = column(first + k) + j;
+      factors[k] = *columns[k];
+    }
+    subtractColumns(column(j) + j, columns, factors, width / panel_width, size_ - j);
   }
 }
 

@@ -22,7 +22,7 @@ class DenseCholesky {
 
  private:
   void factorPanel(int first, int width);
-  void updateBehind(int first, int width);
+  void update(int first, int width, int begin, int end);
   double* column(int j) { return entries_.data() + static_cast<std::size_t>(j) * stride_; }
   const double* column(int j) const { return entries_.data() + static_cast<std::size_t>(j) * stride_; }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "wide.h"
+
 namespace musclesim::chain {
 
 void SkeletonCore::reset(int bone_count, int row_count) {
@@ -78,15 +80,14 @@ void SkeletonCore::reduce(BoneSystem& bone) {
 void SkeletonCore::addProducts(const BoneSystem& bone) {
   const double* y[6];
   for (std::size_t i = 0; i < 6; ++i) y[i] = bone.jacobian.data() + i * stride_;
-  double* __restrict products = products_.data();
+  double* products = products_.data();
   for (std::size_t c = 0; c < bone.rows.size(); ++c) {
     double f[6], right = 0;
     for (int i = 0; i < 6; ++i) {
       f[i] = y[i][c];
       right += f[i] * bone.reduced[i];
     }
-    for (std::size_t d = 0; d <= c; ++d)
-      products[d] = (f[0] * y[0][d] + f[1] * y[1][d]) + (f[2] * y[2][d] + f[3] * y[3][d]) + (f[4] * y[4][d] + f[5] * y[5][d]);
+    combineSixRows(products, y, f, static_cast<int>(c) + 1);
     const int row = bone.rows[c];
     force_[static_cast<std::size_t>(row)] -= right;
     for (std::size_t d = 0; d <= c; ++d) rows_.add(row, bone.rows[d], products[d]);

@@ -53,7 +53,8 @@ StepProblem::StepProblem(Model& model) : model_(model) {
 
 /// Memory for as many contacts as a robot can be expected to have, so that steps need not ask for it.
 void StepProblem::reserve() {
-  constexpr int contact_count = 100, contacts_per_chain = 12;
+  constexpr int contacts_per_chain = 12;
+  const int contact_count = 100 + 8 * static_cast<int>(chains_.size());
   const auto links = std::accumulate(chains_.begin(), chains_.end(), std::size_t{0},
                                      [](std::size_t sum, const ChainState& chain) { return sum + chain.joints.size(); });
   contacts_.reserve(contact_count);

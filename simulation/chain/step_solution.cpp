@@ -32,6 +32,10 @@ void StepProblem::takeStates(const std::vector<BoundedRow>& rows) {
 
 namespace {
 
+bool haveBodyInCommon(const ContactRows& a, const ContactRows& b) {
+  return a.body[0] == b.body[0] || a.body[0] == b.body[1] || a.body[1] == b.body[0] || a.body[1] == b.body[1];
+}
+
 double givenForce(const ContactRows& contact, int row) {
   return contact.state[row] == RowState::at_lower ? contact.lower[row] : contact.upper[row];
 }
@@ -198,8 +202,11 @@ void StepProblem::addContact(std::size_t number, int row) {
       core_.addBlock(core_row, chain.border_rows[static_cast<std::size_t>(start)],
                      throughBead(body, jacobian, chain.start.rows.jacobian[0][start]));
   }
-  for (std::size_t other = 0; other < number; ++other)
-    for (int other_row = 0; other_row < 3; ++other_row) addContactPair(contact, row, contacts_.all()[other], other_row);
+  for (std::size_t number_before = 0; number_before < number; ++number_before) {
+    const ContactRows& other = contacts_.all()[number_before];
+    if (!haveBodyInCommon(contact, other)) continue;
+    for (int other_row = 0; other_row < other.row_count; ++other_row) addContactPair(contact, row, other, other_row);
+  }
   for (int other_row = 0; other_row <= row; ++other_row) addContactPair(contact, row, contact, other_row);
 }
 

@@ -1,80 +1,71 @@
-// CPU time of the chain stepper and of dWorldStep on the arm, in one process.
-// Usage: step_speed recording.csv muscles duration_s ode_steps [physics]
-// Commands are those of the recording, in its order; further muscles repeat them.
+/// CPU time of the chain stepper and of dWorldStep on the arm in `original` physics, in one process.
+/// Usage: step_speed RECORDING.csv ... [--time-limit S] [--document docs/stepper.md]
+/// Commands are those of the recordings, in their order; muscles beyond the tenth repeat them. dWorldStep runs until the time limit; the
+/// chain stepper over the same steps, and over all.
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cstdio>
-#include <cstdlib>
-#include <ctime>
-#include <fstream>
-#include <sstream>
+#include <filesystem>
+#include <optional>
 
 #include "simulation/step_comparison.h"
+#include "study.h"
 
 using namespace musclesim;
 
 namespace {
 
-struct Schedule {
-  std::vector<double> time_s;
-  std::vector<Action> command;
+struct Timing {
+  long steps = 0;
+  double cpu_s = 0;
+  double msPerStep() const { return 1e3 * cpu_s / static_cast<double>(steps); }
 };
 
-Schedule readSchedule(const char* file) {
-  std::ifstream in(file);
-  std::string line;
-  std::getline(in, line);
-  Schedule schedule;
-  while (std::getline(in, line)) {
-    std::stringstream cells(line);
-    std::string cell;
-    std::getline(cells, cell, ',');
-    schedule.time_s.push_back(std::atof(cell.c_str()));
-    Action command;
-    for (int i = 0; i < 10 && std::getline(cells, cell, ','); ++i) command.push_back(std::atof(cell.c_str()));
-    schedule.command.push_back(command);
-  }
-  return schedule;
-}
-
-double cpuSeconds() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-/// Milliseconds of CPU time per control step.
-double run(Simulation& simulation, const Schedule& schedule, long steps, double time_scale) {
-  const auto muscles = static_cast<std::size_t>(simulation.robot().actuatorCount());
-  Action command(muscles, 0.0);
-  std::size_t row = 0;
+/// Runs up to so many steps within so much CPU time.
+Timing run(StepperKind stepper, const Schedule& schedule, int muscle_count, long steps, double time_limit_s) {
+  ComparisonCase c;
+  c.muscle_count = muscle_count;
+  const auto simulation = makeSimulation(c, stepper);
+  Timing timing;
   const double begin = cpuSeconds();
-  for (long i = 0; i < steps; ++i) {
-    const double time_s = static_cast<double>(i) * simulation.stepS() * time_scale;
-    while (row + 1 < schedule.time_s.size() && schedule.time_s[row + 1] <= time_s + 1e-9) ++row;
-    for (std::size_t m = 0; m < muscles; ++m) command[m] = schedule.command[row][m % 10];
-    simulation.robot().step(command);
-    simulation.step();
+  for (; timing.steps < steps && timing.cpu_s < time_limit_s; ++timing.steps, timing.cpu_s = cpuSeconds() - begin) {
+    simulation->robot().step(schedule.at(simulation->time_s(), muscle_count));
+    simulation->step();
   }
-  return (cpuSeconds() - begin) / static_cast<double>(steps) * 1e3;
+  return timing;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 5) return 2;
-  const Schedule schedule = readSchedule(argv[1]);
-  ComparisonCase c;
-  c.muscle_count = std::atoi(argv[2]);
-  const double duration_s = std::atof(argv[3]);
-  const long ode_steps = std::atol(argv[4]);
-  if (argc > 5) c.physics = physicsFromName(argv[5]);
-  const double time_scale = c.physics == PhysicsKind::original ? 1 : std::sqrt(1000.0);
-  double ode_ms = 0;
-  if (ode_steps > 0) ode_ms = run(*makeSimulation(c, StepperKind::ode), schedule, ode_steps, time_scale);
-  const auto chain = makeSimulation(c, StepperKind::chain);
-  const double chain_ms = run(*chain, schedule, std::lround(duration_s / chain->stepS()), time_scale);
-  const ChainStatistics& s = dynamic_cast<const ChainStepper&>(chain->stepper()).statistics();
-  std::printf(
-      "n=%d %s: ode %.3f ms (%ld steps), chain %.4f ms (%ld steps), ratio %.1f, r %.4f; rounds %.2f (<= %d, monotone %ld), unsolved %ld\n",
-      c.muscle_count, nameOf(c.physics).c_str(), ode_ms, ode_steps, chain_ms, s.steps, ode_ms / chain_ms, chain_ms * 1e-3 / chain->stepS(),
-      static_cast<double>(s.rounds) / static_cast<double>(s.steps), s.largest_rounds, s.monotone_rounds, s.unsolved_steps);
+  std::vector<std::string> recordings;
+  std::optional<std::string> document;
+  double time_limit_s = 60;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word == "--time-limit" && i + 1 < argc)
+      time_limit_s = std::atof(argv[++i]);
+    else if (word == "--document" && i + 1 < argc)
+      document = argv[++i];
+    else
+      recordings.push_back(word);
+  }
+  std::string table =
+      "| recording | muscles | simulated s | dWorldStep ms per step | chain stepper ms per step | ratio | r of the chain stepper |\n"
+      "|---|---|---|---|---|---|---|\n";
+  std::fputs(table.c_str(), stdout);
+  for (const std::string& file : recordings)
+    for (const auto& [muscles, seconds] : {std::pair{10, 5.0}, std::pair{10, 30.0}, std::pair{30, 5.0}}) {
+      const Schedule schedule = scheduleOf(file, 1);
+      const Timing ode = run(StepperKind::ode, schedule, muscles, std::lround(seconds / 0.01), time_limit_s);
+      const Timing chain = run(StepperKind::chain, schedule, muscles, ode.steps, 1e9);
+      const std::string line = fmt::format("| {} | {} | {:.2f} | {:.2f} | {:.4f} | {:.0f} | {:.4f} |\n",
+                                           std::filesystem::path(file).stem().string(), muscles, static_cast<double>(ode.steps) * 0.01,
+                                           ode.msPerStep(), chain.msPerStep(), ode.msPerStep() / chain.msPerStep(), chain.msPerStep() / 10);
+      std::fputs(line.c_str(), stdout);
+      std::fflush(stdout);
+      table += line;
+    }
+  if (document) writeSection(*document, "speed", "step_speed", table);
 }

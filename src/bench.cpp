@@ -1,0 +1,148 @@
+/// `musclesim bench`: real-time ratio r(n) over the number of muscles, per stepper and muscle model, in one run (the paper's Figure 9).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "bench_report.h"
+#include "commands.h"
+#include "interrupt.h"
+#include "musclesim/error.h"
+#include "musclesim/log/file.h"
+#include "musclesim/random.h"
+#include "musclesim/units.h"
+
+namespace musclesim::program {
+
+namespace {
+
+struct BenchArguments {
+  double duration_s = 2, time_limit_s = 5;
+  int repeat_count = 3;
+  std::vector<int> muscle_counts = {1, 2, 5, 10, 15, 20, 25, 30};
+  std::string out = "docs";
+};
+
+/// What is measured: one line of the figure.
+struct Candidate {
+  std::string name;
+  PhysicsKind physics;
+  StepperKind stepper;
+  std::vector<std::string> parameters;
+};
+
+std::vector<Candidate> candidates() {
+  std::vector<Candidate> all;
+  for (const PhysicsKind physics : {PhysicsKind::original, PhysicsKind::si}) {
+    const std::string kind = nameOf(physics);
+    all.push_back({kind + ", dWorldStep", physics, StepperKind::ode, {}});
+    all.push_back({kind + ", dWorldQuickStep", physics, StepperKind::quick, {}});
+    all.push_back({kind + ", chain stepper", physics, StepperKind::automatic, {}});
+    all.push_back({kind + ", chain stepper, no contacts", physics, StepperKind::automatic, {"physics.contacts=off"}});
+    all.push_back({kind + ", chain stepper, viscous, no contacts",
+                   physics,
+                   StepperKind::automatic,
+                   {"physics.contacts=off", "muscle.joint_friction=viscous"}});
+    all.push_back({kind + ", line muscles", physics, StepperKind::automatic, {"muscle.model=line"}});
+  }
+  return all;
+}
+
+double cpuSeconds() {
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// CPU time over simulated time of one run under random pressures, new ones every 0.25 s of true time. It ends after the duration or the
+/// time limit, after the control step that passes it.
+BenchRun measure(const Candidate& candidate, int muscle_count, const BenchArguments& arguments) {
+  SimulationOptions options;
+  options.physics = candidate.physics;
+  options.stepper = candidate.stepper;
+  options.parameters.set("arm.muscle_count", static_cast<double>(muscle_count), "bench");
+  for (const auto& assignment : candidate.parameters) options.parameters.setFromText(assignment, "bench");
+  Simulation simulation(std::move(options));
+  Robot& robot = simulation.build("arm");
+  const double slowness = candidate.physics == PhysicsKind::original ? std::sqrt(original_force_deficit_ratio) : 1;
+  const double duration_s = arguments.duration_s * slowness;
+  const long hold = std::max(1L, std::lround(0.25 * slowness / simulation.stepS()));
+  RandomStream random(1, "bench.pressures");
+  musclesim::Action command(static_cast<std::size_t>(muscle_count));
+  BenchRun run;
+  const double begin = cpuSeconds();
+  try {
+    for (long i = 0; simulation.time_s() < duration_s - 1e-9 && cpuSeconds() - begin < arguments.time_limit_s; ++i) {
+      if (i % hold == 0)
+        for (double& pressure : command) pressure = random.uniform();
+      robot.step(command);
+      simulation.step();
+      run.contact_count = std::max(run.contact_count, simulation.contactCount());
+    }
+  } catch (const Diverged&) {
+    run.diverged = true;
+  }
+  run.simulated_s = simulation.time_s();
+  run.ratio = run.simulated_s > 0 ? (cpuSeconds() - begin) / run.simulated_s : std::nan("");
+  run.gap_mm = simulation.worstGap().gap_mm;
+  run.substeps = simulation.substeps();
+  run.cut_short = !run.diverged && run.simulated_s < duration_s - 1e-9;
+  return run;
+}
+
+/// The run with the median ratio.
+BenchRun median(std::vector<BenchRun> runs) {
+  std::sort(runs.begin(), runs.end(), [](const BenchRun& a, const BenchRun& b) { return a.ratio < b.ratio; });
+  return runs[runs.size() / 2];
+}
+
+int bench(const ModelOptions& model, const BenchArguments& arguments) {
+  if (!(arguments.duration_s >= 0.05)) throw BadParameter("duration", fmt::format("{} s", arguments.duration_s), "be at least 0.05 s");
+  if (arguments.repeat_count < 1) throw BadParameter("repeats", fmt::format("{}", arguments.repeat_count), "be at least 1");
+  std::vector<BenchCurve> curves;
+  for (const Candidate& candidate : candidates()) curves.push_back({candidate.name, {}});
+  // Candidates in turn, not one after the other: what else the machine does meets all of them.
+  for (const int count : arguments.muscle_counts)
+    for (std::size_t c = 0; c < curves.size(); ++c) {
+      std::vector<BenchRun> runs;
+      for (int i = 0; i < arguments.repeat_count && interruptSignal() == 0; ++i) {
+        runs.push_back(measure(candidates()[c], count, arguments));
+        if (runs.back().cut_short) break;  // too slow to be repeated
+      }
+      if (interruptSignal()) return interrupted_base + interruptSignal();
+      BenchRun run = median(runs);
+      run.muscle_count = count;
+      run.repeat_count = static_cast<int>(runs.size());
+      curves[c].runs.push_back(run);
+      say(model, fmt::format("{} muscles, {}: r = {:.3g}", count, curves[c].name, run.ratio));
+    }
+  const std::filesystem::path folder(arguments.out);
+  std::filesystem::create_directories(folder / "figures");
+  const std::string table = benchTable(curves, arguments.duration_s, arguments.time_limit_s);
+  replaceFile((folder / "performance.md").string(), table);
+  replaceFile((folder / "figures" / "performance.svg").string(), benchFigure(curves));
+  fmt::print("{}", table);
+  if (model.json) fmt::print("{}\n", benchJson(curves).dump());
+  return done;
+}
+
+}  // namespace
+
+Action addBench(CLI::App& command, ModelOptions& model) {
+  auto arguments = std::make_shared<BenchArguments>();
+  command.add_option("--duration", arguments->duration_s, "Simulated time per run, in true s")->capture_default_str();
+  command.add_option("--time-limit", arguments->time_limit_s, "CPU time in s after which a run is cut short")->capture_default_str();
+  command.add_option("--repeats", arguments->repeat_count, "Runs of which the median counts")->capture_default_str();
+  command.add_option("--muscles", arguments->muscle_counts, "Numbers of muscles, separated by commas")
+      ->delimiter(',')
+      ->capture_default_str();
+  command.add_option("--out", arguments->out, "Folder for performance.md and figures/performance.svg")->capture_default_str();
+  command.add_flag("--quiet", model.quiet, "No messages on standard error except errors");
+  command.add_flag("--json", model.json, "Print the results as one JSON object, the last line of standard output");
+  return [&model, arguments] { return bench(model, *arguments); };
+}
+
+}  // namespace musclesim::program

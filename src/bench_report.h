@@ -1,0 +1,30 @@
+/// Table and figure of `musclesim bench`.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace musclesim::program {
+
+struct BenchRun {
+  int muscle_count = 0, repeat_count = 0, substeps = 0, contact_count = 0;
+  double ratio = 0;  ///< CPU time over simulated time
+  double simulated_s = 0, gap_mm = 0;
+  bool cut_short = false, diverged = false;
+};
+
+struct BenchCurve {
+  std::string name;
+  std::vector<BenchRun> runs;
+};
+
+/// r = a n^b through the points from `first_count` muscles on, least squares of the logarithms; NaN for less than two points.
+double fittedExponent(const BenchCurve& curve, int first_count);
+
+std::string benchTable(const std::vector<BenchCurve>& curves, double duration_s, double time_limit_s);
+/// r over n, both logarithmic, with the paper's curve.
+std::string benchFigure(const std::vector<BenchCurve>& curves);
+nlohmann::json benchJson(const std::vector<BenchCurve>& curves);
+
+}  // namespace musclesim::program
