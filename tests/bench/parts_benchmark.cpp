@@ -1,0 +1,98 @@
+/// What the parts of a step cost, with google-benchmark. Target parts_benchmark, made where the library is installed.
+#include <benchmark/benchmark.h>
+
+#include <memory>
+
+#include "../../simulation/chain/dense_cholesky.h"
+#include "../../simulation/contacts.h"
+#include "simulation/step_comparison.h"
+
+using namespace musclesim;
+
+namespace {
+
+/// An arm in `si` that has moved for 0.1 s.
+std::unique_ptr<Simulation> movingArm(int muscle_count, const std::string& parameter = "") {
+  SimulationOptions options;
+  options.step_s = 8e-4;
+  options.parameters.set("arm.muscle_count", static_cast<double>(muscle_count), "benchmark");
+  if (!parameter.empty()) options.parameters.setFromText(parameter, "benchmark");
+  auto simulation = std::make_unique<Simulation>(std::move(options));
+  simulation->build("arm");
+  RandomStream random(1, "benchmark");
+  Action command;
+  for (int i = 0; i < muscle_count; ++i) command.push_back(random.uniform());
+  simulation->robot().step(command);
+  for (int i = 0; i < 125; ++i) simulation->step();
+  return simulation;
+}
+
+void wholeStep(benchmark::State& state, const std::string& parameter) {
+  const auto simulation = movingArm(static_cast<int>(state.range(0)), parameter);
+  for (auto _ : state) simulation->step();
+}
+BENCHMARK_CAPTURE(wholeStep, contacts, "physics.contacts=on")->Arg(1)->Arg(10)->Arg(30);
+BENCHMARK_CAPTURE(wholeStep, no_contacts, "physics.contacts=off")->Arg(1)->Arg(10)->Arg(30);
+BENCHMARK_CAPTURE(wholeStep, viscous, "muscle.joint_friction=viscous")->Arg(1)->Arg(10)->Arg(30);
+BENCHMARK_CAPTURE(wholeStep, line, "muscle.model=line")->Arg(1)->Arg(10)->Arg(30);
+
+void collision(benchmark::State& state) {
+  const auto simulation = movingArm(static_cast<int>(state.range(0)));
+  Contacts contacts(simulation->world(), simulation->space(), 0);
+  for (auto _ : state) contacts.collide();
+}
+BENCHMARK(collision)->Arg(1)->Arg(10)->Arg(30);
+
+void registering(benchmark::State& state) {
+  const auto simulation = movingArm(static_cast<int>(state.range(0)));
+  chain::Model model;
+  for (auto _ : state) benchmark::DoNotOptimize(chain::registerModel(*simulation, model));
+}
+BENCHMARK(registering)->Arg(10);
+
+/// Reading all bodies from ODE and writing them back.
+void gatherAndScatter(benchmark::State& state) {
+  const auto simulation = movingArm(static_cast<int>(state.range(0)));
+  chain::Model model;
+  chain::registerModel(*simulation, model);
+  for (auto _ : state) {
+    model.bodies.gather();
+    model.bodies.scatter();
+  }
+}
+BENCHMARK(gatherAndScatter)->Arg(10)->Arg(30);
+
+/// Rows of all joints.
+void jointRows(benchmark::State& state) {
+  const auto simulation = movingArm(static_cast<int>(state.range(0)));
+  chain::Model model;
+  chain::registerModel(*simulation, model);
+  model.bodies.gather();
+  chain::JointRows rows;
+  for (auto _ : state)
+    for (chain::Chain& chain : model.chains)
+      for (chain::JointModel& joint : chain.joints) {
+        chain::makeRows(joint, model.bodies, 8e-4, {0.4, 0.4}, rows);
+        benchmark::DoNotOptimize(rows);
+      }
+}
+BENCHMARK(jointRows)->Arg(10)->Arg(30);
+
+/// Factoring and solving the dense core of so many rows.
+void denseCore(benchmark::State& state) {
+  const auto size = static_cast<int>(state.range(0));
+  chain::DenseCholesky cholesky;
+  std::vector<double> x(static_cast<std::size_t>(size), 1.0);
+  for (auto _ : state) {
+    cholesky.reset(size);
+    for (int j = 0; j < size; ++j)
+      for (int i = j; i < size; ++i) cholesky.at(i, j) = i == j ? size : 1.0 / (1 + i - j);
+    cholesky.factorise();
+    cholesky.solve(x.data());
+  }
+}
+BENCHMARK(denseCore)->Arg(51)->Arg(100)->Arg(200)->Arg(300);
+
+}  // namespace
+
+BENCHMARK_MAIN();
