@@ -1,0 +1,74 @@
+/// Which effects explain the gap: screen, refit, compare, pairs, honest no.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "comparison.h"
+#include "refit.h"
+#include "screen.h"
+#include "suspect.h"
+
+namespace musclesim {
+
+/// A set of suspects with fitted strengths.
+struct Explanation {
+  std::vector<std::size_t> suspects;
+  Eigen::VectorXd z;  ///< coordinates of all of them, one after the other
+  Eigen::VectorXd half_width;
+  Eigen::VectorXd residual;  ///< on the stretches for fitting
+  double log_misfit = 0;     ///< per affected cell
+  double probability = 0;
+};
+
+/// How answers are weighed. Found on practice cases with odd numbers; docs/diagnosing.md has the numbers.
+struct Weighing {
+  double per_misfit = 10;        ///< ln of the odds per unit of log misfit per affected cell
+  double per_parameter = 0.15;   ///< ln of the odds that a further parameter costs
+  double per_effect = 1.5;       ///< ln of the odds that a second effect costs
+  double none_ratio = 0.15;      ///< "none of these" stands for a cause that would leave this share of the residual,
+  double none_floor_ratio = 1.5; ///< but not less than this multiple of the floor
+};
+
+struct Attribution {
+  std::vector<Suspect> suspects;
+  std::vector<Signature> signatures;      ///< of all suspects, on the first look
+  std::vector<Explanation> explanations;  ///< best first
+  double none_of_these = 0, no_effect = 0;
+};
+
+class Attributor {
+ public:
+  Attributor(const Plant& plant, const DiagnosisOptions& options, OnSimulation on_simulation);
+
+  /// The first look. `nominal` is the prediction without effects on look().
+  void look();
+  /// Fits, pairs, probabilities.
+  void decide();
+
+  const Comparison& lookComparison() const { return look_; }
+  const Comparison& fitComparison() const { return fit_; }
+  const Eigen::VectorXd& nominalResidual() const { return nominal_residual_; }
+  const Eigen::VectorXd& lookResidual() const { return look_residual_; }
+  const Attribution& result() const { return result_; }
+  Model modelOf(const Explanation& explanation) const;
+
+ private:
+  Explanation refit(const std::vector<std::size_t>& suspects, const Eigen::VectorXd& start, int round_count) const;
+  std::vector<std::size_t> survivors(const std::vector<double>& log_misfit, std::size_t count, bool from_every_stage) const;
+  Eigen::VectorXd startOf(std::size_t suspect, const Signature& signature) const;
+  void fitSingles();
+  void fitPairs();
+  void weigh();
+  void sort();
+
+  const Plant& plant_;
+  const DiagnosisOptions& options_;
+  OnSimulation on_simulation_;
+  Comparison look_, fit_;
+  Eigen::VectorXd look_residual_, nominal_residual_;
+  Attribution result_;
+  Weighing weighing_;
+};
+
+}  // namespace musclesim

@@ -1,0 +1,96 @@
+#include "comparison.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace musclesim {
+
+Comparison::Comparison(const Plant& plant, std::vector<Stretch> stretches) : plant_(plant), stretches_(std::move(stretches)) {
+  for (std::size_t k = 0; k < stretches_.size(); ++k)
+    for (std::size_t s = 0; s < plant.signals().size(); ++s) {
+      const std::vector<double>& y = plant.measured(stretches_[k].recording, static_cast<int>(s));
+      Cell cell{k, static_cast<int>(s), {}, size_, plant.signals()[s].floor.value};
+      for (int row = stretches_[k].first_row; row < std::min(stretches_[k].end_row, static_cast<int>(y.size())); ++row)
+        if (std::isfinite(y[static_cast<std::size_t>(row)])) cell.rows.push_back(row);
+      if (cell.rows.size() < 10) continue;
+      size_ += static_cast<Eigen::Index>(cell.rows.size());
+      cells_.push_back(std::move(cell));
+    }
+  measured_.resize(size_);
+  for (const Cell& cell : cells_) {
+    const std::vector<double>& y = plant.measured(stretches_[cell.stretch].recording, cell.signal);
+    for (std::size_t i = 0; i < cell.rows.size(); ++i)
+      measured_[cell.first + static_cast<Eigen::Index>(i)] = y[static_cast<std::size_t>(cell.rows[i])];
+  }
+}
+
+Eigen::VectorXd Comparison::predicted(const Model& model) const {
+  std::vector<Prediction> predictions;
+  for (const Stretch& stretch : stretches_) predictions.push_back(plant_.predict(stretch.recording, model, stretch.end_row));
+  return predicted(predictions);
+}
+
+Eigen::VectorXd Comparison::predicted(const std::vector<Prediction>& per_stretch) const {
+  for (const Prediction& prediction : per_stretch)
+    if (prediction.diverged) return {};
+  Eigen::VectorXd result(size_);
+  for (const Cell& cell : cells_) {
+    const std::vector<double>& y = per_stretch[cell.stretch].values[static_cast<std::size_t>(cell.signal)];
+    for (std::size_t i = 0; i < cell.rows.size(); ++i)
+      result[cell.first + static_cast<Eigen::Index>(i)] = y[static_cast<std::size_t>(cell.rows[i])];
+  }
+  return result;
+}
+
+double Comparison::meanSquare(const Cell& cell, const Eigen::VectorXd& residual) const {
+  const auto count = static_cast<Eigen::Index>(cell.rows.size());
+  return residual.segment(cell.first, count).squaredNorm() / static_cast<double>(count);
+}
+
+double Comparison::logMisfit(const Eigen::VectorXd& residual) const {
+  if (residual.size() != size_ || !residual.allFinite()) return std::numeric_limits<double>::infinity();
+  double sum = 0;
+  for (const Cell& cell : cells_) sum += 0.5 * std::log(std::max(1.0, meanSquare(cell, residual) / (cell.floor * cell.floor)));
+  return sum;
+}
+
+Eigen::VectorXd Comparison::weights(const Eigen::VectorXd& residual) const {
+  Eigen::VectorXd result(size_);
+  for (const Cell& cell : cells_) {
+    const auto count = static_cast<Eigen::Index>(cell.rows.size());
+    const double rms = std::max(cell.floor, std::sqrt(meanSquare(cell, residual)));
+    result.segment(cell.first, count).setConstant(1 / (rms * std::sqrt(static_cast<double>(count))));
+  }
+  return result;
+}
+
+Gap Comparison::gap(const Eigen::VectorXd& residual) const {
+  struct Sum {
+    double squares = 0;
+    std::size_t count = 0;
+  };
+  std::map<int, Sum> sums;
+  for (const Cell& cell : cells_) {
+    Sum& sum = sums[cell.signal];
+    sum.squares += meanSquare(cell, residual) * static_cast<double>(cell.rows.size());
+    sum.count += cell.rows.size();
+  }
+  Gap gap;
+  for (const auto& [signal, sum] : sums) {
+    const ComparedSignal& compared = plant_.signals()[static_cast<std::size_t>(signal)];
+    const double mean_square = sum.squares / static_cast<double>(sum.count), floor = compared.floor.value;
+    gap.per_signal[compared.name] = {std::sqrt(mean_square), floor};
+    gap.normalised += std::max(0.0, mean_square - floor * floor) / (floor * floor) / static_cast<double>(sums.size());
+  }
+  return gap;
+}
+
+int Comparison::affectedCells(const Eigen::VectorXd& residual) const {
+  constexpr double out_of_floor = 1.15;
+  const auto count = std::ranges::count_if(
+      cells_, [&](const Cell& cell) { return std::sqrt(meanSquare(cell, residual)) > out_of_floor * cell.floor; });
+  return std::max(1, static_cast<int>(count));
+}
+
+}  // namespace musclesim

@@ -1,0 +1,53 @@
+/// Measured minus predicted, over chosen stretches, in one long vector.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "plant.h"
+
+namespace musclesim {
+
+/// The compared rows of some stretches. A cell is one signal in one stretch.
+class Comparison {
+ public:
+  struct Cell {
+    std::size_t stretch;
+    int signal;
+    std::vector<int> rows;  ///< those with a measured number
+    Eigen::Index first;     ///< where its rows begin in the vectors
+    double floor;
+  };
+
+  Comparison(const Plant& plant, std::vector<Stretch> stretches);
+
+  const Plant& plant() const { return plant_; }
+  const std::vector<Stretch>& stretches() const { return stretches_; }
+  const std::vector<Cell>& cells() const { return cells_; }
+  Eigen::Index size() const { return size_; }
+
+  /// What a model predicts at the compared rows; empty if it diverges on one of the stretches.
+  Eigen::VectorXd predicted(const Model& model) const;
+  Eigen::VectorXd predicted(const std::vector<Prediction>& per_stretch) const;
+  const Eigen::VectorXd& measured() const { return measured_; }
+
+  /// Mean square of a vector's part in one cell.
+  double meanSquare(const Cell& cell, const Eigen::VectorXd& residual) const;
+  /// ln of the RMS residual over the floor, 0 below the floor, summed over all cells; infinite for an empty vector.
+  double logMisfit(const Eigen::VectorXd& residual) const;
+  /// 1 / (RMS sqrt(rows)) for each row, RMS its cell's residual but not less than the floor: makes least squares follow logMisfit.
+  Eigen::VectorXd weights(const Eigen::VectorXd& residual) const;
+  /// normalised gap and its parts.
+  Gap gap(const Eigen::VectorXd& residual) const;
+  /// Number of cells in which the residual stands out of the floor (RMS > 1.15 floor), at least 1.
+  int affectedCells(const Eigen::VectorXd& residual) const;
+
+ private:
+  const Plant& plant_;
+  std::vector<Stretch> stretches_;
+  std::vector<Cell> cells_;
+  Eigen::Index size_ = 0;
+  Eigen::VectorXd measured_;
+};
+
+}  // namespace musclesim

@@ -1,0 +1,302 @@
+// The order of a diagnosis: gap, where, which, how far, what next.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+
+#include "attribute.h"
+#include "locate.h"
+#include "musclesim/diagnosis/diagnosis.h"
+#include "next_experiment.h"
+#include "plant.h"
+#include "shrink.h"
+
+namespace musclesim {
+
+namespace {
+
+constexpr double listed = 0.01;           ///< least probability that is listed
+constexpr double named = 0.5;             ///< least probability of none_of_these that makes the verdict `unexplained`
+constexpr double as_good = 0.1;           ///< log misfit per affected cell within which two explanations cannot be told apart
+constexpr double excited = 1;             ///< a typical effect must change some signal by that many floors
+constexpr double clear_gain_percent = 5;  ///< by which an effect must beat nominal refit and sham
+
+/// Counts simulations and tells the caller.
+class Monitor {
+ public:
+  explicit Monitor(const DiagnosisOptions& options) : options_(options) {}
+  void phase(const std::string& name, long expected_more) {
+    const std::lock_guard lock(mutex_);
+    progress_.phase = name;
+    progress_.expected = progress_.done + expected_more;
+    tell();
+  }
+  void count() {
+    const std::lock_guard lock(mutex_);
+    ++progress_.done;
+    progress_.expected = std::max(progress_.expected, progress_.done);
+    tell();
+  }
+
+ private:
+  void tell() {
+    if (options_.progress) options_.progress(progress_);
+  }
+  const DiagnosisOptions& options_;
+  std::mutex mutex_;
+  DiagnosisProgress progress_;
+};
+
+/// No signal stands out of its floor: RMS below 1.15 floors, or 1.3 where the floor itself had to be estimated from quiet rows.
+bool withinFloor(const Plant& plant, const Gap& gap) {
+  return std::ranges::all_of(plant.signals(), [&](const ComparedSignal& signal) {
+    const auto found = gap.per_signal.find(signal.name);
+    const double ratio = signal.floor.source == NoiseFloor::Source::quiet_rows ? 1.3 : 1.15;
+    return found == gap.per_signal.end() || found->second.rmse < ratio * found->second.noise_floor;
+  });
+}
+
+/// All commands rest and nothing moves.
+bool nothingMoves(const Plant& plant) {
+  for (const Recording& recording : plant.recordings())
+    for (const Signal& signal : recording.signals) {
+      if (!signal.name.starts_with("command_")) continue;
+      const auto [least, largest] = std::ranges::minmax_element(signal.values);
+      if (*largest - *least > 0.02) return false;
+    }
+  return true;
+}
+
+class Run {
+ public:
+  Run(std::vector<Recording> recordings, const DiagnosisOptions& options)
+      : options_(options),
+        monitor_(options),
+        plant_(std::move(recordings), options),
+        held_out_(plant_, plant_.split().held_out),
+        attributor_(plant_, options, [this] { monitor_.count(); }) {}
+
+  Diagnosis diagnose() {
+    const auto start = std::chrono::steady_clock::now();
+    describe();
+    measureGap();
+    if (diagnosis_.verdict != Verdict::no_gap && diagnosis_.verdict != Verdict::not_excited) explain();
+    finish();
+    diagnosis_.simulation_count = plant_.simulationCount();
+    diagnosis_.simulated_s = plant_.simulatedS();
+    diagnosis_.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    diagnosis_.partial = plant_.interrupted();
+    return std::move(diagnosis_);
+  }
+
+ private:
+  void describe() {
+    diagnosis_.robot = plant_.robot();
+    for (const Recording& recording : plant_.recordings()) {
+      diagnosis_.recordings.push_back(recording.file);
+      for (const std::string& note : recording.notes) diagnosis_.notes.push_back(note);
+    }
+    diagnosis_.held_out = plant_.split().held_out_words;
+    diagnosis_.is_held_out = true;
+    if (std::ranges::any_of(plant_.signals(), [](const auto& s) { return s.floor.source == NoiseFloor::Source::quiet_rows; }))
+      diagnosis_.notes.push_back("no repeats and no noise_std: the noise floor was estimated from quiet rows");
+  }
+
+  void measureGap() {
+    monitor_.phase("comparing the model with the recordings", static_cast<long>(plant_.recordings().size()));
+    std::vector<Stretch> everything = plant_.split().fit;
+    everything.insert(everything.end(), plant_.split().held_out.begin(), plant_.split().held_out.end());
+    const Comparison all(plant_, everything);
+    const Eigen::VectorXd predicted = all.predicted(Model{}), held = held_out_.predicted(Model{});
+    if (!predicted.size() || !held.size())
+      throw Diverged(0, plant_.robot(), "the model without further effects cannot follow the recordings");
+    before_residual_ = held_out_.measured() - held;
+    diagnosis_.before = diagnosis_.after = held_out_.gap(before_residual_);
+    const bool small = withinFloor(plant_, all.gap(all.measured() - predicted));
+    diagnosis_.verdict = small ? (nothingMoves(plant_) ? Verdict::not_excited : Verdict::no_gap) : Verdict::unexplained;
+    if (small) diagnosis_.explanations.push_back({{}, 1});
+  }
+
+  void explain() {
+    monitor_.phase("looking at every effect once", 0);
+    attributor_.look();
+    const Attribution& attribution = attributor_.result();
+    const Location location =
+        locate(attributor_.lookComparison(), attribution.suspects, attribution.signatures, attributor_.lookResidual());
+    diagnosis_.where = location.places;
+    diagnosis_.where_method = location.method;
+    for (std::size_t i = 0; i < attribution.suspects.size(); ++i)
+      if (attribution.signatures[i].excitation_ratio < excited) diagnosis_.not_excited.push_back(attribution.suspects[i].label());
+    monitor_.phase("fitting the likely ones", 600);
+    attributor_.decide();
+    choose();
+    list();
+    if (!plant_.interrupted()) proposeExperiment();
+  }
+
+  void choose() {
+    const Attribution& attribution = attributor_.result();
+    if (attribution.explanations.empty() || attribution.no_effect > named) return;
+    const Explanation& best = attribution.explanations.front();
+    const Model model = attributor_.modelOf(best);
+    const Eigen::VectorXd predicted = held_out_.predicted(model);
+    if (!predicted.size()) return;
+    const Eigen::VectorXd after = held_out_.measured() - predicted;
+    const Gap gap_after = held_out_.gap(after);
+    monitor_.phase("asking what simpler changes would gain", 60);
+    auto count = [this] { monitor_.count(); };
+    const Comparison& fitted = attributor_.lookComparison();
+    const Eigen::VectorXd nominal = nominalRefitResidual(fitted, held_out_, count);
+    const Eigen::VectorXd sham = shamResidual(fitted, held_out_, static_cast<int>(best.z.size()), options_.seed, count);
+    auto shrinkOf = [&](const Eigen::VectorXd& residual) {
+      return residual.size() ? shrinkPercent(diagnosis_.before, held_out_.gap(residual)) : 0.0;
+    };
+    diagnosis_.nominal_refit_shrink_percent = shrinkOf(nominal);
+    diagnosis_.sham_shrink_percent = shrinkOf(sham);
+    const double shrink = shrinkOf(after);
+    const bool none = attribution.none_of_these > named;
+    const bool beats = shrink > std::max(diagnosis_.nominal_refit_shrink_percent, diagnosis_.sham_shrink_percent) + clear_gain_percent;
+    if (none || !beats) return;
+    diagnosis_.verdict = Verdict::effects_found;
+    diagnosis_.after = gap_after;
+    diagnosis_.chosen_effects = model.effects;
+    for (const ActiveEffect& effect : model.effects) diagnosis_.chosen.push_back(effect.id + "@" + effect.component);
+    const Estimate interval = shrinkInterval(held_out_, before_residual_, after, options_.seed);
+    diagnosis_.shrink_percent = shrink;
+    diagnosis_.shrink_low_percent = interval.low;
+    diagnosis_.shrink_high_percent = interval.high;
+    after_residual_ = after;
+  }
+
+  std::string labelOf(std::size_t suspect) const { return attributor_.result().suspects[suspect].label(); }
+
+  /// Probabilities per effect and per explanation, and the set that cannot be told apart.
+  void list() {
+    const Attribution& attribution = attributor_.result();
+    diagnosis_.none_of_these = attribution.none_of_these;
+    if (attribution.no_effect >= listed) diagnosis_.explanations.push_back({{}, attribution.no_effect});
+    std::map<std::string, FoundEffect> found;
+    for (const Explanation& explanation : attribution.explanations) {
+      ExplanationProbability entry{{}, explanation.probability};
+      Eigen::Index first = 0;
+      for (const std::size_t index : explanation.suspects) {
+        const Suspect& suspect = attribution.suspects[index];
+        entry.effects.push_back(suspect.label());
+        FoundEffect& effect = found[suspect.label()];
+        if (effect.id.empty()) {
+          effect.id = suspect.info().id;
+          effect.component = suspect.component();
+          effect.parameters = estimates(suspect, explanation, first);
+        }
+        effect.probability += explanation.probability;
+        first += suspect.coordinateCount();
+      }
+      if (explanation.probability >= listed) diagnosis_.explanations.push_back(std::move(entry));
+    }
+    for (auto& [label, effect] : found)
+      if (effect.probability >= listed) diagnosis_.effects.push_back(effect);
+    std::ranges::stable_sort(diagnosis_.effects, [](const auto& a, const auto& b) { return a.probability > b.probability; });
+    ambiguity();
+    for (FoundEffect& effect : diagnosis_.effects) effect.shrink_percent = singleShrink(effect.label());
+  }
+
+  std::map<std::string, Estimate> estimates(const Suspect& suspect, const Explanation& explanation, Eigen::Index first) const {
+    const Eigen::Index count = suspect.coordinateCount();
+    const Eigen::VectorXd z = explanation.z.segment(first, count), half = explanation.half_width.segment(first, count);
+    const auto at = suspect.valuesAt(z), one = suspect.valuesAt(suspect.clamped(z - half)), other = suspect.valuesAt(suspect.clamped(z + half));
+    std::map<std::string, Estimate> result;
+    for (std::size_t i = 0; i < at.size(); ++i)
+      result[at[i].first] = {at[i].second, std::min(one[i].second, other[i].second), std::max(one[i].second, other[i].second)};
+    return result;
+  }
+
+  /// Explanations with as many effects as the best whose misfit is within the noise of the best's.
+  void ambiguity() {
+    const Attribution& attribution = attributor_.result();
+    if (attribution.explanations.empty()) return;
+    const Explanation& best = attribution.explanations.front();
+    for (const Explanation& explanation : attribution.explanations) {
+      if (explanation.suspects.size() != best.suspects.size() || explanation.log_misfit > best.log_misfit + as_good) continue;
+      for (const std::size_t index : explanation.suspects)
+        if (std::ranges::find(diagnosis_.ambiguity_set, labelOf(index)) == diagnosis_.ambiguity_set.end())
+          diagnosis_.ambiguity_set.push_back(labelOf(index));
+    }
+  }
+
+  double singleShrink(const std::string& label) {
+    const Attribution& attribution = attributor_.result();
+    for (const Explanation& explanation : attribution.explanations) {
+      if (explanation.suspects.size() != 1 || labelOf(explanation.suspects.front()) != label) continue;
+      const Eigen::VectorXd predicted = held_out_.predicted(attributor_.modelOf(explanation));
+      return predicted.size() ? shrinkPercent(diagnosis_.before, held_out_.gap(held_out_.measured() - predicted)) : 0;
+    }
+    return 0;
+  }
+
+  void proposeExperiment() {
+    const Attribution& attribution = attributor_.result();
+    std::vector<std::string> labels;
+    std::vector<Model> models;
+    for (const Explanation& explanation : attribution.explanations) {
+      if (explanation.suspects.size() != 1 || models.size() >= 4) continue;
+      const std::string label = labelOf(explanation.suspects.front());
+      if (std::ranges::find(diagnosis_.ambiguity_set, label) == diagnosis_.ambiguity_set.end()) continue;
+      labels.push_back(label);
+      models.push_back(attributor_.modelOf(explanation));
+    }
+    monitor_.phase("planning the next experiment", static_cast<long>(6 * models.size()));
+    diagnosis_.next_experiment = nextExperiment(plant_, labels, models, options_.job_count, [this] { monitor_.count(); });
+  }
+
+  void finish() {
+    if (diagnosis_.before.normalised > 0)
+      diagnosis_.unexplained_percent = 100 * diagnosis_.after.normalised / diagnosis_.before.normalised;
+    addTraces();
+  }
+
+  void addTraces() {
+    for (const Comparison::Cell& cell : held_out_.cells()) {
+      const int recording = held_out_.stretches()[cell.stretch].recording;
+      Trace trace{plant_.recordings()[static_cast<std::size_t>(recording)].file, plant_.signals()[static_cast<std::size_t>(cell.signal)].name,
+                  true, {}, {}, {}, {}};
+      for (std::size_t i = 0; i < cell.rows.size(); ++i) {
+        const auto k = cell.first + static_cast<Eigen::Index>(i);
+        trace.time_s.push_back(plant_.recordings()[static_cast<std::size_t>(recording)].time_s[static_cast<std::size_t>(cell.rows[i])]);
+        trace.measured.push_back(held_out_.measured()[k]);
+        trace.before.push_back(held_out_.measured()[k] - before_residual_[k]);
+        if (after_residual_.size()) trace.after.push_back(held_out_.measured()[k] - after_residual_[k]);
+      }
+      diagnosis_.traces.push_back(std::move(trace));
+    }
+  }
+
+  const DiagnosisOptions& options_;
+  Monitor monitor_;
+  Plant plant_;
+  Comparison held_out_;
+  Attributor attributor_;
+  Diagnosis diagnosis_;
+  Eigen::VectorXd before_residual_, after_residual_;
+};
+
+}  // namespace
+
+std::string nameOf(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::no_gap:
+      return "no_gap";
+    case Verdict::effects_found:
+      return "effects_found";
+    case Verdict::unexplained:
+      return "unexplained";
+    case Verdict::not_excited:
+      return "not_excited";
+  }
+  return "";
+}
+
+Diagnosis diagnose(std::vector<Recording> recordings, const DiagnosisOptions& options) {
+  return Run(std::move(recordings), options).diagnose();
+}
+
+}  // namespace musclesim

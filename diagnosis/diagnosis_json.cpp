@@ -1,0 +1,102 @@
+// The contract's diagnosis.json, format musclesim-diagnosis-1, and the summary for the terminal.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "musclesim/diagnosis/diagnosis.h"
+#include "sentences.h"
+
+namespace musclesim {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json toJson(double value) {
+  if (std::isfinite(value)) return value;
+  return value > 0 ? "inf" : "-inf";
+}
+
+Json toJson(const Gap& gap) {
+  Json signals = Json::object();
+  for (const auto& [name, signal] : gap.per_signal) signals[name] = {{"rmse", signal.rmse}, {"noise_floor", signal.noise_floor}};
+  return {{"normalised", gap.normalised}, {"per_signal", signals}};
+}
+
+Json toJson(const FoundEffect& effect) {
+  Json parameters = Json::object();
+  for (const auto& [name, estimate] : effect.parameters)
+    parameters[name] = {{"value", toJson(estimate.value)}, {"ci95", {toJson(estimate.low), toJson(estimate.high)}}};
+  return {{"id", effect.id},
+          {"component", effect.component},
+          {"probability", effect.probability},
+          {"parameters", parameters},
+          {"shrink_percent", effect.shrink_percent}};
+}
+
+Json toJson(const Place& place) {
+  Json json = {{"stage", place.stage}, {"component", place.component}, {"share", place.share}};
+  if (!place.regime.empty()) json["regime"] = place.regime;
+  return json;
+}
+
+template <class Value>
+Json listOf(const std::vector<Value>& values) {
+  Json list = Json::array();
+  for (const Value& value : values) list.push_back(toJson(value));
+  return list;
+}
+
+Json gapJson(const Diagnosis& d) {
+  return {{"before", toJson(d.before)},
+          {"after", toJson(d.after)},
+          {"shrink_percent", d.shrink_percent},
+          {"shrink_ci95_percent", {d.shrink_low_percent, d.shrink_high_percent}},
+          {"held_out", d.is_held_out},
+          {"nominal_refit_shrink_percent", d.nominal_refit_shrink_percent},
+          {"sham_shrink_percent", d.sham_shrink_percent}};
+}
+
+}  // namespace
+
+std::string diagnosisJson(const Diagnosis& d, const std::string& schedule_file) {
+  Json json = {{"format", "musclesim-diagnosis-1"}, {"robot", d.robot}, {"recordings", d.recordings}, {"verdict", nameOf(d.verdict)}};
+  json["where"] = listOf(d.where);
+  json["effects"] = listOf(d.effects);
+  json["none_of_these"] = d.none_of_these;
+  json["explanations"] = Json::array();
+  for (const ExplanationProbability& explanation : d.explanations)
+    json["explanations"].push_back({{"effects", explanation.effects}, {"probability", explanation.probability}});
+  json["chosen"] = d.chosen;
+  json["ambiguity_set"] = d.ambiguity_set;
+  json["gap"] = gapJson(d);
+  json["unexplained_percent"] = d.unexplained_percent;
+  json["not_excited"] = d.not_excited;
+  if (!d.next_experiment.commands.empty())
+    json["next_experiment"] = {
+        {"separates", d.next_experiment.separates}, {"why", d.next_experiment.why}, {"schedule", schedule_file}};
+  json["notes"] = d.notes;
+  json["where_method"] = d.where_method;
+  json["partial"] = d.partial;
+  json["cost"] = {{"simulated_s", d.simulated_s}, {"wall_s", d.wall_s}, {"simulations", d.simulation_count}};
+  return json.dump(1) + "\n";
+}
+
+std::string diagnosisSummary(const Diagnosis& d) {
+  std::string text = verdictSentence(d) + "\n";
+  if (d.partial) text = "Interrupted: what follows is only what was known by then.\n" + text;
+  if (!d.where.empty())
+    text += fmt::format("where     {}\n", whereSentence(d));
+  for (std::size_t i = 0; i < std::min<std::size_t>(3, d.effects.size()); ++i)
+    text += fmt::format("{:<9} {:>4.0f} %  {}\n", i == 0 ? "which" : "", 100 * d.effects[i].probability, effectSentence(d.effects[i]));
+  if (d.verdict != Verdict::no_gap) text += fmt::format("          {:>4.0f} %  none of these\n", 100 * d.none_of_these);
+  if (!d.chosen.empty())
+    text += fmt::format("how far   {:.1f} % (95 %: {:.1f} to {:.1f}) of the gap on {}; nominal refit {:.1f} %, sham {:.1f} %\n", d.shrink_percent,
+                        d.shrink_low_percent, d.shrink_high_percent, d.held_out, d.nominal_refit_shrink_percent, d.sham_shrink_percent);
+  if (!d.next_experiment.commands.empty()) text += fmt::format("next      record next.csv, {}\n", d.next_experiment.why);
+  return text;
+}
+
+}  // namespace musclesim

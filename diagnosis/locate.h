@@ -1,0 +1,25 @@
+/// Where the gap arises: stages of a sample's way, components, regimes. Comes before, and does not use, the fits of effects.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "comparison.h"
+#include "screen.h"
+#include "suspect.h"
+
+namespace musclesim {
+
+struct Location {
+  std::vector<Place> places;  ///< largest share first; shares sum to 1
+  std::string method;         ///< which signals decided, in words
+};
+
+/// Stages are told apart by substitution where the signals are there:
+///   measured pressures as commands of the model: what vanishes was made by command or pressure stage
+///   measured pressure and length into the force law, against the measured tension: force stage
+/// and, for what substitution leaves open, by how well a small typical disturbance of each stage (`signatures`) resembles the residual.
+Location locate(const Comparison& comparison, const std::vector<Suspect>& suspects, const std::vector<Signature>& signatures,
+                const Eigen::VectorXd& residual);
+
+}  // namespace musclesim

@@ -1,0 +1,129 @@
+#include "noise_floor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace musclesim {
+
+namespace {
+
+constexpr double normal_per_median = 1.4826;  ///< standard deviation of a normal distribution / median absolute deviation
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+bool sameCommands(const Recording& a, const Recording& b) {
+  if (a.time_s != b.time_s || a.muscleCount() != b.muscleCount()) return false;
+  for (int i = 0; i < a.muscleCount(); ++i) {
+    const std::string name = "command_" + std::to_string(i);
+    if (a.find(name)->values != b.find(name)->values) return false;
+  }
+  return true;
+}
+
+/// Sum of squared differences of one signal and their number.
+struct Differences {
+  double sum_of_squares = 0;
+  long count = 0;
+  void add(const std::vector<double>& a, const std::vector<double>& b) {
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const double difference = a[i] - b[i];
+      if (!std::isfinite(difference)) continue;
+      sum_of_squares += difference * difference;
+      ++count;
+    }
+  }
+};
+
+std::optional<double> fromRepeats(const std::vector<Recording>& recordings, const std::string& name) {
+  Differences differences;
+  for (std::size_t i = 0; i < recordings.size(); ++i)
+    for (std::size_t j = i + 1; j < recordings.size(); ++j) {
+      const Signal *a = recordings[i].find(name), *b = recordings[j].find(name);
+      if (a && b && sameCommands(recordings[i], recordings[j])) differences.add(a->values, b->values);
+    }
+  if (differences.count < 20) return std::nullopt;
+  return std::sqrt(differences.sum_of_squares / static_cast<double>(differences.count) / 2);
+}
+
+std::optional<double> fromSidecars(const std::vector<Recording>& recordings, const std::string& name) {
+  double sum = 0;
+  int count = 0;
+  for (const Recording& recording : recordings) {
+    const auto given = recording.info.noise_std.find(name);
+    if (given == recording.info.noise_std.end() || !(given->second > 0)) continue;
+    sum += given->second;
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  return sum / count;
+}
+
+/// Second differences of the rows whose neighbourhood moves least: a straight line leaves only the noise.
+std::vector<double> quietSecondDifferences(const Recording& recording, const std::string& name) {
+  constexpr std::size_t reach = 10;
+  const Signal* signal = recording.find(name);
+  if (!signal) return {};
+  const std::vector<double>& y = signal->values;
+  std::vector<std::pair<double, double>> by_speed;
+  for (std::size_t i = reach; i + reach < y.size(); ++i) {
+    const double difference = y[i - 1] - 2 * y[i] + y[i + 1], speed = std::abs(y[i + reach] - y[i - reach]);
+    if (std::isfinite(difference) && std::isfinite(speed)) by_speed.emplace_back(speed, difference);
+  }
+  std::sort(by_speed.begin(), by_speed.end());
+  std::vector<double> result;
+  for (std::size_t i = 0; i < by_speed.size() / 2; ++i) result.push_back(by_speed[i].second);
+  return result;
+}
+
+double fromQuietRows(const std::vector<Recording>& recordings, const std::string& name) {
+  std::vector<double> all;
+  for (const Recording& recording : recordings) {
+    const auto some = quietSecondDifferences(recording, name);
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  const double middle = median(all);
+  for (double& value : all) value = std::abs(value - middle);
+  return normal_per_median * median(all) / std::sqrt(6.0);
+}
+
+double finestLattice(const std::vector<Recording>& recordings, const std::string& name) {
+  double step = 0;
+  for (const Recording& recording : recordings)
+    if (const Signal* signal = recording.find(name)) step = std::max(step, latticeStep(signal->values));
+  return step;
+}
+
+}  // namespace
+
+double latticeStep(const std::vector<double>& values) {
+  std::vector<double> sorted;
+  for (const double value : values)
+    if (std::isfinite(value)) sorted.push_back(value);
+  std::sort(sorted.begin(), sorted.end());
+  double step = 0;
+  for (std::size_t i = 1; i < sorted.size(); ++i) {
+    const double difference = sorted[i] - sorted[i - 1];
+    if (difference > 1e-9 && (step == 0 || difference < step)) step = difference;
+  }
+  if (step == 0) return 0;
+  for (std::size_t i = 1; i < sorted.size(); ++i) {
+    const double multiple = (sorted[i] - sorted[0]) / step;
+    if (std::abs(multiple - std::round(multiple)) > 0.05 + 1e-6 * multiple) return 0;
+  }
+  return step;
+}
+
+NoiseFloor noiseFloor(const std::vector<Recording>& recordings, const std::string& name) {
+  const double least = std::max(finestLattice(recordings, name) / std::sqrt(12.0), 1e-9);
+  if (const auto repeats = fromRepeats(recordings, name)) return {std::max(*repeats, least), NoiseFloor::Source::repeats};
+  if (const auto sidecar = fromSidecars(recordings, name)) return {std::max(*sidecar, least), NoiseFloor::Source::sidecar};
+  return {std::max(fromQuietRows(recordings, name), least), NoiseFloor::Source::quiet_rows};
+}
+
+}  // namespace musclesim

@@ -1,0 +1,25 @@
+/// How much two recordings of one and the same motion would differ.
+#pragma once
+
+#include <vector>
+
+#include "musclesim/log/recording.h"
+
+namespace musclesim {
+
+/// Standard deviation of one signal's noise, the same for all recordings of a plant, in the signal's unit. The first that there is of:
+///   repeats      RMS difference of recordings under identical commands / sqrt(2)
+///   sidecar      noise_std
+///   quiet rows   1.4826 median |d - median d| / sqrt(6) of the second differences d over the quieter half of the rows
+/// and never less than the step of the lattice on which the values lie / sqrt(12). Never the residual of a fit.
+struct NoiseFloor {
+  double value = 0;
+  enum class Source { repeats, sidecar, quiet_rows } source = Source::quiet_rows;
+};
+
+NoiseFloor noiseFloor(const std::vector<Recording>& recordings, const std::string& signal_name);
+
+/// The smallest step between different values, if all steps are multiples of it; 0 if the values lie on no lattice.
+double latticeStep(const std::vector<double>& values);
+
+}  // namespace musclesim

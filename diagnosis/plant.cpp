@@ -1,0 +1,175 @@
+#include "plant.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "../effect/components.h"
+#include "musclesim/error.h"
+
+namespace musclesim {
+
+namespace {
+
+constexpr int fewest_rows = 20;
+constexpr double ms_per_s = 1000;
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr const char* held_effect = "sensor_dropout";
+/// Friction within the muscles and the curvature of Eq. 1.
+constexpr const char* nominal_names[] = {"muscle.slider_friction_N", "muscle.hinge_friction_Nm", "force_law.b"};
+
+void requireDiagnosable(const std::vector<Recording>& recordings) {
+  if (recordings.empty()) throw BadParameter("diagnosis: there is no recording");
+  const Recording& first = recordings.front();
+  for (const Recording& recording : recordings) {
+    if (recording.info.robot != first.info.robot)
+      throw BadParameter("robot of " + recording.file, recording.info.robot, fmt::format("be {}, as in {}", first.info.robot, first.file));
+    if (recording.info.robot_parameters != first.info.robot_parameters)
+      throw BadParameter("robot_parameters of " + recording.file, "others", "be those of " + first.file + ": one plant is diagnosed at a time");
+    if (recording.muscleCount() == 0)
+      throw BadParameter("commands of " + recording.file, "none", "be columns command_0, command_1, ...: without them nothing can be simulated");
+    if (static_cast<int>(recording.time_s.size()) < fewest_rows)
+      throw BadParameter("number of rows of " + recording.file, fmt::format("{}", recording.time_s.size()),
+                         fmt::format("be at least {}", fewest_rows));
+  }
+}
+
+/// With several recordings the last is held out; with one, the last two fifths of its rows.
+Split splitOf(const std::vector<Recording>& recordings) {
+  Split split;
+  const int count = static_cast<int>(recordings.size());
+  auto rows = [&](int i) { return static_cast<int>(recordings[static_cast<std::size_t>(i)].time_s.size()); };
+  if (count == 1) {
+    const int border = rows(0) * 3 / 5;
+    split.fit = {{0, 0, border}};
+    split.held_out = {{0, border, rows(0)}};
+    split.held_out_words = fmt::format("the last two fifths of {}", recordings[0].file);
+    return split;
+  }
+  for (int i = 0; i + 1 < count; ++i) split.fit.push_back({i, 0, rows(i)});
+  split.held_out = {{count - 1, 0, rows(count - 1)}};
+  split.held_out_words = fmt::format("{}, which neither fitting nor choosing has seen", recordings.back().file);
+  return split;
+}
+
+bool hasNumbers(const Signal& signal) {
+  return std::any_of(signal.values.begin(), signal.values.end(), [](double value) { return std::isfinite(value); });
+}
+
+}  // namespace
+
+Plant::Plant(std::vector<Recording> recordings, const DiagnosisOptions& options) : recordings_(std::move(recordings)), options_(options) {
+  requireDiagnosable(recordings_);
+  split_ = splitOf(recordings_);
+  const RecordingInfo& info = recordings_.front().info;
+  reference_ = std::make_unique<Simulation>(simulationOptionsFor(info, sidecarPath(recordings_.front().file), options_.model));
+  reference_->build(info.robot);
+  reference_->parameters().requireAllKnown();
+  for (const Parameter& parameter : reference_->parameters().declared())
+    if (std::ranges::find(nominal_names, parameter.name) != std::end(nominal_names))
+      nominal_.emplace_back(parameter.name, std::get<double>(parameter.value));
+  compareSignals();
+}
+
+void Plant::compareSignals() {
+  measured_.resize(recordings_.size());
+  for (const std::string& name : reference_->robot().signalNames()) {
+    if (name.starts_with("command_")) continue;
+    const bool recorded = std::ranges::any_of(recordings_, [&](const Recording& recording) {
+      const Signal* found = recording.find(name);
+      return found && hasNumbers(*found);
+    });
+    if (!recorded) continue;
+    signals_.push_back({name, noiseFloor(recordings_, name)});
+    for (std::size_t i = 0; i < recordings_.size(); ++i) {
+      const Signal* found = recordings_[i].find(name);
+      measured_[i].push_back(found ? found->values : std::vector<double>{});
+    }
+  }
+  if (signals_.empty())
+    throw BadParameter("signals of " + recordings_.front().file, "only commands", "include one that the model also has, for example length_0_mm");
+}
+
+const std::vector<double>& Plant::measured(int recording, int signal) const {
+  return measured_[static_cast<std::size_t>(recording)][static_cast<std::size_t>(signal)];
+}
+
+std::vector<std::string> Plant::componentsFor(const EffectInfo& info) const {
+  return musclesim::componentsFor(info, reference_->robot());
+}
+
+bool Plant::compares(const std::string& component) const {
+  return component == "all" ||
+         std::ranges::any_of(signals_, [&](const ComparedSignal& signal) { return isComponentOf(component, signal.name); });
+}
+
+bool Plant::isComponentOf(const std::string& component, const std::string& signal_name) {
+  return component == "signal_" + stemOf(signal_name);
+}
+
+Plant::MuscleRange Plant::muscleRange(int muscle) const {
+  const Actuator& actuator = *reference_->actuators()[static_cast<std::size_t>(muscle)];
+  return {actuator.minimumLengthMm(), actuator.maximumLengthMm()};
+}
+
+double Plant::tensionN(int muscle, double pressure_ratio, double length_mm) const {
+  return reference_->actuators()[static_cast<std::size_t>(muscle)]->calculateForce(pressure_ratio, length_mm);
+}
+
+Prediction Plant::predict(int recording, const Model& model, int end_row) const {
+  Prediction prediction = replay(recordings_[static_cast<std::size_t>(recording)], model, end_row);
+  holdWhereMeasured(recording, model, prediction);
+  return prediction;
+}
+
+Prediction Plant::predict(int recording, const Model& model, const std::vector<std::vector<double>>& commands, int end_row) const {
+  Recording changed = recordings_[static_cast<std::size_t>(recording)];
+  for (Signal& signal : changed.signals)
+    if (signal.name.starts_with("command_")) {
+      const auto muscle = static_cast<std::size_t>(std::stoi(signal.name.substr(8)));
+      for (std::size_t row = 0; row < commands.size(); ++row) signal.values[row] = commands[row][muscle];
+    }
+  return replay(std::move(changed), model, end_row);
+}
+
+Prediction Plant::replay(Recording recording, const Model& model, int end_row) const {
+  const std::size_t all_rows = recording.time_s.size();
+  if (end_row > 0 && static_cast<std::size_t>(end_row) < all_rows) {
+    recording.time_s.resize(static_cast<std::size_t>(end_row));
+    for (Signal& signal : recording.signals) signal.values.resize(static_cast<std::size_t>(end_row));
+  }
+  ReplayOptions options = options_.model;
+  for (const ActiveEffect& effect : model.effects)
+    if (effect.id != held_effect) options.effects.push_back(effect);
+  for (const auto& [name, value] : model.parameters) options.parameters.set(name, value, "diagnosis");
+  const ReplayResult result = replayRecording(recording, options);
+  ++simulation_count_;
+  simulated_ms_ += std::lround((recording.time_s.back() - recording.time_s.front()) * ms_per_s);
+
+  Prediction prediction;
+  prediction.diverged = result.divergence.has_value();
+  for (const ComparedSignal& signal : signals_) {
+    prediction.values.push_back(result.simulated.find(signal.name)->values);
+    prediction.values.back().resize(all_rows, nan);
+  }
+  return prediction;
+}
+
+/// Which samples were dropped is chance: no model can predict it, but the recording shows it. Where the measured value has been held, so is
+/// the predicted one.
+void Plant::holdWhereMeasured(int recording, const Model& model, Prediction& prediction) const {
+  for (const ActiveEffect& effect : model.effects) {
+    if (effect.id != held_effect) continue;
+    for (std::size_t i = 0; i < signals_.size(); ++i) {
+      if (effect.component != "all" && !isComponentOf(effect.component, signals_[i].name)) continue;
+      const std::vector<double>& y = measured_[static_cast<std::size_t>(recording)][i];
+      std::vector<double>& predicted = prediction.values[i];
+      for (std::size_t row = 1; row < y.size(); ++row)
+        if (y[row] == y[row - 1]) predicted[row] = predicted[row - 1];
+    }
+  }
+}
+
+}  // namespace musclesim

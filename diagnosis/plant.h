@@ -1,0 +1,98 @@
+/// The recordings of one plant and the model that is compared with them.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "musclesim/diagnosis/diagnosis.h"
+#include "musclesim/effect/catalogue.h"
+#include "noise_floor.h"
+
+namespace musclesim {
+
+/// One signal that both the recordings and the model have.
+struct ComparedSignal {
+  std::string name;
+  NoiseFloor floor;
+};
+
+/// A stretch of one recording. Simulations always begin at the recording's first row; only rows of the stretch are compared.
+struct Stretch {
+  int recording = 0;
+  int first_row = 0, end_row = 0;
+};
+
+/// Which stretches parameters are fitted to and explanations are chosen on, and which only measure the result.
+struct Split {
+  std::vector<Stretch> fit, held_out;
+  std::string held_out_words;
+};
+
+/// What a model predicts for one recording: values[signal][row], NaN after a divergence.
+struct Prediction {
+  std::vector<std::vector<double>> values;
+  bool diverged = false;
+};
+
+/// A model: further effects and changed parameters beside the user's own.
+struct Model {
+  std::vector<ActiveEffect> effects;
+  std::vector<std::pair<std::string, double>> parameters;
+};
+
+class Plant {
+ public:
+  /// Throws as diagnose().
+  Plant(std::vector<Recording> recordings, const DiagnosisOptions& options);
+
+  const std::vector<Recording>& recordings() const { return recordings_; }
+  const std::vector<ComparedSignal>& signals() const { return signals_; }
+  const Split& split() const { return split_; }
+  const std::string& robot() const { return recordings_.front().info.robot; }
+  int muscleCount() const { return recordings_.front().muscleCount(); }
+  /// The measured values of a compared signal; empty if this recording does not have it.
+  const std::vector<double>& measured(int recording, int signal) const;
+  /// All components of the robot on which an effect can act.
+  std::vector<std::string> componentsFor(const EffectInfo& info) const;
+  /// Whether a component "signal_<stem>" (or "all") names something that is compared.
+  bool compares(const std::string& signal_component) const;
+  static bool isComponentOf(const std::string& component, const std::string& signal_name);
+  /// Shortest and longest length of a muscle.
+  struct MuscleRange {
+    double minimum_mm, maximum_mm;
+  };
+  MuscleRange muscleRange(int muscle) const;
+  /// Numbers of the model itself that no effect of the catalogue stands for, with the values in force: what the nominal refit re-tunes.
+  const std::vector<std::pair<std::string, double>>& nominalParameters() const { return nominal_; }
+  /// What the model's force law gives for a muscle at a pressure and a length, N.
+  double tensionN(int muscle, double pressure_ratio, double length_mm) const;
+
+  /// Simulates up to the end of the stretches that are asked for (`end_row`; 0: all rows). May be called from several threads.
+  Prediction predict(int recording, const Model& model, int end_row = 0) const;
+  /// The same with other commands in place of the recorded ones; `commands[row][muscle]`.
+  Prediction predict(int recording, const Model& model, const std::vector<std::vector<double>>& commands, int end_row = 0) const;
+  /// The same for a schedule that was never recorded.
+  Prediction predictSchedule(const Recording& schedule, const Model& model) const { return replay(schedule, model, 0); }
+
+  long simulationCount() const { return simulation_count_; }
+  double simulatedS() const { return static_cast<double>(simulated_ms_) * 1e-3; }
+  bool interrupted() const { return options_.interrupted && options_.interrupted(); }
+
+ private:
+  void compareSignals();
+  Prediction replay(Recording recording, const Model& model, int end_row) const;
+  void holdWhereMeasured(int recording, const Model& model, Prediction& prediction) const;
+
+  std::vector<Recording> recordings_;
+  const DiagnosisOptions& options_;
+  std::vector<ComparedSignal> signals_;
+  std::vector<std::vector<std::vector<double>>> measured_;  ///< [recording][signal][row]
+  Split split_;
+  std::unique_ptr<Simulation> reference_;  ///< the model as built; asked about its parts, never stepped
+  std::vector<std::pair<std::string, double>> nominal_;
+  mutable std::atomic<long> simulation_count_{0}, simulated_ms_{0};
+};
+
+}  // namespace musclesim

@@ -1,0 +1,105 @@
+#include "refit.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace musclesim {
+
+namespace {
+
+constexpr double enough = 2e-3;  ///< a fall of logMisfit that is not worth another round
+constexpr double normal_95 = 1.96;
+
+struct Point {
+  Eigen::VectorXd z, residual;
+  double log_misfit = std::numeric_limits<double>::infinity();
+};
+
+Point evaluate(const Comparison& comparison, const FitProblem& problem, const Eigen::VectorXd& z) {
+  Point point{problem.clamped(z), {}};
+  const Eigen::VectorXd predicted = problem.predicted(point.z);
+  if (predicted.size() != comparison.size() || !predicted.allFinite()) return point;
+  point.residual = comparison.measured() - predicted;
+  point.log_misfit = comparison.logMisfit(point.residual);
+  return point;
+}
+
+/// d(predicted)/dz, column by column.
+Eigen::MatrixXd derivatives(const Comparison& comparison, const FitProblem& problem, const Point& at) {
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(comparison.size(), at.z.size());
+  for (Eigen::Index i = 0; i < at.z.size(); ++i) {
+    Eigen::VectorXd z = at.z;
+    const double step = std::max(0.02, 0.05 * std::abs(z[i]));
+    z[i] += step;
+    z = problem.clamped(z);
+    if (z[i] == at.z[i]) z[i] -= step;  // at the upper bound
+    const Point beside = evaluate(comparison, problem, z);
+    if (beside.residual.size() && beside.z[i] != at.z[i]) jacobian.col(i) = (at.residual - beside.residual) / (beside.z[i] - at.z[i]);
+  }
+  return jacobian;
+}
+
+/// Samples per independent sample, from the autocorrelation up to its first zero, averaged over cells.
+double samplesPerIndependent(const Comparison& comparison, const Eigen::VectorXd& residual) {
+  double sum = 0;
+  for (const Comparison::Cell& cell : comparison.cells()) {
+    const auto count = static_cast<Eigen::Index>(cell.rows.size());
+    const Eigen::VectorXd r = residual.segment(cell.first, count);
+    const double power = std::max(r.squaredNorm(), 1e-300);
+    double correlation_length = 1;
+    for (Eigen::Index lag = 1; lag < count / 4; ++lag) {
+      const double correlation = r.head(count - lag).dot(r.tail(count - lag)) / power;
+      if (correlation <= 0) break;
+      correlation_length += 2 * correlation;
+    }
+    sum += correlation_length;
+  }
+  return sum / static_cast<double>(comparison.cells().size());
+}
+
+Eigen::VectorXd halfWidths(const Comparison& comparison, const Point& point, const Eigen::MatrixXd& jacobian) {
+  // Weighted residuals have mean square 1 / rows per cell where the misfit is the residual's own size.
+  Eigen::VectorXd per_sample = comparison.weights(point.residual);
+  for (const Comparison::Cell& cell : comparison.cells())
+    per_sample.segment(cell.first, static_cast<Eigen::Index>(cell.rows.size())) *= std::sqrt(static_cast<double>(cell.rows.size()));
+  const Eigen::MatrixXd weighted = per_sample.asDiagonal() * jacobian;
+  const Eigen::MatrixXd information = weighted.transpose() * weighted / samplesPerIndependent(comparison, point.residual);
+  const Eigen::MatrixXd covariance = information.completeOrthogonalDecomposition().pseudoInverse();
+  return normal_95 * covariance.diagonal().cwiseMax(0).cwiseSqrt();
+}
+
+}  // namespace
+
+FitResult fit(const Comparison& comparison, const FitProblem& problem, int round_count) {
+  Point best = evaluate(comparison, problem, problem.start);
+  if (!best.residual.size()) return {best.z, {}, best.log_misfit, Eigen::VectorXd::Zero(best.z.size())};
+  Eigen::MatrixXd jacobian;
+  double damping = 0.01;
+  for (int round = 0; round < round_count && !comparison.plant().interrupted(); ++round) {
+    jacobian = derivatives(comparison, problem, best);
+    const Eigen::VectorXd weights = comparison.weights(best.residual);
+    const Eigen::MatrixXd weighted = weights.asDiagonal() * jacobian;
+    const Eigen::MatrixXd normal = weighted.transpose() * weighted;
+    const Eigen::VectorXd slope = weighted.transpose() * weights.cwiseProduct(best.residual);
+    const double before = best.log_misfit;
+    for (int attempt = 0; attempt < 3; ++attempt) {
+      Eigen::MatrixXd damped = normal;
+      damped.diagonal() *= 1 + damping;
+      damped.diagonal().array() += 1e-9;
+      const Point next = evaluate(comparison, problem, best.z + damped.ldlt().solve(slope));
+      if (next.log_misfit < best.log_misfit) {
+        best = next;
+        damping *= 0.2;
+        break;
+      }
+      damping = std::max(damping * 10, 0.1);
+    }
+    if (!(best.log_misfit < before - enough)) break;
+  }
+  if (!jacobian.size()) jacobian = derivatives(comparison, problem, best);
+  return {best.z, best.residual, best.log_misfit, halfWidths(comparison, best, jacobian)};
+}
+
+}  // namespace musclesim

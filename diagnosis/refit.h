@@ -1,0 +1,31 @@
+/// Fits a few numbers of a model to recordings.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+
+#include "comparison.h"
+
+namespace musclesim {
+
+struct FitProblem {
+  /// The prediction at the compared rows for given coordinates; empty if the model diverges.
+  std::function<Eigen::VectorXd(const Eigen::VectorXd&)> predicted;
+  std::function<Eigen::VectorXd(const Eigen::VectorXd&)> clamped;
+  Eigen::VectorXd start;
+};
+
+struct FitResult {
+  Eigen::VectorXd z;
+  Eigen::VectorXd residual;  ///< measured - predicted; empty if no prediction could be made
+  double log_misfit = 0;
+  Eigen::VectorXd half_width;  ///< half of the 95 % interval of every coordinate
+};
+
+/// Minimises Comparison::logMisfit with Levenberg and Marquardt's method on residuals that are weighted anew in every round (Marquardt
+/// 1963); derivatives by differences of 5 % of the coordinate, at least 0.02: the response may have kinks.
+/// The intervals are those of the linearised problem with the residual's own variance, widened by the number of samples over the
+/// effective number of samples (from the residual's autocorrelation).
+FitResult fit(const Comparison& comparison, const FitProblem& problem, int round_count);
+
+}  // namespace musclesim

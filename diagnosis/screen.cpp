@@ -1,0 +1,134 @@
+#include "screen.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "parallel.h"
+
+namespace musclesim {
+
+namespace {
+
+constexpr double largest_amount = 5;  ///< beyond that many typical strengths a straight line says nothing
+
+/// A simulation whose result gives columns of one or more suspects.
+struct Probe {
+  Model model;
+  struct Target {
+    std::size_t suspect, strength;
+    int signal;  ///< the only one that it concerns; -1: all
+  };
+  std::vector<Target> targets;
+};
+
+int signalOf(const Comparison& comparison, const Suspect& suspect) {
+  const auto& signals = comparison.plant().signals();
+  for (std::size_t i = 0; i < signals.size(); ++i)
+    if (comparison.plant().isComponentOf(suspect.component(), signals[i].name)) return static_cast<int>(i);
+  return -1;
+}
+
+std::vector<Probe> probes(const Comparison& comparison, const std::vector<Suspect>& suspects) {
+  std::vector<Probe> result;
+  std::map<std::pair<std::string, std::size_t>, std::size_t> shared;  // sensor effects by id and strength
+  for (std::size_t s = 0; s < suspects.size(); ++s)
+    for (std::size_t k = 0; k < suspects[s].strengths().size() || (k == 0 && suspects[s].strengths().empty()); ++k) {
+      const Suspect& suspect = suspects[s];
+      Eigen::VectorXd z = Eigen::VectorXd::Zero(suspect.coordinateCount());
+      if (!suspect.strengths().empty()) z[suspect.strengths()[k]] = 1;
+      const ActiveEffect effect = suspect.at(z);
+      const bool sensor = suspect.info().stage == Stage::sensor && suspect.component() != "all";
+      const int signal = sensor ? signalOf(comparison, suspect) : -1;
+      std::size_t index = result.size();
+      if (sensor) index = shared.try_emplace({suspect.info().id, k}, index).first->second;
+      if (index == result.size()) result.push_back({});
+      Probe& probe = result[index];
+      probe.model.effects.push_back(effect);
+      probe.targets.push_back({s, k, signal});
+    }
+  return result;
+}
+
+/// The part of a vector that belongs to one signal; all of it for -1.
+Eigen::VectorXd only(const Comparison& comparison, const Eigen::VectorXd& values, int signal) {
+  if (signal < 0) return values;
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(values.size());
+  for (const Comparison::Cell& cell : comparison.cells())
+    if (cell.signal == signal) {
+      const auto count = static_cast<Eigen::Index>(cell.rows.size());
+      result.segment(cell.first, count) = values.segment(cell.first, count);
+    }
+  return result;
+}
+
+double excitationOf(const Comparison& comparison, const std::vector<Eigen::VectorXd>& columns) {
+  double largest = 0;
+  for (const Eigen::VectorXd& column : columns)
+    if (column.size())
+      for (const Comparison::Cell& cell : comparison.cells())
+        largest = std::max(largest, std::sqrt(comparison.meanSquare(cell, column)) / cell.floor);
+  return largest;
+}
+
+}  // namespace
+
+void explain(const Comparison& comparison, const Suspect& suspect, const Eigen::VectorXd& residual, Signature& signature) {
+  const auto count = static_cast<Eigen::Index>(signature.per_strength.size());
+  signature.amount = Eigen::VectorXd::Zero(count);
+  signature.explained = Eigen::VectorXd::Zero(residual.size());
+  signature.log_misfit = comparison.logMisfit(residual);
+  Eigen::MatrixXd columns(residual.size(), count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    if (!signature.per_strength[static_cast<std::size_t>(i)].size()) return;
+    columns.col(i) = signature.per_strength[static_cast<std::size_t>(i)];
+  }
+  Eigen::VectorXd left = residual;
+  for (int round = 0; round < 3; ++round) {
+    const Eigen::VectorXd weights = comparison.weights(left);
+    const Eigen::MatrixXd weighted = weights.asDiagonal() * columns;
+    Eigen::MatrixXd normal = weighted.transpose() * weighted;
+    normal.diagonal().array() += 1e-12 + 1e-9 * normal.diagonal().maxCoeff();
+    Eigen::VectorXd amount = normal.ldlt().solve(weighted.transpose() * weights.cwiseProduct(residual));
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const int coordinate = suspect.strengths().empty() ? -1 : suspect.strengths()[static_cast<std::size_t>(i)];
+      const bool both_signs = coordinate >= 0 && suspect.isSigned(coordinate);
+      // An effect without parameters is there or not.
+      amount[i] = coordinate < 0 ? 1 : std::clamp(amount[i], both_signs ? -largest_amount : 0.0, largest_amount);
+    }
+    left = residual - columns * amount;
+    const double misfit = comparison.logMisfit(left);
+    if (misfit < signature.log_misfit || suspect.strengths().empty()) {
+      signature.log_misfit = misfit;
+      signature.amount = amount;
+      signature.explained = residual - left;
+    }
+  }
+}
+
+std::vector<Signature> screen(const Comparison& comparison, const std::vector<Suspect>& suspects, const Eigen::VectorXd& nominal,
+                              int job_count, const OnSimulation& on_simulation) {
+  const std::vector<Probe> all = probes(comparison, suspects);
+  std::vector<Eigen::VectorXd> changes(all.size());
+  parallelFor(static_cast<int>(all.size()), job_count, [&](int i) {
+    if (comparison.plant().interrupted()) return;
+    const auto index = static_cast<std::size_t>(i);
+    const Eigen::VectorXd predicted = comparison.predicted(all[index].model);
+    if (predicted.size() == nominal.size() && predicted.allFinite()) changes[index] = predicted - nominal;
+    on_simulation();
+  });
+  std::vector<Signature> result(suspects.size());
+  for (std::size_t s = 0; s < suspects.size(); ++s) result[s].per_strength.resize(std::max<std::size_t>(1, suspects[s].strengths().size()));
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (const Probe::Target& target : all[i].targets)
+      if (changes[i].size()) result[target.suspect].per_strength[target.strength] = only(comparison, changes[i], target.signal);
+  const Eigen::VectorXd residual = comparison.measured() - nominal;
+  for (std::size_t s = 0; s < suspects.size(); ++s) {
+    result[s].excitation_ratio = excitationOf(comparison, result[s].per_strength);
+    explain(comparison, suspects[s], residual, result[s]);
+  }
+  return result;
+}
+
+}  // namespace musclesim

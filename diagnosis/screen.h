@@ -1,0 +1,35 @@
+/// A first look at every suspect: how much of the residual could it remove?
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <vector>
+
+#include "comparison.h"
+#include "suspect.h"
+
+namespace musclesim {
+
+/// What one suspect does to the predictions, and how far a multiple of that goes.
+struct Signature {
+  /// Change of the prediction by each strength alone, at a typical value; empty columns where the model diverged.
+  std::vector<Eigen::VectorXd> per_strength;
+  Eigen::VectorXd amount;       ///< multiple of each that removes most
+  Eigen::VectorXd explained;    ///< sum of amount times per_strength
+  double log_misfit = 0;        ///< of what is left
+  double excitation_ratio = 0;  ///< largest RMS of a typical strength's change in any cell, over that cell's floor
+};
+
+/// Called after each simulation, from any thread, one at a time.
+using OnSimulation = std::function<void()>;
+
+/// One or a few simulations per suspect on the comparison's stretches; sensor effects of one id on different signals share theirs.
+/// `nominal` is the prediction without any effect.
+std::vector<Signature> screen(const Comparison& comparison, const std::vector<Suspect>& suspects, const Eigen::VectorXd& nominal,
+                              int job_count, const OnSimulation& on_simulation);
+
+/// The amounts of a signature that remove most of a residual, by least squares weighted anew three times. Amounts of unsigned strengths
+/// stay positive. Sets amount, explained and log_misfit.
+void explain(const Comparison& comparison, const Suspect& suspect, const Eigen::VectorXd& residual, Signature& signature);
+
+}  // namespace musclesim

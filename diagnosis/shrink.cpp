@@ -1,0 +1,143 @@
+#include "shrink.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "musclesim/random.h"
+#include "refit.h"
+
+namespace musclesim {
+
+namespace {
+
+constexpr int draw_count = 1000;
+constexpr double block_s = 1;
+constexpr int round_count = 4;
+
+/// Sums of squares of one block, before and after, per signal.
+struct Block {
+  std::map<int, std::array<double, 3>> sums;  ///< before, after, rows
+};
+
+std::vector<Block> blocksOf(const Comparison& comparison, const Eigen::VectorXd& before, const Eigen::VectorXd& after) {
+  std::map<std::pair<std::size_t, int>, Block> blocks;
+  for (const Comparison::Cell& cell : comparison.cells()) {
+    const auto& time_s = comparison.plant().recordings()[static_cast<std::size_t>(comparison.stretches()[cell.stretch].recording)].time_s;
+    for (std::size_t i = 0; i < cell.rows.size(); ++i) {
+      const int number = static_cast<int>(time_s[static_cast<std::size_t>(cell.rows[i])] / block_s);
+      auto& sum = blocks[{cell.stretch, number}].sums[cell.signal];
+      const auto k = cell.first + static_cast<Eigen::Index>(i);
+      sum[0] += before[k] * before[k];
+      sum[1] += after[k] * after[k];
+      sum[2] += 1;
+    }
+  }
+  std::vector<Block> result;
+  for (auto& [key, block] : blocks) result.push_back(std::move(block));
+  return result;
+}
+
+double shrinkOf(const Comparison& comparison, const std::vector<const Block*>& blocks) {
+  std::map<int, std::array<double, 3>> sums;
+  for (const Block* block : blocks)
+    for (const auto& [signal, sum] : block->sums)
+      for (std::size_t i = 0; i < 3; ++i) sums[signal][i] += sum[i];
+  double before = 0, after = 0;
+  for (const auto& [signal, sum] : sums) {
+    const double floor = comparison.plant().signals()[static_cast<std::size_t>(signal)].floor.value, square = floor * floor;
+    before += std::max(0.0, sum[0] / sum[2] - square) / square;
+    after += std::max(0.0, sum[1] / sum[2] - square) / square;
+  }
+  return before > 0 ? 100 * (1 - after / before) : 0;
+}
+
+struct Sine {
+  double frequency_hz, phase;
+};
+
+std::vector<std::vector<double>> disturbed(const Recording& recording, const std::vector<Sine>& sines, const Eigen::VectorXd& amplitude) {
+  std::vector<std::vector<double>> commands(recording.time_s.size());
+  for (int muscle = 0; muscle < recording.muscleCount(); ++muscle) {
+    const auto& u = recording.find("command_" + std::to_string(muscle))->values;
+    for (std::size_t row = 0; row < u.size(); ++row) {
+      double sum = u[row];
+      for (std::size_t k = 0; k < sines.size(); ++k)
+        sum += amplitude[static_cast<Eigen::Index>(k)] *
+               std::sin(2 * std::numbers::pi * sines[k].frequency_hz * recording.time_s[row] + sines[k].phase);
+      commands[row].push_back(std::clamp(sum, 0.0, 1.0));
+    }
+  }
+  return commands;
+}
+
+}  // namespace
+
+double shrinkPercent(const Gap& before, const Gap& after) {
+  return before.normalised > 0 ? 100 * (1 - after.normalised / before.normalised) : 0;
+}
+
+Estimate shrinkInterval(const Comparison& held_out, const Eigen::VectorXd& before, const Eigen::VectorXd& after, std::uint64_t seed) {
+  const std::vector<Block> blocks = blocksOf(held_out, before, after);
+  RandomStream random(seed, "diagnosis.bootstrap");
+  std::vector<double> draws;
+  for (int draw = 0; draw < draw_count; ++draw) {
+    std::vector<const Block*> chosen;
+    for (std::size_t i = 0; i < blocks.size(); ++i)
+      chosen.push_back(&blocks[std::min(blocks.size() - 1, static_cast<std::size_t>(random.uniform() * static_cast<double>(blocks.size())))]);
+    draws.push_back(shrinkOf(held_out, chosen));
+  }
+  std::ranges::sort(draws);
+  std::vector<const Block*> all;
+  for (const Block& block : blocks) all.push_back(&block);
+  return {shrinkOf(held_out, all), draws[draw_count / 40], draws[draw_count - 1 - draw_count / 40]};
+}
+
+Eigen::VectorXd nominalRefitResidual(const Comparison& fitted, const Comparison& held_out, const OnSimulation& on_simulation) {
+  const auto& nominal = fitted.plant().nominalParameters();
+  auto modelAt = [&](const Eigen::VectorXd& z) {
+    Model model;
+    for (std::size_t i = 0; i < nominal.size(); ++i)
+      model.parameters.emplace_back(nominal[i].first, nominal[i].second * std::exp(z[static_cast<Eigen::Index>(i)]));
+    return model;
+  };
+  FitProblem problem;
+  problem.start = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(nominal.size()));
+  problem.clamped = [](const Eigen::VectorXd& z) -> Eigen::VectorXd { return z.cwiseMax(-1.5).cwiseMin(1.5); };
+  problem.predicted = [&](const Eigen::VectorXd& z) {
+    on_simulation();
+    return fitted.predicted(modelAt(z));
+  };
+  const FitResult result = fit(fitted, problem, round_count);
+  const Eigen::VectorXd predicted = held_out.predicted(modelAt(result.z));
+  return predicted.size() ? held_out.measured() - predicted : Eigen::VectorXd{};
+}
+
+Eigen::VectorXd shamResidual(const Comparison& fitted, const Comparison& held_out, int parameter_count, std::uint64_t seed,
+                             const OnSimulation& on_simulation) {
+  RandomStream random(seed, "diagnosis.sham");
+  std::vector<Sine> sines;
+  for (int i = 0; i < parameter_count; ++i)
+    sines.push_back({0.1 + 1.9 * random.uniform(), 2 * std::numbers::pi * random.uniform()});
+  auto predictedOn = [&](const Comparison& comparison, const Eigen::VectorXd& amplitude) {
+    std::vector<Prediction> predictions;
+    for (const Stretch& stretch : comparison.stretches()) {
+      const Recording& recording = comparison.plant().recordings()[static_cast<std::size_t>(stretch.recording)];
+      predictions.push_back(comparison.plant().predict(stretch.recording, Model{}, disturbed(recording, sines, amplitude), stretch.end_row));
+    }
+    return comparison.predicted(predictions);
+  };
+  constexpr double typical = 0.02;
+  FitProblem problem;
+  problem.start = Eigen::VectorXd::Constant(parameter_count, 0.1);
+  problem.clamped = [](const Eigen::VectorXd& z) -> Eigen::VectorXd { return z.cwiseMax(-10).cwiseMin(10); };
+  problem.predicted = [&](const Eigen::VectorXd& z) {
+    on_simulation();
+    return predictedOn(fitted, typical * z);
+  };
+  const FitResult result = fit(fitted, problem, round_count);
+  const Eigen::VectorXd predicted = predictedOn(held_out, typical * result.z);
+  return predicted.size() ? held_out.measured() - predicted : Eigen::VectorXd{};
+}
+
+}  // namespace musclesim

@@ -1,0 +1,237 @@
+#include "suspect.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "musclesim/error.h"
+#include "musclesim/robot/force_law.h"
+
+namespace musclesim {
+
+namespace {
+
+/// The lower and upper `share` quantile of a compared signal over all recordings.
+std::optional<std::pair<double, double>> quantiles(const Plant& plant, const std::string& name, double share) {
+  std::vector<double> values;
+  for (std::size_t s = 0; s < plant.signals().size(); ++s) {
+    if (plant.signals()[s].name != name) continue;
+    for (std::size_t r = 0; r < plant.recordings().size(); ++r)
+      for (const double value : plant.measured(static_cast<int>(r), static_cast<int>(s)))
+        if (std::isfinite(value)) values.push_back(value);
+  }
+  if (values.empty()) return std::nullopt;
+  std::sort(values.begin(), values.end());
+  const auto last = static_cast<double>(values.size() - 1);
+  return std::pair{values[static_cast<std::size_t>(share * last)], values[static_cast<std::size_t>((1 - share) * last)]};
+}
+
+/// Whether a parameter means anything on this component: effects on joints and on points have their own, told apart by the unit.
+bool concerns(const EffectParameter& parameter, const std::string& component, const std::string& signal_unit) {
+  const bool angular = parameter.name.ends_with("_deg") && !parameter.name.starts_with("tilt");
+  const bool linear = parameter.name.ends_with("_mm");
+  if (component.starts_with("joint_")) return !linear && parameter.name != "axis";
+  if (component == "hand") return !angular;
+  if (component.starts_with("signal_")) return !(angular && signal_unit != "deg") && !(linear && signal_unit != "mm");
+  return true;
+}
+
+double spanOf(const Plant& plant, const std::string& signal) {
+  const auto ends = quantiles(plant, signal, 0.02);
+  return ends ? ends->second - ends->first : 0;
+}
+
+}  // namespace
+
+Suspect::Suspect(EffectInfo info, std::string component, const Plant& plant) : info_(std::move(info)), component_(std::move(component)) {
+  for (const EffectParameter& parameter : info_.parameters) base_.push_back(parameter.neutral);
+  std::string signal;
+  for (const ComparedSignal& compared : plant.signals())
+    if (Plant::isComponentOf(component_, compared.name)) signal = compared.name;
+  const std::string unit = signal.empty() ? "" : signalUnit(signal);
+  for (std::size_t i = 0; i < info_.parameters.size(); ++i) {
+    const EffectParameter& p = info_.parameters[i];
+    if (!p.choices.empty() || !concerns(p, component_, unit)) continue;
+    const bool both_signs = p.usual_low < p.neutral && p.neutral < p.usual_high;
+    Coordinate c{i, Scale::linear, 0, 0};
+    if (p.shape) {
+      const bool positive = p.usual_low > 0;
+      c.scale = positive ? Scale::factor : Scale::shift;
+      c.typical = positive ? std::sqrt(p.usual_low * p.usual_high) : 0.5 * (p.usual_low + p.usual_high);
+      c.unit = 0.5 * (p.usual_high - p.usual_low);
+    } else if (std::isinf(p.neutral)) {
+      c.scale = p.unit == "bit" ? Scale::bits : Scale::inverse;
+      c.typical = c.scale == Scale::bits ? 0.5 * (p.usual_low + p.usual_high) : std::sqrt(p.usual_low * p.usual_high);
+    } else if (both_signs) {
+      c.typical = p.neutral + 0.5 * (p.usual_high - p.neutral);
+    } else {
+      c.typical = p.neutral + std::sqrt(std::abs(p.usual_low - p.neutral) * std::abs(p.usual_high - p.neutral));
+    }
+    if (p.unit == "unit of the signal") c.typical = p.neutral + 0.05 * spanOf(plant, signal);
+    if (!p.shape) strengths_.push_back(static_cast<int>(coordinates_.size()));
+    coordinates_.push_back(c);
+  }
+  if (info_.id == "force_law") useChouHannaford(plant);
+}
+
+/// Another law has many constants and no neutral ones: the fit begins at the constants of Chou and Hannaford that come nearest to the law
+/// of the model (least squares over pressures and lengths) and changes them by shares of themselves.
+void Suspect::useChouHannaford(const Plant& plant) {
+  const Plant::MuscleRange range = plant.muscleRange(0);
+  constexpr int pressure_count = 9, length_count = 21;
+  const double stretch_exponent = ChouHannafordConstants().stretch_exponent;
+  Eigen::MatrixXd columns(pressure_count * length_count, 4);
+  Eigen::VectorXd tension_N(columns.rows());
+  for (int i = 0, row = 0; i < pressure_count; ++i)
+    for (int j = 0; j < length_count; ++j, ++row) {
+      const double p = static_cast<double>(i) / (pressure_count - 1);
+      const double l = range.minimum_mm + (range.maximum_mm - range.minimum_mm) * j / (length_count - 1), s = l / range.maximum_mm;
+      columns.row(row) << p * s * s, -p, -1, std::exp(stretch_exponent * (s - 1));
+      tension_N[row] = plant.tensionN(0, p, l);
+    }
+  const Eigen::Vector4d constants = columns.colPivHouseholderQr().solve(tension_N);
+  const char* const names[] = {"braid_N", "bore_N", "threshold_N", "stretch_N"};
+  const double largest = constants.cwiseAbs().maxCoeff();
+  coordinates_.clear();
+  strengths_.clear();
+  for (std::size_t i = 0; i < info_.parameters.size(); ++i) {
+    const EffectParameter& p = info_.parameters[i];
+    if (p.name == "law") base_[i] = static_cast<double>(std::ranges::find(p.choices, "chou-hannaford") - p.choices.begin());
+    if (p.name == "elastic_N") base_[i] = 0;
+    if (p.name == "stretch_exponent") base_[i] = stretch_exponent;
+    for (int k = 0; k < 4; ++k) {
+      if (p.name != names[k]) continue;
+      base_[i] = constants[k];
+      strengths_.push_back(static_cast<int>(coordinates_.size()));
+      coordinates_.push_back({i, Scale::linear, constants[k] + 0.1 * largest, 0});
+    }
+  }
+}
+
+bool Suspect::isSigned(int coordinate) const {
+  const Coordinate& c = coordinates_[static_cast<std::size_t>(coordinate)];
+  const EffectParameter& p = info_.parameters[c.parameter];
+  return info_.id == "force_law" || (c.scale == Scale::linear && p.minimum < p.neutral);
+}
+
+double Suspect::valueOf(const Coordinate& c, double z) const {
+  const double base = base_[c.parameter];
+  switch (c.scale) {
+    case Scale::linear:
+      return base + z * (c.typical - base);
+    case Scale::inverse:
+      return c.typical / z;  // z = 0: infinite
+    case Scale::bits:
+      return c.typical - std::log2(z);
+    case Scale::factor:
+      return c.typical * std::exp(z);
+    case Scale::shift:
+      return c.typical + z * c.unit;
+  }
+  return base;
+}
+
+double Suspect::coordinateOf(const Coordinate& c, double value) const {
+  const double base = base_[c.parameter];
+  switch (c.scale) {
+    case Scale::linear:
+      return (value - base) / (c.typical - base);
+    case Scale::inverse:
+      return c.typical / value;
+    case Scale::bits:
+      return std::exp2(c.typical - value);
+    case Scale::factor:
+      return std::log(value / c.typical);
+    case Scale::shift:
+      return (value - c.typical) / c.unit;
+  }
+  return 0;
+}
+
+Eigen::VectorXd Suspect::clamped(Eigen::VectorXd z) const {
+  for (std::size_t i = 0; i < coordinates_.size(); ++i) {
+    const Coordinate& c = coordinates_[i];
+    const EffectParameter& p = info_.parameters[c.parameter];
+    const double low_value = p.shape && p.usual_low > 0 ? std::max(p.minimum, p.usual_low / 3) : p.minimum;
+    const double high_value = p.shape && p.usual_low > 0 ? std::min(p.maximum, p.usual_high * 3) : p.maximum;
+    double first = coordinateOf(c, low_value), second = coordinateOf(c, high_value);
+    if (first > second) std::swap(first, second);
+    if (std::isinf(p.neutral)) first = std::max(first, 1e-6);
+    auto& value = z[static_cast<Eigen::Index>(i)];
+    value = std::clamp(value, std::max(first, -strongest), std::min(second, strongest));
+  }
+  return z;
+}
+
+std::vector<std::pair<std::string, double>> Suspect::valuesAt(const Eigen::VectorXd& z) const {
+  std::vector<std::pair<std::string, double>> values;
+  for (std::size_t i = 0; i < coordinates_.size(); ++i) {
+    const EffectParameter& p = info_.parameters[coordinates_[i].parameter];
+    values.emplace_back(p.name, std::clamp(valueOf(coordinates_[i], z[static_cast<Eigen::Index>(i)]), p.minimum, p.maximum));
+  }
+  return values;
+}
+
+ActiveEffect Suspect::at(const Eigen::VectorXd& z) const {
+  std::vector<double> values = base_;
+  for (std::size_t i = 0; i < coordinates_.size(); ++i) {
+    const EffectParameter& p = info_.parameters[coordinates_[i].parameter];
+    values[coordinates_[i].parameter] = std::clamp(valueOf(coordinates_[i], z[static_cast<Eigen::Index>(i)]), p.minimum, p.maximum);
+  }
+  return activeEffect(info_, component_, values);
+}
+
+Eigen::VectorXd Suspect::typical() const {
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(coordinateCount());
+  for (const int strength : strengths_) z[strength] = 1;
+  return z;
+}
+
+std::vector<Suspect> Suspect::variants(const Plant& plant) const {
+  if (info_.id != "contact") return {*this};
+  std::vector<Suspect> result;
+  auto add = [&](const std::string& plane, double at, const std::string& side, int axis) {
+    Suspect variant = *this;
+    for (std::size_t i = 0; i < info_.parameters.size(); ++i) {
+      const EffectParameter& p = info_.parameters[i];
+      if (p.name == "side") variant.base_[i] = static_cast<double>(std::ranges::find(p.choices, side) - p.choices.begin());
+      if (p.name == "axis") variant.base_[i] = axis;
+      if (p.name != plane) continue;
+      for (Coordinate& c : variant.coordinates_)
+        if (c.parameter == i) c.typical = at, c.unit = std::max(1.0, std::abs(at) * 0.1);
+    }
+    result.push_back(std::move(variant));
+  };
+  auto addBothSides = [&](const std::string& plane, const std::pair<double, double>& ends, int axis) {
+    add(plane, ends.second, "beyond", axis);
+    add(plane, ends.first, "below", axis);
+  };
+  if (component_.starts_with("joint_")) {
+    if (const auto ends = quantiles(plant, "angle_" + component_.substr(6) + "_deg", 0.2)) addBothSides("plane_deg", *ends, 0);
+    return result;
+  }
+  const char* const hand[] = {"hand_x_mm", "hand_y_mm", "hand_z_mm"};
+  for (int axis = 0; axis < 3; ++axis)
+    if (const auto ends = quantiles(plant, hand[axis], 0.2)) addBothSides("plane_mm", *ends, axis);
+  if (result.empty() && plant.robot() == "rig")
+    if (const auto ends = quantiles(plant, "length_0_mm", 0.2)) addBothSides("plane_mm", {-ends->second, -ends->first}, 1);
+  return result;
+}
+
+std::vector<Suspect> suspects(const Plant& plant, const DiagnosisOptions& options) {
+  for (const auto* ids : {&options.candidates, &options.exclude})
+    for (const std::string& id : *ids) effectInfo(id);  // throws for an unknown one
+  auto contains = [](const std::vector<std::string>& ids, const std::string& id) { return std::ranges::find(ids, id) != ids.end(); };
+  std::vector<Suspect> result;
+  for (const EffectInfo& info : effectCatalogue()) {
+    if ((!options.candidates.empty() && !contains(options.candidates, info.id)) || contains(options.exclude, info.id)) continue;
+    for (const std::string& component : plant.componentsFor(info)) {
+      // One sensor fails at a time; clocks and loggers may fail for all at once.
+      const bool shared = info.id == "sensor_delay" || info.id == "sensor_dropout";
+      if (info.stage == Stage::sensor && (!plant.compares(component) || (component == "all" && !shared))) continue;
+      for (Suspect& variant : Suspect(info, component, plant).variants(plant)) result.push_back(std::move(variant));
+    }
+  }
+  return result;
+}
+
+}  // namespace musclesim

@@ -1,0 +1,63 @@
+/// A suspect is one effect on one component; its strength is a point in coordinates that a fit can use.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "musclesim/effect/catalogue.h"
+#include "plant.h"
+
+namespace musclesim {
+
+/// Coordinates z of one suspect's parameters, one per parameter that a fit changes:
+///   neutral value finite      value = neutral + z * (typical - neutral)
+///   neutral value infinite    value = typical / z;  of a number of bits: typical - log2(z)
+///   shape parameters          value = typical * exp(z), or typical + z * half the usual range where that has both signs
+/// z = 0 is neutral for the first two and usual for the third; z = 1 is a typical strength. Values are clamped to their range.
+class Suspect {
+ public:
+  Suspect(EffectInfo info, std::string component, const Plant& plant);
+
+  const EffectInfo& info() const { return info_; }
+  const std::string& component() const { return component_; }
+  std::string label() const { return info_.id + "@" + component_; }
+  int coordinateCount() const { return static_cast<int>(coordinates_.size()); }
+  /// Numbers of the coordinates that are strengths: those with which the effect vanishes.
+  const std::vector<int>& strengths() const { return strengths_; }
+  /// Whether a strength may have either sign.
+  bool isSigned(int coordinate) const;
+  ActiveEffect at(const Eigen::VectorXd& z) const;
+  /// Names and values of the parameters that z changes.
+  std::vector<std::pair<std::string, double>> valuesAt(const Eigen::VectorXd& z) const;
+  /// z with every coordinate between the bounds that the parameters' ranges give.
+  Eigen::VectorXd clamped(Eigen::VectorXd z) const;
+  /// All strengths 1, all shapes usual.
+  Eigen::VectorXd typical() const;
+  /// The suspect once for each choice that no fit can reach from another one: a wall on either side of each axis.
+  std::vector<Suspect> variants(const Plant& plant) const;
+
+ private:
+  static constexpr double strongest = 50;  ///< bound of |z|
+  enum class Scale { linear, inverse, bits, factor, shift };
+  struct Coordinate {
+    std::size_t parameter;
+    Scale scale;
+    double typical, unit;
+  };
+  double valueOf(const Coordinate& coordinate, double z) const;
+  double coordinateOf(const Coordinate& coordinate, double value) const;
+  void useChouHannaford(const Plant& plant);
+
+  EffectInfo info_;
+  std::string component_;
+  std::vector<double> base_;  ///< values of all parameters where z does not change them
+  std::vector<Coordinate> coordinates_;
+  std::vector<int> strengths_;
+};
+
+/// All suspects that the options allow on this plant.
+std::vector<Suspect> suspects(const Plant& plant, const DiagnosisOptions& options);
+
+}  // namespace musclesim

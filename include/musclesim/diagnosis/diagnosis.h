@@ -1,0 +1,127 @@
+/// The sim-to-real gap: how large it is, where it arises, which unmodelled effect causes it and how far that effect closes it.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "musclesim/effect/active_effect.h"
+#include "musclesim/log/recording.h"
+#include "musclesim/simulation/replay.h"
+
+namespace musclesim {
+
+/// What a diagnosis is doing, for a progress line.
+struct DiagnosisProgress {
+  std::string phase;  ///< in a few words
+  long done = 0;      ///< simulations since the start
+  long expected = 0;  ///< in all, as far as is known by now
+};
+
+struct DiagnosisOptions {
+  ReplayOptions model;                   ///< the simulator as the user has it
+  std::vector<std::string> candidates;   ///< ids of effects to consider; empty: the whole catalogue
+  std::vector<std::string> exclude;      ///< ids not to consider
+  int max_effects = 2;                   ///< how many effects an explanation may have, 0..3
+  int job_count = 0;                     ///< threads; 0: one per core. The answer does not depend on it
+  std::uint64_t seed = 1;                ///< of the bootstrap and the sham
+  std::function<void(const DiagnosisProgress&)> progress;  ///< called from one thread at a time
+  std::function<bool()> interrupted;     ///< true: stop soon and return what is known
+};
+
+/// `no_gap`: nothing beyond the noise floor; `effects_found`; `unexplained`: a gap that no effect of the catalogue removes;
+/// `not_excited`: the recordings do not move the plant enough to tell.
+enum class Verdict { no_gap, effects_found, unexplained, not_excited };
+std::string nameOf(Verdict verdict);
+
+/// A value with its 95 % interval.
+struct Estimate {
+  double value = 0, low = 0, high = 0;
+};
+
+struct Place {
+  std::string stage, component, regime;
+  double share = 0;  ///< of the gap
+};
+
+struct FoundEffect {
+  std::string id, component;
+  double probability = 0;
+  std::map<std::string, Estimate> parameters;
+  double shrink_percent = 0;  ///< of the gap on the held-out data, by this effect alone
+  std::string label() const { return id + "@" + component; }
+};
+
+struct ExplanationProbability {
+  std::vector<std::string> effects;  ///< "id@component"; empty: no effect at all
+  double probability = 0;
+};
+
+struct SignalGap {
+  double rmse = 0, noise_floor = 0;
+};
+
+/// normalised = mean over signals of max(0, RMSE^2 - floor^2) / floor^2, signals and floors pooled over the recordings.
+struct Gap {
+  double normalised = 0;
+  std::map<std::string, SignalGap> per_signal;
+};
+
+struct Experiment {
+  std::vector<std::string> separates;
+  std::string why;
+  std::vector<double> time_s;
+  std::vector<std::vector<double>> commands;  ///< per row, one per muscle; empty: there is nothing to tell apart
+  double difference = 0;                      ///< RMS between the predictions, in units of the noise floor
+};
+
+/// Curves for the report: one recording, one signal.
+struct Trace {
+  std::string recording, signal;
+  bool held_out = false;
+  std::vector<double> time_s, measured, before, after;
+};
+
+struct Diagnosis {
+  std::string robot;
+  std::vector<std::string> recordings;
+  Verdict verdict = Verdict::no_gap;
+  std::vector<Place> where;
+  std::string where_method;  ///< in words: which signals decided
+  std::vector<FoundEffect> effects;
+  double none_of_these = 0;
+  std::vector<ExplanationProbability> explanations;
+  std::vector<std::string> chosen, ambiguity_set;
+  std::vector<ActiveEffect> chosen_effects;
+  Gap before, after;
+  std::string held_out;  ///< what the gap was measured on, in words
+  bool is_held_out = false;
+  double shrink_percent = 0, shrink_low_percent = 0, shrink_high_percent = 0;
+  double nominal_refit_shrink_percent = 0, sham_shrink_percent = 0, unexplained_percent = 0;
+  std::vector<std::string> not_excited;  ///< effects that these recordings could not have shown
+  std::vector<std::string> notes;        ///< what the user should know about data and answer
+  Experiment next_experiment;
+  std::vector<Trace> traces;
+  bool partial = false;
+  double simulated_s = 0, wall_s = 0;
+  long simulation_count = 0;
+};
+
+/// Diagnoses recordings of one plant. Throws BadParameter for recordings that cannot be diagnosed together (different robots, no commands,
+/// fewer than 20 rows, no signal that the model also has) and for unknown effects; Diverged if the model itself, without further effects,
+/// cannot follow the recordings.
+Diagnosis diagnose(std::vector<Recording> recordings, const DiagnosisOptions& options = {});
+
+/// The contract's diagnosis.json.
+std::string diagnosisJson(const Diagnosis& diagnosis, const std::string& schedule_file = "next.csv");
+
+/// report.html: one page that needs no other file.
+std::string diagnosisReport(const Diagnosis& diagnosis);
+
+/// What a person can read in ten seconds.
+std::string diagnosisSummary(const Diagnosis& diagnosis);
+
+}  // namespace musclesim
