@@ -12,10 +12,10 @@ namespace musclesim {
 
 namespace {
 
-constexpr int look_rows = 900;             ///< the first look ends after that many rows of a stretch
-constexpr std::size_t single_count = 7;    ///< suspects that are fitted
-constexpr std::size_t pair_count = 5;      ///< second effects that are fitted beside the best
-constexpr double worth_a_pair = 0.15;      ///< log misfit per affected cell above which a second effect is looked for
+constexpr int look_rows = 900;           ///< the first look ends after that many rows of a stretch
+constexpr std::size_t single_count = 7;  ///< suspects that are fitted
+constexpr std::size_t pair_count = 5;    ///< second effects that are fitted beside the best
+constexpr double worth_a_pair = 0.15;    ///< log misfit per affected cell above which a second effect is looked for
 constexpr int round_count = 8;
 
 /// At most two stretches, the first and the last, and not more than look_rows of each.

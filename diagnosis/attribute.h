@@ -23,11 +23,11 @@ struct Explanation {
 
 /// How answers are weighed. Found on practice cases with odd numbers; docs/diagnosing.md has the numbers.
 struct Weighing {
-  double per_misfit = 10;        ///< ln of the odds per unit of log misfit per affected cell
-  double per_parameter = 0.15;   ///< ln of the odds that a further parameter costs
-  double per_effect = 1.5;       ///< ln of the odds that a second effect costs
-  double none_ratio = 0.15;      ///< "none of these" stands for a cause that would leave this share of the residual,
-  double none_floor_ratio = 1.5; ///< but not less than this multiple of the floor
+  double per_misfit = 10;         ///< ln of the odds per unit of log misfit per affected cell
+  double per_parameter = 0.15;    ///< ln of the odds that a further parameter costs
+  double per_effect = 1.5;        ///< ln of the odds that a second effect costs
+  double none_ratio = 0.15;       ///< "none of these" stands for a cause that would leave this share of the residual,
+  double none_floor_ratio = 1.5;  ///< but not less than this multiple of the floor
 };
 
 struct Attribution {

@@ -88,8 +88,8 @@ Gap Comparison::gap(const Eigen::VectorXd& residual) const {
 
 int Comparison::affectedCells(const Eigen::VectorXd& residual) const {
   constexpr double out_of_floor = 1.15;
-  const auto count = std::ranges::count_if(
-      cells_, [&](const Cell& cell) { return std::sqrt(meanSquare(cell, residual)) > out_of_floor * cell.floor; });
+  const auto count =
+      std::ranges::count_if(cells_, [&](const Cell& cell) { return std::sqrt(meanSquare(cell, residual)) > out_of_floor * cell.floor; });
   return std::max(1, static_cast<int>(count));
 }
 

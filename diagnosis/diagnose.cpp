@@ -203,7 +203,8 @@ class Run {
   std::map<std::string, Estimate> estimates(const Suspect& suspect, const Explanation& explanation, Eigen::Index first) const {
     const Eigen::Index count = suspect.coordinateCount();
     const Eigen::VectorXd z = explanation.z.segment(first, count), half = explanation.half_width.segment(first, count);
-    const auto at = suspect.valuesAt(z), one = suspect.valuesAt(suspect.clamped(z - half)), other = suspect.valuesAt(suspect.clamped(z + half));
+    const auto at = suspect.valuesAt(z), one = suspect.valuesAt(suspect.clamped(z - half)),
+               other = suspect.valuesAt(suspect.clamped(z + half));
     std::map<std::string, Estimate> result;
     for (std::size_t i = 0; i < at.size(); ++i)
       result[at[i].first] = {at[i].second, std::min(one[i].second, other[i].second), std::max(one[i].second, other[i].second)};
@@ -249,16 +250,20 @@ class Run {
   }
 
   void finish() {
-    if (diagnosis_.before.normalised > 0)
-      diagnosis_.unexplained_percent = 100 * diagnosis_.after.normalised / diagnosis_.before.normalised;
+    if (diagnosis_.before.normalised > 0) diagnosis_.unexplained_percent = 100 * diagnosis_.after.normalised / diagnosis_.before.normalised;
     addTraces();
   }
 
   void addTraces() {
     for (const Comparison::Cell& cell : held_out_.cells()) {
       const int recording = held_out_.stretches()[cell.stretch].recording;
-      Trace trace{plant_.recordings()[static_cast<std::size_t>(recording)].file, plant_.signals()[static_cast<std::size_t>(cell.signal)].name,
-                  true, {}, {}, {}, {}};
+      Trace trace{plant_.recordings()[static_cast<std::size_t>(recording)].file,
+                  plant_.signals()[static_cast<std::size_t>(cell.signal)].name,
+                  true,
+                  {},
+                  {},
+                  {},
+                  {}};
       for (std::size_t i = 0; i < cell.rows.size(); ++i) {
         const auto k = cell.first + static_cast<Eigen::Index>(i);
         trace.time_s.push_back(plant_.recordings()[static_cast<std::size_t>(recording)].time_s[static_cast<std::size_t>(cell.rows[i])]);

@@ -75,8 +75,7 @@ std::string diagnosisJson(const Diagnosis& d, const std::string& schedule_file) 
   json["unexplained_percent"] = d.unexplained_percent;
   json["not_excited"] = d.not_excited;
   if (!d.next_experiment.commands.empty())
-    json["next_experiment"] = {
-        {"separates", d.next_experiment.separates}, {"why", d.next_experiment.why}, {"schedule", schedule_file}};
+    json["next_experiment"] = {{"separates", d.next_experiment.separates}, {"why", d.next_experiment.why}, {"schedule", schedule_file}};
   json["notes"] = d.notes;
   json["where_method"] = d.where_method;
   json["partial"] = d.partial;
@@ -87,14 +86,14 @@ std::string diagnosisJson(const Diagnosis& d, const std::string& schedule_file) 
 std::string diagnosisSummary(const Diagnosis& d) {
   std::string text = verdictSentence(d) + "\n";
   if (d.partial) text = "Interrupted: what follows is only what was known by then.\n" + text;
-  if (!d.where.empty())
-    text += fmt::format("where     {}\n", whereSentence(d));
+  if (!d.where.empty()) text += fmt::format("where     {}\n", whereSentence(d));
   for (std::size_t i = 0; i < std::min<std::size_t>(3, d.effects.size()); ++i)
     text += fmt::format("{:<9} {:>4.0f} %  {}\n", i == 0 ? "which" : "", 100 * d.effects[i].probability, effectSentence(d.effects[i]));
   if (d.verdict != Verdict::no_gap) text += fmt::format("          {:>4.0f} %  none of these\n", 100 * d.none_of_these);
   if (!d.chosen.empty())
-    text += fmt::format("how far   {:.1f} % (95 %: {:.1f} to {:.1f}) of the gap on {}; nominal refit {:.1f} %, sham {:.1f} %\n", d.shrink_percent,
-                        d.shrink_low_percent, d.shrink_high_percent, d.held_out, d.nominal_refit_shrink_percent, d.sham_shrink_percent);
+    text += fmt::format("how far   {:.1f} % (95 %: {:.1f} to {:.1f}) of the gap on {}; nominal refit {:.1f} %, sham {:.1f} %\n",
+                        d.shrink_percent, d.shrink_low_percent, d.shrink_high_percent, d.held_out, d.nominal_refit_shrink_percent,
+                        d.sham_shrink_percent);
   if (!d.next_experiment.commands.empty()) text += fmt::format("next      record next.csv, {}\n", d.next_experiment.why);
   return text;
 }

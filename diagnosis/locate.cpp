@@ -14,10 +14,10 @@ namespace musclesim {
 namespace {
 
 constexpr std::size_t stage_count = 5;
-constexpr double agrees = 1.2;      ///< RMS over floor up to which a signal counts as predicted
-constexpr double disagrees = 1.5;   ///< from which on it counts as not
-constexpr double per_misfit = 5;    ///< ln of the odds of a stage per unit of log misfit of its best disturbance
-constexpr double hardly = 0.03;     ///< factor for a stage that a substitution speaks against
+constexpr double agrees = 1.2;     ///< RMS over floor up to which a signal counts as predicted
+constexpr double disagrees = 1.5;  ///< from which on it counts as not
+constexpr double per_misfit = 5;   ///< ln of the odds of a stage per unit of log misfit of its best disturbance
+constexpr double hardly = 0.03;    ///< factor for a stage that a substitution speaks against
 
 using StageWeights = std::array<double, stage_count>;
 
@@ -36,10 +36,6 @@ std::optional<double> ratioOf(const Comparison& comparison, const Eigen::VectorX
   }
   if (count == 0) return std::nullopt;
   return std::sqrt(sum / count);
-}
-
-bool isMotion(const std::string& name) {
-  return name.starts_with("length_") || name.starts_with("angle_") || name.starts_with("hand_");
 }
 
 /// Mean ln(RMS / floor) of motion and tension.
@@ -109,7 +105,8 @@ std::optional<double> tensionRatio(const Comparison& comparison) {
         if (i >= ps.size() || i >= fs.size() || i >= ls.size()) break;
         if (!std::isfinite(ps[i] + fs[i] + ls[i])) continue;
         const double law = plant.tensionN(muscle, ps[i], ls[i]);
-        const double by_p = plant.tensionN(muscle, ps[i] + floorOf(p), ls[i]) - law, by_l = plant.tensionN(muscle, ps[i], ls[i] + floorOf(l)) - law;
+        const double by_p = plant.tensionN(muscle, ps[i] + floorOf(p), ls[i]) - law,
+                     by_l = plant.tensionN(muscle, ps[i], ls[i] + floorOf(l)) - law;
         sum += (fs[i] - law) * (fs[i] - law) / (by_p * by_p + by_l * by_l + floorOf(f) * floorOf(f));
         ++count;
       }
@@ -190,8 +187,8 @@ Location locate(const Comparison& comparison, const std::vector<Suspect>& suspec
                 const Eigen::VectorXd& residual) {
   StageWeights weights = byLikeness(comparison, suspects, signatures, residual);
   normalise(weights);
-  double &command = weights[indexOf(Stage::command)], &pressure = weights[indexOf(Stage::pressure)], &force = weights[indexOf(Stage::force)],
-         &body = weights[indexOf(Stage::body)], &sensor = weights[indexOf(Stage::sensor)];
+  double &command = weights[indexOf(Stage::command)], &pressure = weights[indexOf(Stage::pressure)],
+         &force = weights[indexOf(Stage::force)], &body = weights[indexOf(Stage::body)], &sensor = weights[indexOf(Stage::sensor)];
   std::vector<std::string> reasons;
   if (allPressuresMeasured(comparison.plant())) {
     const double ratio = ratioOf(comparison, residual, "pressure_").value_or(1);
@@ -203,8 +200,9 @@ Location locate(const Comparison& comparison, const std::vector<Suspect>& suspec
       reasons.push_back("measured pressures are as predicted, so the gap arises behind the pressure stage");
     } else if (before > 0.1 && after < 0.5 * before) {
       for (double* weight : {&force, &body, &sensor}) *weight *= hardly;
-      reasons.push_back(fmt::format("with the measured pressures in place of the simulated ones {:.0f} % of the log gap of the motion vanishes",
-                                    100 * (1 - after / before)));
+      reasons.push_back(
+          fmt::format("with the measured pressures in place of the simulated ones {:.0f} % of the log gap of the motion vanishes",
+                      100 * (1 - after / before)));
     } else if (before > 0.1) {
       reasons.push_back("pressures differ from the predicted ones, but most of the motion's gap stays when they are put in their place");
     }
@@ -215,10 +213,12 @@ Location locate(const Comparison& comparison, const std::vector<Suspect>& suspec
       reasons.push_back("tensions follow the force law at the measured pressures and lengths");
     } else if (*ratio > disagrees) {
       body *= hardly;
-      reasons.push_back(fmt::format("tensions differ from the force law at the measured pressures and lengths by {:.1f} times the noise", *ratio));
+      reasons.push_back(
+          fmt::format("tensions differ from the force law at the measured pressures and lengths by {:.1f} times the noise", *ratio));
     }
   }
-  if (reasons.empty()) reasons.push_back("too few signals for substitution: shares say how much typical disturbances of each stage resemble the gap");
+  if (reasons.empty())
+    reasons.push_back("too few signals for substitution: shares say how much typical disturbances of each stage resemble the gap");
   normalise(weights);
 
   Location location;

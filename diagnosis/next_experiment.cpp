@@ -37,13 +37,16 @@ std::vector<Excitation> bank() {
       {"slow reversals", "loops that do not depend on speed stay, those that do vanish",
        [](double t, int m) { return 0.45 + sign(m) * 0.3 * triangle(t, 6); }},
       {"three speeds", "the same path at three speeds separates what depends on speed",
-       [](double t, int m) { return 0.45 + sign(m) * 0.3 * triangle(t, t < 6 ? 6 : t < 9 ? 1.5 : 0.5); }},
+       [](double t, int m) {
+         return 0.45 + sign(m) * 0.3 * triangle(t, t < 6 ? 6 : t < 9 ? 1.5 : 0.5);
+       }},
       {"steps of two sizes", "a rate limit shows at large steps only, a lag at all",
        [](double t, int m) { return 0.45 + sign(m) * (t < 6 ? 0.08 : 0.35) * (std::fmod(t, 3) < 1.5 ? 1 : -1); }},
-      {"co-contraction", "pressure changes while the pose hardly does",
-       [](double t, int) { return 0.45 + 0.35 * triangle(t, 6); }},
+      {"co-contraction", "pressure changes while the pose hardly does", [](double t, int) { return 0.45 + 0.35 * triangle(t, 6); }},
       {"vent and hold", "what creeps or leaks goes on while the command rests",
-       [](double t, int m) { return t < 1 ? 0.5 : t < 6 ? (m % 2 == 0 ? 0.0 : 0.8) : (m % 2 == 0 ? 0.8 : 0.0); }},
+       [](double t, int m) { return t < 1   ? 0.5
+                                    : t < 6 ? (m % 2 == 0 ? 0.0 : 0.8)
+                                            : (m % 2 == 0 ? 0.8 : 0.0); }},
       {"one muscle at a time", "what one muscle's command does to the others' signals",
        [](double t, int m) { return 0.4 + (static_cast<int>(t / 2) % 2 == m % 2 ? 0.3 * std::sin(std::numbers::pi * t) : 0.0); }},
   };

@@ -27,9 +27,11 @@ void requireDiagnosable(const std::vector<Recording>& recordings) {
     if (recording.info.robot != first.info.robot)
       throw BadParameter("robot of " + recording.file, recording.info.robot, fmt::format("be {}, as in {}", first.info.robot, first.file));
     if (recording.info.robot_parameters != first.info.robot_parameters)
-      throw BadParameter("robot_parameters of " + recording.file, "others", "be those of " + first.file + ": one plant is diagnosed at a time");
+      throw BadParameter("robot_parameters of " + recording.file, "others",
+                         "be those of " + first.file + ": one plant is diagnosed at a time");
     if (recording.muscleCount() == 0)
-      throw BadParameter("commands of " + recording.file, "none", "be columns command_0, command_1, ...: without them nothing can be simulated");
+      throw BadParameter("commands of " + recording.file, "none",
+                         "be columns command_0, command_1, ...: without them nothing can be simulated");
     if (static_cast<int>(recording.time_s.size()) < fewest_rows)
       throw BadParameter("number of rows of " + recording.file, fmt::format("{}", recording.time_s.size()),
                          fmt::format("be at least {}", fewest_rows));
@@ -89,7 +91,8 @@ void Plant::compareSignals() {
     }
   }
   if (signals_.empty())
-    throw BadParameter("signals of " + recordings_.front().file, "only commands", "include one that the model also has, for example length_0_mm");
+    throw BadParameter("signals of " + recordings_.front().file, "only commands",
+                       "include one that the model also has, for example length_0_mm");
 }
 
 const std::vector<double>& Plant::measured(int recording, int signal) const {

@@ -57,7 +57,8 @@ std::string where(const Diagnosis& d) {
   std::vector<Bar> all;
   for (const char* stage : {"command", "pressure", "force", "body", "sensor"})
     for (const Place& place : d.where)
-      if (place.stage == stage) all.push_back({place.stage + " (" + place.component + ")", place.share, fmt::format("{:.0f} %", 100 * place.share)});
+      if (place.stage == stage)
+        all.push_back({place.stage + " (" + place.component + ")", place.share, fmt::format("{:.0f} %", 100 * place.share)});
   return heading("Where") + paragraph("A sample goes from command to pressure, force, body and sensor. " + whereSentence(d) + ".") +
          bars("Shares of the stages", all, 1) + paragraph("How this was told: " + d.where_method + ".");
 }
@@ -68,7 +69,8 @@ std::string which(const Diagnosis& d) {
   for (const FoundEffect& effect : d.effects) {
     std::string parameters;
     for (const auto& [name, estimate] : effect.parameters)
-      parameters += fmt::format("{}{} = {:.4g} ({:.4g} to {:.4g})", parameters.empty() ? "" : "<br>", name, estimate.value, estimate.low, estimate.high);
+      parameters += fmt::format("{}{} = {:.4g} ({:.4g} to {:.4g})", parameters.empty() ? "" : "<br>", name, estimate.value, estimate.low,
+                                estimate.high);
     rows += fmt::format("<tr><td><code>{}</code></td><td class=number>{:.1f} %</td><td>{}</td><td class=number>{:.1f} %</td></tr>\n",
                         escapedXml(effect.label()), 100 * effect.probability, parameters, effect.shrink_percent);
   }
@@ -94,7 +96,8 @@ std::string tracePlot(const Trace& trace) {
     svg.line({box.left, value_axis.pixel(tick)}, {box.right(), value_axis.pixel(tick)}, "#e5e5e5", 1);
     svg.text({box.left - 6, value_axis.pixel(tick) + 4}, value_axis.label(tick), {12, SvgAnchor::end});
   }
-  for (const double tick : time_axis.ticks()) svg.text({time_axis.pixel(tick), box.bottom() + 16}, time_axis.label(tick), {12, SvgAnchor::middle});
+  for (const double tick : time_axis.ticks())
+    svg.text({time_axis.pixel(tick), box.bottom() + 16}, time_axis.label(tick), {12, SvgAnchor::middle});
   svg.text({0.5 * (box.left + box.right()), height - 8}, "time, s", {12, SvgAnchor::middle});
   svg.frame(box, "#999999");
   const Color measured{0.1, 0.1, 0.1, "black"}, before{0.85, 0.35, 0.1, "orange"}, after{0.1, 0.45, 0.8, "blue"};
@@ -121,25 +124,28 @@ std::string signalTable(const Diagnosis& d) {
   std::string rows;
   for (const auto& [name, before] : d.before.per_signal) {
     const auto after = d.after.per_signal.find(name);
-    rows += fmt::format("<tr><td><code>{}</code></td><td class=number>{:.3g}</td><td class=number>{:.3g}</td><td class=number>{:.3g}</td></tr>\n", name,
-                        before.rmse, after == d.after.per_signal.end() ? before.rmse : after->second.rmse, before.noise_floor);
+    rows += fmt::format(
+        "<tr><td><code>{}</code></td><td class=number>{:.3g}</td><td class=number>{:.3g}</td><td class=number>{:.3g}</td></tr>\n", name,
+        before.rmse, after == d.after.per_signal.end() ? before.rmse : after->second.rmse, before.noise_floor);
   }
-  return "<div class=scroll><table><tr><th>signal</th><th class=number>RMSE before</th><th class=number>RMSE after</th><th class=number>noise floor</th></tr>\n" +
+  return "<div class=scroll><table><tr><th>signal</th><th class=number>RMSE before</th><th class=number>RMSE after</th><th "
+         "class=number>noise floor</th></tr>\n" +
          rows + "</table></div>\n";
 }
 
 std::string howFar(const Diagnosis& d) {
   std::string text = heading("How far") + paragraph("Measured on " + d.held_out + ".");
   if (!d.chosen.empty())
-    text += bars("Shrink of the gap",
-                 {{"nominal refit", d.nominal_refit_shrink_percent, fmt::format("{:.1f} %", d.nominal_refit_shrink_percent)},
-                  {"sham", d.sham_shrink_percent, fmt::format("{:.1f} %", d.sham_shrink_percent)},
-                  {"the effect", d.shrink_percent, fmt::format("{:.1f} %", d.shrink_percent)}},
-                 100) +
-            paragraph(fmt::format(
-                "Normalised gap before {:.3g}, after {:.3g}; {:.1f} % are left. The nominal refit re-tunes the model's own numbers without any "
-                "effect; the sham is a disturbance without physical meaning with as many parameters.",
-                d.before.normalised, d.after.normalised, d.unexplained_percent));
+    text +=
+        bars("Shrink of the gap",
+             {{"nominal refit", d.nominal_refit_shrink_percent, fmt::format("{:.1f} %", d.nominal_refit_shrink_percent)},
+              {"sham", d.sham_shrink_percent, fmt::format("{:.1f} %", d.sham_shrink_percent)},
+              {"the effect", d.shrink_percent, fmt::format("{:.1f} %", d.shrink_percent)}},
+             100) +
+        paragraph(fmt::format(
+            "Normalised gap before {:.3g}, after {:.3g}; {:.1f} % are left. The nominal refit re-tunes the model's own numbers without any "
+            "effect; the sham is a disturbance without physical meaning with as many parameters.",
+            d.before.normalised, d.after.normalised, d.unexplained_percent));
   text += signalTable(d);
   for (const Trace& trace : d.traces) text += tracePlot(trace);
   return text;
@@ -148,17 +154,19 @@ std::string howFar(const Diagnosis& d) {
 std::string whatElse(const Diagnosis& d) {
   std::string text;
   if (!d.next_experiment.commands.empty())
-    text += heading("Next experiment") +
-            paragraph(fmt::format("To tell {} apart, play the commands in next.csv: {}.", fmt::join(d.next_experiment.separates, ", "), d.next_experiment.why));
+    text += heading("Next experiment") + paragraph(fmt::format("To tell {} apart, play the commands in next.csv: {}.",
+                                                               fmt::join(d.next_experiment.separates, ", "), d.next_experiment.why));
   if (!d.not_excited.empty())
-    text += heading("Not excited") + paragraph(fmt::format("These recordings could not have shown: {}. They may be present.", fmt::join(d.not_excited, ", ")));
+    text += heading("Not excited") +
+            paragraph(fmt::format("These recordings could not have shown: {}. They may be present.", fmt::join(d.not_excited, ", ")));
   if (!d.chosen.empty())
     text += heading("Use it") +
-            "<p><code>musclesim replay NEW.csv --effects effects.json</code> and <code>musclesim --effects effects.json</code> run the model with what "
+            "<p><code>musclesim replay NEW.csv --effects effects.json</code> and <code>musclesim --effects effects.json</code> run the "
+            "model with what "
             "was found.</p>\n";
   text += heading("How it was computed") +
-          paragraph(fmt::format("musclesim {}; robot {}; recordings {}; {} simulations of {:.0f} s in all, {:.0f} s on the clock.", MUSCLESIM_VERSION, d.robot,
-                                fmt::join(d.recordings, ", "), d.simulation_count, d.simulated_s, d.wall_s));
+          paragraph(fmt::format("musclesim {}; robot {}; recordings {}; {} simulations of {:.0f} s in all, {:.0f} s on the clock.",
+                                MUSCLESIM_VERSION, d.robot, fmt::join(d.recordings, ", "), d.simulation_count, d.simulated_s, d.wall_s));
   for (const std::string& note : d.notes) text += paragraph("Note: " + note + ".");
   return text;
 }
@@ -166,7 +174,8 @@ std::string whatElse(const Diagnosis& d) {
 }  // namespace
 
 std::string diagnosisReport(const Diagnosis& d) {
-  return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">"
+  return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+         "content=\"width=device-width,initial-scale=1\">"
          "<title>Diagnosis of the sim-to-real gap</title><style>" +
          std::string(style) + "</style></head><body>\n<h1>Diagnosis of the sim-to-real gap</h1>\n" +
          (d.partial ? paragraph("Interrupted: this page holds only what was known by then.") : "") + "<p class=verdict>" +

@@ -32,12 +32,13 @@ std::string verdictSentence(const Diagnosis& d) {
     case Verdict::unexplained: {
       std::string text = "There is a gap that I cannot explain";
       if (!d.effects.empty())
-        text += fmt::format(": the best candidate, {}, has a probability of {:.0f} %", d.effects.front().label(), 100 * d.effects.front().probability);
+        text += fmt::format(": the best candidate, {}, has a probability of {:.0f} %", d.effects.front().label(),
+                            100 * d.effects.front().probability);
       return text + ".";
     }
     case Verdict::effects_found: {
-      std::string text = fmt::format("Adding {} removes {:.0f} % of the gap on data it had not seen ({:.0f} to {:.0f})", fmt::join(d.chosen, " and "),
-                                     d.shrink_percent, d.shrink_low_percent, d.shrink_high_percent);
+      std::string text = fmt::format("Adding {} removes {:.0f} % of the gap on data it had not seen ({:.0f} to {:.0f})",
+                                     fmt::join(d.chosen, " and "), d.shrink_percent, d.shrink_low_percent, d.shrink_high_percent);
       std::vector<std::string> others;
       for (const std::string& label : d.ambiguity_set)
         if (std::ranges::find(d.chosen, label) == d.chosen.end()) others.push_back(label);

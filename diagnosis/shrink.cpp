@@ -84,7 +84,8 @@ Estimate shrinkInterval(const Comparison& held_out, const Eigen::VectorXd& befor
   for (int draw = 0; draw < draw_count; ++draw) {
     std::vector<const Block*> chosen;
     for (std::size_t i = 0; i < blocks.size(); ++i)
-      chosen.push_back(&blocks[std::min(blocks.size() - 1, static_cast<std::size_t>(random.uniform() * static_cast<double>(blocks.size())))]);
+      chosen.push_back(
+          &blocks[std::min(blocks.size() - 1, static_cast<std::size_t>(random.uniform() * static_cast<double>(blocks.size())))]);
     draws.push_back(shrinkOf(held_out, chosen));
   }
   std::ranges::sort(draws);
@@ -117,13 +118,13 @@ Eigen::VectorXd shamResidual(const Comparison& fitted, const Comparison& held_ou
                              const OnSimulation& on_simulation) {
   RandomStream random(seed, "diagnosis.sham");
   std::vector<Sine> sines;
-  for (int i = 0; i < parameter_count; ++i)
-    sines.push_back({0.1 + 1.9 * random.uniform(), 2 * std::numbers::pi * random.uniform()});
+  for (int i = 0; i < parameter_count; ++i) sines.push_back({0.1 + 1.9 * random.uniform(), 2 * std::numbers::pi * random.uniform()});
   auto predictedOn = [&](const Comparison& comparison, const Eigen::VectorXd& amplitude) {
     std::vector<Prediction> predictions;
     for (const Stretch& stretch : comparison.stretches()) {
       const Recording& recording = comparison.plant().recordings()[static_cast<std::size_t>(stretch.recording)];
-      predictions.push_back(comparison.plant().predict(stretch.recording, Model{}, disturbed(recording, sines, amplitude), stretch.end_row));
+      predictions.push_back(
+          comparison.plant().predict(stretch.recording, Model{}, disturbed(recording, sines, amplitude), stretch.end_row));
     }
     return comparison.predicted(predictions);
   };

@@ -1,5 +1,6 @@
 #include "suspect.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 

@@ -17,6 +17,7 @@ using Action = std::function<int()>;
 /// `run`, also the command without a name: the options are added to both.
 Action addRun(CLI::App& app, ModelOptions& model);
 Action addReplay(CLI::App& command, ModelOptions& model);
+Action addDiagnose(CLI::App& command, ModelOptions& model);
 /// `effects`: the catalogue of effects.
 Action addEffects(CLI::App& command);
 /// `experiment`: the load frame of the paper in the simulator.

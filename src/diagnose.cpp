@@ -42,11 +42,11 @@ std::string scheduleText(const Experiment& experiment) {
 void writeAll(const Diagnosis& diagnosis, const std::filesystem::path& folder, const DiagnoseArguments& arguments) {
   std::filesystem::create_directories(folder);
   const std::string json = diagnosisJson(diagnosis);
-  writeFile((folder / "diagnosis.json").string(), json);
-  if (arguments.json) writeFile(*arguments.json, json);
-  writeFile((folder / "report.html").string(), diagnosisReport(diagnosis));
+  replaceFile((folder / "diagnosis.json").string(), json);
+  if (arguments.json) replaceFile(*arguments.json, json);
+  replaceFile((folder / "report.html").string(), diagnosisReport(diagnosis));
   writeEffects(diagnosis.chosen_effects, (folder / "effects.json").string());
-  if (!diagnosis.next_experiment.commands.empty()) writeFile((folder / "next.csv").string(), scheduleText(diagnosis.next_experiment));
+  if (!diagnosis.next_experiment.commands.empty()) replaceFile((folder / "next.csv").string(), scheduleText(diagnosis.next_experiment));
 }
 
 int diagnoseCommand(const ModelOptions& model, const DiagnoseArguments& arguments) {
@@ -66,7 +66,6 @@ int diagnoseCommand(const ModelOptions& model, const DiagnoseArguments& argument
   PhaseProgress progress(model.quiet);
   options.progress = [&](const DiagnosisProgress& now) { progress.show(now.phase, now.done, now.expected); };
   const Diagnosis diagnosis = diagnose(std::move(recordings), options);
-  progress.end();
   const std::filesystem::path folder = folderFor(arguments);
   writeAll(diagnosis, folder, arguments);
   if (!model.quiet) fmt::print("{}report    {}\n", diagnosisSummary(diagnosis), (folder / "report.html").string());
@@ -77,16 +76,19 @@ int diagnoseCommand(const ModelOptions& model, const DiagnoseArguments& argument
 
 Action addDiagnose(CLI::App& command, ModelOptions& model) {
   auto arguments = std::make_shared<DiagnoseArguments>();
-  command.add_option("recordings", arguments->recordings, "Recordings of one plant; with several, the last is only used to measure the result")
+  command
+      .add_option("recordings", arguments->recordings, "Recordings of one plant; with several, the last is only used to measure the result")
       ->required();
   command.add_option("--out", arguments->out, "Folder for diagnosis.json, report.html, effects.json (default: RECORDING-diagnosis)");
-  command.add_option("--jobs", arguments->jobs, "Threads (default: one per core); the answer does not depend on it")->check(CLI::Range(1, 1024));
+  command.add_option("--jobs", arguments->jobs, "Threads (default: one per core); the answer does not depend on it")
+      ->check(CLI::Range(1, 1024));
   command.add_option("--candidates", arguments->candidates, "Only these effects, by id")->delimiter(',');
   command.add_option("--exclude", arguments->exclude, "All effects but these")->delimiter(',');
   command.add_option("--max-effects", arguments->max_effects, "Effects at once (default 2)")->check(CLI::Range(0, 2));
-  command.add_option("--json-file", arguments->json, "Write diagnosis.json also to FILE");
   command.add_option("--ignore-columns", arguments->ignore_columns, "Columns to skip, separated by commas")->delimiter(',');
   addModelOptions(command, model);
+  command.remove_option(command.get_option("--json"));
+  command.add_option("--json", arguments->json, "Write diagnosis.json also to FILE");
   return [&model, arguments] { return diagnoseCommand(model, *arguments); };
 }
 

@@ -5,6 +5,8 @@
 #include <exception>
 #include <filesystem>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "commands.h"
 #include "interrupt.h"
@@ -40,18 +42,21 @@ int parseAndRun(int argument_count, char** arguments) {
 
   ModelOptions model;
   const program::Action run = addRun(app, model);
-  CLI::App* replay_command = app.add_subcommand("replay", "Plays a recording's commands through the model and compares");
-  const program::Action replay = addReplay(*replay_command, model);
-  CLI::App* effects_command = app.add_subcommand("effects", "Lists the effects that a clean model leaves out, or describes one");
-  const program::Action effects = addEffects(*effects_command);
-  CLI::App* fit_command = app.add_subcommand("fit", "Fits force laws to measured static points");
-  const program::Action fit = addFit(*fit_command);
-  CLI::App* experiment_command = app.add_subcommand("experiment", "The paper's load-frame experiment in the simulator");
-  const program::Action experiment = addExperiment(*experiment_command, model);
-  CLI::App* bench_command = app.add_subcommand("bench", "Measures r(n), CPU time over simulated time, for all steppers and muscle models");
-  const program::Action bench = addBench(*bench_command, model);
-  for (CLI::App* command : {&app, replay_command, effects_command, fit_command, experiment_command, bench_command})
-    refuseEmptyValues(*command);
+  std::vector<std::pair<CLI::App*, program::Action>> commands;
+  auto add = [&](const std::string& name, const std::string& description, auto addTo) {
+    CLI::App* command = app.add_subcommand(name, description);
+    commands.emplace_back(command, addTo(*command));
+  };
+  add("replay", "Plays a recording's commands through the model and compares", [&](CLI::App& command) { return addReplay(command, model); });
+  add("effects", "Lists the effects that a clean model leaves out, or describes one", addEffects);
+  add("fit", "Fits force laws to measured static points", addFit);
+  add("experiment", "The paper's load-frame experiment in the simulator", [&](CLI::App& command) { return addExperiment(command, model); });
+  add("bench", "Measures r(n), CPU time over simulated time, for all steppers and muscle models",
+      [&](CLI::App& command) { return addBench(command, model); });
+  add("diagnose", "Says where recordings differ from the model, why, and how far that can be closed",
+      [&](CLI::App& command) { return addDiagnose(command, model); });
+  refuseEmptyValues(app);
+  for (const auto& [command, action] : commands) refuseEmptyValues(*command);
   try {
     app.parse(argument_count, arguments);
   } catch (const CLI::ParseError& error) {
@@ -59,11 +64,9 @@ int parseAndRun(int argument_count, char** arguments) {
     std::fprintf(stderr, "musclesim: error: %s\nmusclesim --help lists the options\n", error.what());
     return bad_usage;
   }
-  if (effects_command->parsed()) return effects();
-  if (fit_command->parsed()) return fit();
-  if (experiment_command->parsed()) return experiment();
-  if (bench_command->parsed()) return bench();
-  return replay_command->parsed() ? replay() : run();
+  for (const auto& [command, action] : commands)
+    if (command->parsed()) return action();
+  return run();
 }
 
 }  // namespace

@@ -58,6 +58,21 @@ std::vector<ActiveEffect> effectsFrom(const ModelOptions& options) {
   return options.effects ? readEffects(*options.effects) : std::vector<ActiveEffect>();
 }
 
+ReplayOptions replayOptionsFrom(const ModelOptions& model) {
+  ReplayOptions options;
+  options.robot = model.robot;
+  options.initial_state = model.initial_state;
+  if (model.physics) options.physics = physicsFromName(*model.physics);
+  options.step_s = model.step_s;
+  options.stepper = stepperFromName(model.stepper);
+  options.substeps = model.substeps.value_or(0);
+  options.plane = model.plane;
+  options.seed = model.seed;
+  options.parameters = parametersFrom(model);
+  options.effects = effectsFrom(model);
+  return options;
+}
+
 void say(const ModelOptions& options, const std::string& message) {
   if (!options.quiet) std::fprintf(stderr, "musclesim: %s\n", message.c_str());
 }

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "musclesim/simulation/simulation.h"
+#include "musclesim/simulation/replay.h"
 
 namespace musclesim::program {
 
@@ -33,6 +33,9 @@ Parameters parametersFrom(const ModelOptions& options);
 
 /// The effects of --effects; none without it.
 std::vector<ActiveEffect> effectsFrom(const ModelOptions& options);
+
+/// All of it, for a recording's plant.
+ReplayOptions replayOptionsFrom(const ModelOptions& options);
 
 /// One line to standard error, unless --quiet.
 void say(const ModelOptions& options, const std::string& message);

@@ -22,29 +22,40 @@ std::string duration(double seconds) {
 
 }  // namespace
 
-Progress::Progress(double duration_s, bool quiet)
-    : duration_s_(duration_s), active_(!quiet && isatty(STDERR_FILENO)), start_(Clock::now()), last_(start_) {}
+ProgressLine::ProgressLine(bool quiet) : active_(!quiet && isatty(STDERR_FILENO)), start_(Clock::now()), last_(start_) {}
 
-Progress::~Progress() {
+ProgressLine::~ProgressLine() {
   if (shown_) std::fputs("\n", stderr);
 }
 
-double Progress::wallS() const {
-  return std::chrono::duration<double>(Clock::now() - start_).count();
+double ProgressLine::wallS() const {
+  return std::max(std::chrono::duration<double>(Clock::now() - start_).count(), 1e-9);
+}
+
+bool ProgressLine::isDue(bool at_end) const {
+  constexpr auto interval = std::chrono::milliseconds(200);
+  return active_ && (at_end || Clock::now() - last_ >= interval);
+}
+
+void ProgressLine::show(const std::string& text) {
+  last_ = Clock::now();
+  std::fprintf(stderr, "\r\033[K%s", text.c_str());
+  std::fflush(stderr);
+  shown_ = true;
 }
 
 void Progress::show(double simulated_s, const std::string& detail) {
-  constexpr auto interval = std::chrono::milliseconds(200);
-  if (!active_ || (Clock::now() - last_ < interval && simulated_s < duration_s_)) return;
-  last_ = Clock::now();
-  const double wall_s = std::max(wallS(), 1e-9);
+  if (!line_.isDue(simulated_s >= duration_s_)) return;
+  const double wall_s = line_.wallS();
   const double left_s = simulated_s > 0 ? wall_s / simulated_s * (duration_s_ - simulated_s) : 0;
-  std::fprintf(stderr, "\r\033[K%s",
-               fmt::format("{:.1f} of {:g} s simulated, {:.3g} x real time, {} left{}{}", simulated_s, duration_s_, simulated_s / wall_s,
-                           duration(left_s), detail.empty() ? "" : "; ", detail)
-                   .c_str());
-  std::fflush(stderr);
-  shown_ = true;
+  line_.show(fmt::format("{:.1f} of {:g} s simulated, {:.3g} x real time, {} left{}{}", simulated_s, duration_s_, simulated_s / wall_s,
+                         duration(left_s), detail.empty() ? "" : "; ", detail));
+}
+
+void PhaseProgress::show(const std::string& phase, long done, long expected) {
+  if (!line_.isDue(false)) return;
+  const double left_s = done > 0 ? line_.wallS() / static_cast<double>(done) * static_cast<double>(expected - done) : 0;
+  line_.show(fmt::format("{}: {} of about {} simulations, about {} left", phase, done, expected, duration(left_s)));
 }
 
 }  // namespace musclesim::program

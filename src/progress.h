@@ -7,21 +7,45 @@
 namespace musclesim::program {
 
 /// Rewrites one line on standard error a few times per second; silent when standard error is not a terminal or when told so.
-class Progress {
+class ProgressLine {
  public:
-  Progress(double duration_s, bool quiet);
-  ~Progress();
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
+  explicit ProgressLine(bool quiet);
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
 
-  /// `detail` is appended to "12.3 of 300 s simulated, 4.1 x real time, 1 min 10 s left".
-  void show(double simulated_s, const std::string& detail);
+  /// Whether a new text would be shown now; the end is always shown.
+  bool isDue(bool at_end) const;
+  void show(const std::string& text);
   double wallS() const;
 
  private:
-  double duration_s_;
   bool active_, shown_ = false;
   std::chrono::steady_clock::time_point start_, last_;
+};
+
+/// Progress of a run.
+class Progress {
+ public:
+  Progress(double duration_s, bool quiet) : duration_s_(duration_s), line_(quiet) {}
+
+  /// `detail` is appended to "12.3 of 300 s simulated, 4.1 x real time, 1 min 10 s left".
+  void show(double simulated_s, const std::string& detail);
+  double wallS() const { return line_.wallS(); }
+
+ private:
+  double duration_s_;
+  ProgressLine line_;
+};
+
+/// Progress of work in phases that counts simulations.
+class PhaseProgress {
+ public:
+  explicit PhaseProgress(bool quiet) : line_(quiet) {}
+  void show(const std::string& phase, long done, long expected);
+
+ private:
+  ProgressLine line_;
 };
 
 }  // namespace musclesim::program

@@ -18,21 +18,6 @@ struct ReplayArguments {
   std::vector<std::string> ignore_columns;
 };
 
-ReplayOptions replayOptions(const ModelOptions& model) {
-  ReplayOptions options;
-  options.robot = model.robot;
-  options.initial_state = model.initial_state;
-  if (model.physics) options.physics = physicsFromName(*model.physics);
-  options.step_s = model.step_s;
-  options.stepper = stepperFromName(model.stepper);
-  options.substeps = model.substeps.value_or(0);
-  options.plane = model.plane;
-  options.seed = model.seed;
-  options.parameters = parametersFrom(model);
-  options.effects = effectsFrom(model);
-  return options;
-}
-
 std::string unitOf(const std::string& signal) {
   const auto underscore = signal.rfind('_');
   const std::string tail = signal.substr(underscore + 1);
@@ -63,7 +48,7 @@ nlohmann::json verdictOf(const ReplayResult& result, const ReplayArguments& argu
 int replay(const ModelOptions& model, const ReplayArguments& arguments) {
   const Recording recording = readRecording(arguments.recording, {arguments.ignore_columns});
   for (const auto& note : recording.notes) say(model, note);
-  const ReplayResult result = replayRecording(recording, replayOptions(model));
+  const ReplayResult result = replayRecording(recording, replayOptionsFrom(model));
   if (arguments.out) writeRecording(result.simulated, *arguments.out);
   printTable(result);
   if (result.divergence) std::fprintf(stderr, "musclesim: error: %s\n", result.divergence->c_str());

@@ -22,14 +22,14 @@ struct DiagnosisProgress {
 };
 
 struct DiagnosisOptions {
-  ReplayOptions model;                   ///< the simulator as the user has it
-  std::vector<std::string> candidates;   ///< ids of effects to consider; empty: the whole catalogue
-  std::vector<std::string> exclude;      ///< ids not to consider
-  int max_effects = 2;                   ///< how many effects an explanation may have, 0..3
-  int job_count = 0;                     ///< threads; 0: one per core. The answer does not depend on it
-  std::uint64_t seed = 1;                ///< of the bootstrap and the sham
+  ReplayOptions model;                                     ///< the simulator as the user has it
+  std::vector<std::string> candidates;                     ///< ids of effects to consider; empty: the whole catalogue
+  std::vector<std::string> exclude;                        ///< ids not to consider
+  int max_effects = 2;                                     ///< how many effects an explanation may have, 0..3
+  int job_count = 0;                                       ///< threads; 0: one per core. The answer does not depend on it
+  std::uint64_t seed = 1;                                  ///< of the bootstrap and the sham
   std::function<void(const DiagnosisProgress&)> progress;  ///< called from one thread at a time
-  std::function<bool()> interrupted;     ///< true: stop soon and return what is known
+  std::function<bool()> interrupted;                       ///< true: stop soon and return what is known
 };
 
 /// `no_gap`: nothing beyond the noise floor; `effects_found`; `unexplained`: a gap that no effect of the catalogue removes;
