@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "musclesim/error.h"
-#include "musclesim/robot/force_law.h"
+#include "musclesim/robot/chou_hannaford.h"
 
 namespace musclesim {
 
