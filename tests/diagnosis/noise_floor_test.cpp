@@ -1,0 +1,64 @@
+#include "diagnosis/noise_floor.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "musclesim/random.h"
+
+namespace musclesim {
+namespace {
+
+constexpr double std_mm = 0.2;
+
+/// A slow wave with normal noise, 20 s at 100 Hz.
+Recording noisyWave(std::uint64_t seed, double command = 0.5) {
+  RandomStream random(seed, "noise_floor_test");
+  Recording recording;
+  recording.info.robot = "rig";
+  recording.signals = {{"command_0", {}}, {"length_0_mm", {}}};
+  for (int row = 0; row < 2000; ++row) {
+    recording.time_s.push_back(0.01 * row);
+    recording.signals[0].values.push_back(command);
+    recording.signals[1].values.push_back(200 + 20 * std::sin(0.01 * row) + std_mm * random.normal());
+  }
+  return recording;
+}
+
+TEST(NoiseFloor, ComesFromRepeatsFirst) {
+  std::vector<Recording> repeats = {noisyWave(1), noisyWave(2)};
+  repeats[0].info.noise_std["length_0_mm"] = 5;
+  const NoiseFloor floor = noiseFloor(repeats, "length_0_mm");
+  EXPECT_EQ(floor.source, NoiseFloor::Source::repeats);
+  EXPECT_NEAR(floor.value, std_mm, 0.05 * std_mm);
+}
+
+TEST(NoiseFloor, ThenFromTheSidecar) {
+  std::vector<Recording> recordings = {noisyWave(1, 0.4), noisyWave(2, 0.6)};
+  recordings[0].info.noise_std["length_0_mm"] = 0.25;
+  const NoiseFloor floor = noiseFloor(recordings, "length_0_mm");
+  EXPECT_EQ(floor.source, NoiseFloor::Source::sidecar);
+  EXPECT_EQ(floor.value, 0.25);
+}
+
+TEST(NoiseFloor, ThenFromQuietRows) {
+  const NoiseFloor floor = noiseFloor({noisyWave(3)}, "length_0_mm");
+  EXPECT_EQ(floor.source, NoiseFloor::Source::quiet_rows);
+  EXPECT_NEAR(floor.value, std_mm, 0.1 * std_mm);
+}
+
+TEST(NoiseFloor, IsNeverBelowTheResolutionOfTheValues) {
+  Recording recording = noisyWave(4);
+  for (double& value : recording.signals[1].values) value = 0.5 * std::round(value / 0.5);
+  recording.info.noise_std["length_0_mm"] = 1e-6;
+  EXPECT_NEAR(noiseFloor({recording}, "length_0_mm").value, 0.5 / std::sqrt(12.0), 1e-9);
+}
+
+TEST(LatticeStep, IsTheStepOfRoundedValuesAndZeroForOthers) {
+  EXPECT_DOUBLE_EQ(latticeStep({0.25, 1.5, 0.75, 1.0}), 0.25);
+  EXPECT_EQ(latticeStep({0, 1, std::sqrt(2.0), 3}), 0);
+  EXPECT_EQ(latticeStep({1, 1, 1}), 0);
+}
+
+}  // namespace
+}  // namespace musclesim
