@@ -37,12 +37,14 @@ std::string verdictSentence(const Diagnosis& d) {
       return text + ".";
     }
     case Verdict::effects_found: {
-      std::string text = fmt::format("Adding {} removes {:.0f} % of the gap on data it had not seen ({:.0f} to {:.0f})",
+      std::string text = fmt::format("Adding {} removes {:.1f} % of the gap on data it had not seen ({:.1f} to {:.1f})",
                                      fmt::join(d.chosen, " and "), d.shrink_percent, d.shrink_low_percent, d.shrink_high_percent);
       std::vector<std::string> others;
       for (const std::string& label : d.ambiguity_set)
         if (std::ranges::find(d.chosen, label) == d.chosen.end()) others.push_back(label);
-      if (!others.empty()) text += fmt::format("; {} would explain it as well", fmt::join(others, " or "));
+      if (!others.empty() && d.chosen.size() == 1) text += fmt::format("; {} would explain it as well", fmt::join(others, " or "));
+      if (!others.empty() && d.chosen.size() > 1)
+        text += fmt::format("; in place of {}, {} would do as well", d.chosen.back(), fmt::join(others, " or "));
       return text + ".";
     }
   }
