@@ -64,6 +64,8 @@ bool hasNumbers(const Signal& signal) {
 
 Plant::Plant(std::vector<Recording> recordings, const DiagnosisOptions& options) : recordings_(std::move(recordings)), options_(options) {
   requireDiagnosable(recordings_);
+  for (const auto* ids : {&options.candidates, &options.exclude})
+    for (const std::string& id : *ids) effectInfo(id);  // throws for an unknown one
   split_ = splitOf(recordings_);
   const RecordingInfo& info = recordings_.front().info;
   reference_ = std::make_unique<Simulation>(simulationOptionsFor(info, sidecarPath(recordings_.front().file), options_.model));

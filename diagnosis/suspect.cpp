@@ -219,8 +219,6 @@ std::vector<Suspect> Suspect::variants(const Plant& plant) const {
 }
 
 std::vector<Suspect> suspects(const Plant& plant, const DiagnosisOptions& options) {
-  for (const auto* ids : {&options.candidates, &options.exclude})
-    for (const std::string& id : *ids) effectInfo(id);  // throws for an unknown one
   auto contains = [](const std::vector<std::string>& ids, const std::string& id) { return std::ranges::find(ids, id) != ids.end(); };
   std::vector<Suspect> result;
   for (const EffectInfo& info : effectCatalogue()) {
