@@ -47,7 +47,8 @@ int parseAndRun(int argument_count, char** arguments) {
     CLI::App* command = app.add_subcommand(name, description);
     commands.emplace_back(command, addTo(*command));
   };
-  add("replay", "Plays a recording's commands through the model and compares", [&](CLI::App& command) { return addReplay(command, model); });
+  add("replay", "Plays a recording's commands through the model and compares",
+      [&](CLI::App& command) { return addReplay(command, model); });
   add("effects", "Lists the effects that a clean model leaves out, or describes one", addEffects);
   add("fit", "Fits force laws to measured static points", addFit);
   add("experiment", "The paper's load-frame experiment in the simulator", [&](CLI::App& command) { return addExperiment(command, model); });
