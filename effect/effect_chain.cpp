@@ -159,13 +159,13 @@ void EffectChain::settlePressures(const Action& command) {
   for (std::size_t i = 0; i < muscles_.size(); ++i) muscles_[i].actuator->takePressure(ratios_[i]);
 }
 
-double EffectChain::restingTensionN(int number, double length_mm) {
+double EffectChain::restingTensionN(int muscle, double length_mm) {
   requireMuscles();
-  Muscle& muscle = muscles_[static_cast<std::size_t>(number)];
-  const MuscleInput input = {muscle.actuator->pressure(), length_mm, 0, {clock_s_, 0}};
-  if (muscle.forces.empty()) return muscle.actuator->calculateForce(input.pressure_ratio, length_mm);
-  muscle.forces.settle(input);
-  return muscle.forces.tensionN(input);
+  Muscle& one = muscles_[static_cast<std::size_t>(muscle)];
+  const MuscleInput input = {one.actuator->pressure(), length_mm, 0, {clock_s_, 0}};
+  if (one.forces.empty()) return one.actuator->calculateForce(input.pressure_ratio, length_mm);
+  one.forces.settle(input);
+  return one.forces.tensionN(input);
 }
 
 BodyLoad EffectChain::restingLoad(const Primitive& primitive) {

@@ -129,7 +129,8 @@ std::vector<Pair> pairs() {
   const ActiveEffect lag{"valve_lag", "all", {{"fill_time_constant_s", 0.03}, {"vent_time_constant_s", 0.03}}};
   const Candidate viscous{{"viscous_loss", "all", {}}, {"damping_Ns_per_m"}, {6}, {4}};
   const Candidate oil{{"joint_viscous_friction", "all", {}}, {"damping_Nms_per_rad"}, {0.012}, {0.008}};
-  const ActiveEffect viscous_truth{"viscous_loss", "all", {{"damping_Ns_per_m", 6.0}}};
+  const Candidate thick_oil{{"joint_viscous_friction", "all", {}}, {"damping_Nms_per_rad"}, {0.08}, {0.05}};
+  const ActiveEffect viscous_truth{"viscous_loss", "all", {{"damping_Ns_per_m", 40.0}}};
   const Candidate late_angle{{"sensor_delay", "signal_angle_elbow", {}}, {"delay_s"}, {0.03}, {0.02}};
   const Candidate pressure_gain{{"pressure_calibration", "all", {}}, {"gain"}, {1.0}, {0.05}};
   const Candidate creep{{"creep", "all", {}}, {"amount", "time_constant_s"}, {0.02, 0.05}, {0.02, 0.04}};
@@ -143,17 +144,17 @@ std::vector<Pair> pairs() {
   return {
       {lag, viscous, smooth_wave, rich},
       {lag, oil, smooth_wave, rich},
-      {viscous_truth, oil, smooth_wave, rich},
+      {viscous_truth, thick_oil, smooth_wave, rich},
       {{"transport_delay", "all", {{"delay_s", 0.05}}}, late_angle, rich_angle, rich_pressure},
       {{"force_gain", "all", {{"gain", 0.9}}}, pressure_gain, small_wave, rich_pressure},
-      {{"leak", "all", {{"leak_per_s", 0.05}}}, creep, small_wave, rich_pressure},
-      {{"braid_hysteresis", "all", {{"relative_width", 0.05}}},
+      {{"leak", "all", {{"leak_per_s", 0.05}}}, creep, smooth_wave, rich_pressure},
+      {{"braid_hysteresis", "all", {{"relative_width", 0.03}, {"presliding_mm", 0.05}}},
        dry,
        {elbowWave(0.02), pressure_angle, "elbow, wave of 0.02 at 0.2 Hz, pressure and angle"},
        {coContraction(), pressure_angle, "elbow, co-contraction 0.15 .. 0.75, pressure and angle"}},
       {{"length_offset", "muscle_0", {{"offset_mm", 1.0}}},
        start,
-       {elbowWave(0.02), pressure_angle, "elbow, wave of 0.02 at 0.2 Hz, pressure and angle"},
+       {elbowWave(0.003), pressure_angle, "elbow, wave of 0.003 at 0.2 Hz, pressure and angle"},
        rich},
       {{"payload", "hand", {{"mass_kg", 0.2}}},
        weak,
