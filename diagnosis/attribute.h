@@ -54,9 +54,9 @@ class Attributor {
   Model modelOf(const Explanation& explanation) const;
 
  private:
-  Explanation refit(const std::vector<std::size_t>& suspects, const Eigen::VectorXd& start, int round_count) const;
+  Explanation refit(const std::vector<std::size_t>& members, const Eigen::VectorXd& start, int rounds) const;
   std::vector<std::size_t> survivors(const std::vector<double>& log_misfit, std::size_t count, bool from_every_stage) const;
-  Eigen::VectorXd startOf(std::size_t suspect, const Signature& signature) const;
+  Eigen::VectorXd startOf(std::size_t index, const Signature& signature) const;
   void fitSingles();
   void fitPairs();
   void weigh();
