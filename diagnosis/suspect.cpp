@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "musclesim/error.h"
+#include "musclesim/effect/relevance.h"
 #include "musclesim/robot/chou_hannaford.h"
 
 namespace musclesim {
@@ -26,16 +26,6 @@ std::optional<std::pair<double, double>> quantiles(const Plant& plant, const std
   return std::pair{values[static_cast<std::size_t>(share * last)], values[static_cast<std::size_t>((1 - share) * last)]};
 }
 
-/// Whether a parameter means anything on this component: effects on joints and on points have their own, told apart by the unit.
-bool concerns(const EffectParameter& parameter, const std::string& component, const std::string& signal_unit) {
-  const bool angular = parameter.name.ends_with("_deg") && !parameter.name.starts_with("tilt");
-  const bool linear = parameter.name.ends_with("_mm");
-  if (component.starts_with("joint_")) return !linear && parameter.name != "axis";
-  if (component == "hand") return !angular;
-  if (component.starts_with("signal_")) return !(angular && signal_unit != "deg") && !(linear && signal_unit != "mm");
-  return true;
-}
-
 double spanOf(const Plant& plant, const std::string& signal) {
   const auto ends = quantiles(plant, signal, 0.02);
   return ends ? ends->second - ends->first : 0;
@@ -48,10 +38,9 @@ Suspect::Suspect(EffectInfo info, std::string component, const Plant& plant) : i
   std::string signal;
   for (const ComparedSignal& compared : plant.signals())
     if (Plant::isComponentOf(component_, compared.name)) signal = compared.name;
-  const std::string unit = signal.empty() ? "" : signalUnit(signal);
-  for (std::size_t i = 0; i < info_.parameters.size(); ++i) {
+  for (const std::size_t i : relevantParameters(info_, component_)) {
     const EffectParameter& p = info_.parameters[i];
-    if (!p.choices.empty() || !concerns(p, component_, unit)) continue;
+    if (!p.choices.empty()) continue;
     const bool both_signs = p.usual_low < p.neutral && p.neutral < p.usual_high;
     Coordinate c{i, Scale::linear, 0, 0};
     if (p.shape) {
@@ -224,6 +213,8 @@ std::vector<Suspect> suspects(const Plant& plant, const DiagnosisOptions& option
   for (const EffectInfo& info : effectCatalogue()) {
     if ((!options.candidates.empty() && !contains(options.candidates, info.id)) || contains(options.exclude, info.id)) continue;
     for (const std::string& component : plant.componentsFor(info)) {
+      // A wall stands before one joint or the hand.
+      if (component == "all" && info.acts_on.size() > 1) continue;
       // One sensor fails at a time; clocks and loggers may fail for all at once.
       const bool shared = info.id == "sensor_delay" || info.id == "sensor_dropout";
       if (info.stage == Stage::sensor && (!plant.compares(component) || (component == "all" && !shared))) continue;

@@ -104,7 +104,7 @@ StaticPoints parseStaticPoints(const std::string& text, const std::string& file,
   result.file = file;
   CsvReader reader(text, file);
   const PointColumns columns(reader, file, options);
-  if (const auto ignored = columns.ignored(); !ignored.empty())
+  if (const auto& ignored = columns.ignored(); !ignored.empty())
     result.notes.push_back(fmt::format("columns not used: {}", fmt::join(ignored, ", ")));
   result.points = readRows(reader, columns, result);
   requirePoints(result, options);

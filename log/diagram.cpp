@@ -75,9 +75,10 @@ std::string diagramsSvg(const std::string& title, const std::vector<Diagram>& di
   Svg svg(width, diagrams_top + cell_height * static_cast<double>(row_count), title);
   svg.text({left_margin, 28}, title, {title_size, SvgAnchor::start, title_color, true, false});
   drawLegend(svg, legend, left_margin, heading_height);
-  for (std::size_t i = 0; i < diagrams.size(); ++i)
-    drawDiagram(svg, diagrams[i], cell_width * static_cast<double>(i % columns),
-                diagrams_top + cell_height * static_cast<double>(i / columns));
+  for (std::size_t i = 0; i < diagrams.size(); ++i) {
+    const std::size_t column = i % columns, row = i / columns;
+    drawDiagram(svg, diagrams[i], cell_width * static_cast<double>(column), diagrams_top + cell_height * static_cast<double>(row));
+  }
   return svg.document();
 }
 

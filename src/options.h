@@ -35,7 +35,7 @@ Parameters parametersFrom(const ModelOptions& options);
 std::vector<ActiveEffect> effectsFrom(const ModelOptions& options);
 
 /// All of it, for a recording's plant.
-ReplayOptions replayOptionsFrom(const ModelOptions& options);
+ReplayOptions replayOptionsFrom(const ModelOptions& model);
 
 /// One line to standard error, unless --quiet.
 void say(const ModelOptions& options, const std::string& message);
