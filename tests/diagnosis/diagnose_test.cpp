@@ -1,12 +1,11 @@
 // Plants with a planted effect, noise added; candidates are few to keep the tests short.
-#include "musclesim/diagnosis/diagnosis.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "musclesim/diagnosis/diagnosis.h"
 #include "musclesim/error.h"
 #include "musclesim/random.h"
 #include "support/support.h"
@@ -91,8 +90,8 @@ TEST(Diagnose, DoesNotDependOnTheNumberOfThreads) {
 TEST(Diagnose, JsonHasWhatTheContractAsksFor) {
   const auto json = nlohmann::json::parse(diagnosisJson(diagnose(plant({{"payload", "hand", {{"mass_kg", 0.2}}}}), few({"payload"}))));
   EXPECT_EQ(json.at("format"), "musclesim-diagnosis-1");
-  for (const char* name : {"robot", "recordings", "verdict", "where", "effects", "none_of_these", "explanations", "chosen", "ambiguity_set", "gap",
-                           "unexplained_percent", "partial", "cost"})
+  for (const char* name : {"robot", "recordings", "verdict", "where", "effects", "none_of_these", "explanations", "chosen", "ambiguity_set",
+                           "gap", "unexplained_percent", "partial", "cost"})
     EXPECT_TRUE(json.contains(name)) << name;
   double probability = json.at("none_of_these").get<double>(), share = 0;
   for (const auto& explanation : json.at("explanations")) probability += explanation.at("probability").get<double>();
