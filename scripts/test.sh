@@ -3,6 +3,8 @@
 #
 #     scripts/test.sh          layout of the sources, links of the documents, build, tests, clang-tidy, tests under the address and
 #                              undefined-behaviour sanitizers
+#     scripts/test.sh --no-sanitizers
+#                              all but the sanitizers: what continuous integration has time for
 #     scripts/test.sh --fast   all but clang-tidy and sanitizers
 #
 # A failed phase does not keep the others from running. At the end: a line per phase, then how many tests ran and which failed.
@@ -13,11 +15,13 @@ root=$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")
 source "$root/scripts/common.sh"
 
 fast=false
+sanitizers=true
 case "${1-}" in
   "") ;;
+  --no-sanitizers) sanitizers=false ;;
   --fast) fast=true ;;
   *)
-    say "test: unknown argument '$1'; allowed: --fast"
+    say "test: unknown argument '$1'; allowed: --no-sanitizers, --fast"
     exit 2
     ;;
 esac
@@ -81,7 +85,9 @@ if phase build build_preset dev all; then
   phase tests run_tests || true
   if ! $fast; then
     phase clang-tidy check_sources || true
-    phase sanitizers run_sanitized_tests || true
+    if $sanitizers; then
+      phase sanitizers run_sanitized_tests || true
+    fi
   fi
 fi
 
