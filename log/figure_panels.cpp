@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "musclesim/robot/muscle_colors.h"
 #include "svg.h"
 
 namespace musclesim {
@@ -13,23 +14,8 @@ namespace {
 
 const Color height_color{0.87, 0.05, 0.05, "red"}, target_color{1.0, 0.55, 0.0, "orange"}, activity_color{0.1, 0.6, 0.1, "green"};
 
-/// Colours that differ well, also for colour-blind readers. Source: Okabe and Ito 2008.
-const std::vector<Color> distinct_colors = {
-    {0.0, 0.45, 0.70, "blue"},  {0.84, 0.37, 0.0, "vermilion"}, {0.0, 0.62, 0.45, "bluish green"}, {0.80, 0.47, 0.65, "rose"},
-    {0.90, 0.62, 0.0, "amber"}, {0.34, 0.71, 0.91, "sky blue"}, {0.35, 0.35, 0.35, "dark gray"}};
-
 bool isMeasured(const Signal* signal) {
   return signal && std::any_of(signal->values.begin(), signal->values.end(), [](double value) { return !std::isnan(value); });
-}
-
-Color muscleColor(std::size_t muscle, const std::vector<Color>& muscle_colors) {
-  if (muscle < muscle_colors.size()) return muscle_colors[muscle];
-  const std::size_t further = muscle - muscle_colors.size();
-  const std::size_t times_through_all = further / distinct_colors.size();
-  const double darkness = 1 / (1 + 0.45 * static_cast<double>(times_through_all));
-  Color color = darkened(distinct_colors[further % distinct_colors.size()], darkness);
-  if (further >= distinct_colors.size()) color.name.clear();
-  return color;
 }
 
 /// All measured signals "<quantity>_<i><unit>" in their muscles' colours.
@@ -52,7 +38,7 @@ std::vector<Curve> angleCurves(const Recording& recording) {
     if (!signal.name.starts_with("angle_") || !isMeasured(&signal)) continue;
     const std::string prefix = "angle_", suffix = "_deg";
     const std::string joint = signal.name.substr(prefix.size(), signal.name.size() - prefix.size() - suffix.size());
-    curves.push_back({&signal, distinct_colors[curves.size() % distinct_colors.size()], joint});
+    curves.push_back({&signal, muscleColor(curves.size(), {}), joint});
   }
   return curves;
 }

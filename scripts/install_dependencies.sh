@@ -20,6 +20,12 @@ build_packages=(
   "libtomlplusplus-dev    configuration files"
   "libcli11-dev           command line"
   "libceres-dev           fits of force laws"
+  "libgl-dev              drawing"
+  "libosmesa6-dev         pictures without a display"
+  "libpng-dev             pictures as files"
+  "freeglut3-dev          window"
+  "libx11-dev             whether there is a display"
+  "libimgui-dev           sliders and plots in the window"
 )
 test_packages=(
   "libgtest-dev           test framework"
@@ -27,6 +33,9 @@ test_packages=(
   "clang-tidy             looks for mistakes in the sources"
   "gnuplot-nox            draws figures from recordings"
   "librsvg2-bin           checks that figures can be rendered"
+  "ffmpeg                 videos"
+  "xvfb                   a display for the tests of the window"
+  "xdotool                keys and mouse for the tests of the window"
 )
 
 fail() {

@@ -66,6 +66,7 @@ ReplayResult replayRecording(const Recording& recording, const ReplayOptions& op
   result.simulated.info.program = "musclesim " MUSCLESIM_VERSION;
   result.simulated.info.noise_std = simulation.effects().noise();
   result.simulated.info.active_effects = simulation.effects().active();
+  const ReplayOptions::Watcher watcher = options.watch ? options.watch(simulation) : nullptr;
   for (const auto& name : robot.signalNames()) result.simulated.signals.push_back({name, {}});
   try {
     for (std::size_t row = 0; row < recording.time_s.size(); ++row) {
@@ -76,7 +77,10 @@ ReplayResult replayRecording(const Recording& recording, const ReplayOptions& op
         simulation.start(*result.simulated.info.initial_state, action);
       else
         robot.step(action);
-      appendRow(result.simulated, recording.time_s[row], robot.signalValues(robot.getState()));
+      State reading = robot.getState();
+      reading.time_s = recording.time_s[row];
+      appendRow(result.simulated, recording.time_s[row], robot.signalValues(reading));
+      if (watcher) watcher(reading);
       if (row + 1 < recording.time_s.size()) simulation.advance(recording.time_s[row + 1] - recording.time_s[row]);
     }
   } catch (const Diverged& error) {

@@ -7,6 +7,7 @@
 
 #include "commands.h"
 #include "musclesim/error.h"
+#include "pictures.h"
 
 namespace musclesim::program {
 
@@ -16,6 +17,7 @@ struct ReplayArguments {
   std::string recording;
   std::optional<std::string> out;
   std::vector<std::string> ignore_columns;
+  PictureOptions pictures;
 };
 
 std::string unitOf(const std::string& signal) {
@@ -48,7 +50,15 @@ nlohmann::json verdictOf(const ReplayResult& result, const ReplayArguments& argu
 int replay(const ModelOptions& model, const ReplayArguments& arguments) {
   const Recording recording = readRecording(arguments.recording, {arguments.ignore_columns});
   for (const auto& note : recording.notes) say(model, note);
-  const ReplayResult result = replayRecording(recording, replayOptionsFrom(model));
+  std::unique_ptr<Spectator> spectator;
+  ReplayOptions options = replayOptionsFrom(model);
+  if (arguments.pictures.wanted())
+    options.watch = [&](Simulation& simulation) {
+      spectator = makePictures(arguments.pictures, simulation);
+      return [&](const State& state) { spectator->see(state); };
+    };
+  const ReplayResult result = replayRecording(recording, options);
+  if (spectator) spectator->finish();
   if (arguments.out) writeRecording(result.simulated, *arguments.out);
   printTable(result);
   if (result.divergence) std::fprintf(stderr, "musclesim: error: %s\n", result.divergence->c_str());
@@ -63,6 +73,7 @@ Action addReplay(CLI::App& command, ModelOptions& model) {
   command.add_option("recording", arguments->recording, "Recording, NAME.csv with NAME.json beside it")->required();
   command.add_option("--out", arguments->out, "Write what the model measures, at the recording's times, to SIM.csv");
   command.add_option("--ignore-columns", arguments->ignore_columns, "Columns to skip, separated by commas")->delimiter(',');
+  addPictureOptions(command, arguments->pictures, "Pictures");
   addModelOptions(command, model);
   return [&model, arguments] { return replay(model, *arguments); };
 }

@@ -9,6 +9,7 @@
 #include "musclesim/error.h"
 #include "musclesim/log/figure.h"
 #include "musclesim/log/recorder.h"
+#include "musclesim/robot/muscle_colors.h"
 #include "musclesim/units.h"
 #include "progress.h"
 #include "run_output.h"
@@ -36,11 +37,10 @@ ControllerRequest controllerRequest(Simulation& simulation, const RunOptions& op
   return request;
 }
 
-std::vector<Color> muscleColors(const Robot& robot) {
-  std::vector<Color> colors;
-  for (const Actuator* actuator : robot.actuators())
-    if (!actuator->color().name.empty()) colors.push_back(actuator->color());
-  return colors;
+/// Without --duration: the published 300 s, or as much as makes a video worth looking at.
+double defaultDurationS(const RunOptions& options) {
+  constexpr double batch_s = 300, pictures_s = 20;
+  return options.simple ? batch_s : pictures_s;
 }
 
 /// One run from the first command to the last row.
@@ -50,7 +50,9 @@ class Run {
     simulation_.build(model.robot.value_or("arm"));
     controller_ = &simulation_.control(Controller::make(options.controller, controllerRequest(simulation_, options)));
     simulation_.parameters().requireAllKnown();
+    duration_s_ = options.duration_s.value_or(defaultDurationS(options));
     requireDuration();
+    if (options.pictures.wanted()) spectator_ = makePictures(options.pictures, simulation_);
   }
 
   Simulation& simulation() { return simulation_; }
@@ -66,7 +68,7 @@ class Run {
                             simulation_.internalStepS(), simulation_.stepS(), simulation_.seed()));
     if (!simulation_.stepper().message().empty()) say(model_, simulation_.stepper().message());
     std::optional<Diverged> divergence;
-    Progress progress(options_.duration_s, model_.quiet);
+    Progress progress(duration_s_, model_.quiet);
     try {
       simulation_.start(initial_state, first_action);
       loop(recorder, progress, first_action);
@@ -76,6 +78,7 @@ class Run {
     const nlohmann::json verdict = conclude(divergence, progress.wallS());
     recorder.note("verdict", verdict.dump());
     recorder.close(!divergence && interruptSignal() == 0);
+    if (spectator_) spectator_->finish();
     return report(verdict, csv, drawFigure(csv, recorder.rowCount()), divergence);
   }
 
@@ -99,13 +102,13 @@ class Run {
     if (row_count == 0) return {};
     const fs::path svg = fs::path(csv).replace_extension(".svg");
     const Recording recording = readRecording(csv.string());
-    writeRunFigure(recording, muscleColors(robot()), recording.info.description, svg.string());
+    writeRunFigure(recording, namedMuscleColors(robot()), recording.info.description, svg.string());
     return svg;
   }
 
   void requireDuration() const {
-    if (!(options_.duration_s >= simulation_.stepS() && options_.duration_s <= 1e7))
-      throw BadParameter("duration", fmt::format("{} s", options_.duration_s),
+    if (!(duration_s_ >= simulation_.stepS() && duration_s_ <= 1e7))
+      throw BadParameter("duration", fmt::format("{} s", duration_s_),
                          fmt::format("lie between one step, {} s, and 1e7 s", simulation_.stepS()));
     if (options_.record_interval_s && !(*options_.record_interval_s > 0 && std::isfinite(*options_.record_interval_s)))
       throw BadParameter("record-interval", fmt::format("{} s", *options_.record_interval_s), "be positive and finite");
@@ -134,9 +137,9 @@ class Run {
 
   /// The paper's run loop: state, output, step; with a row of the log before the world moves.
   void loop(Recorder& recorder, Progress& progress, musclesim::Action action) {
-    const long step_count = std::lround(options_.duration_s / simulation_.stepS());
+    const long step_count = std::lround(duration_s_ / simulation_.stepS());
     const long record_every = std::max(1L, std::lround(options_.record_interval_s.value_or(simulation_.stepS()) / simulation_.stepS()));
-    for (long i = 0; i < step_count && interruptSignal() == 0; ++i) {
+    for (long i = 0; i < step_count && goes_on_ && interruptSignal() == 0; ++i) {
       if (i > 0) action = controller_->output(robot().getState());
       robot().step(action);
       record(recorder, progress, i % record_every == 0);
@@ -152,6 +155,7 @@ class Run {
     score_.add(state.time_s, state, *controller_);
     if (due) recorder.append(state.time_s, row(state));
     progress.show(state.time_s, state.hand_mm ? fmt::format("height {:.0f} mm", state.hand_mm->y()) : "");
+    if (spectator_) goes_on_ = spectator_->see(state);
   }
 
   void warnOfGap() {
@@ -206,8 +210,10 @@ class Run {
   const RunOptions& options_;
   Simulation simulation_;
   Controller* controller_ = nullptr;
+  double duration_s_;
+  std::unique_ptr<Spectator> spectator_;  ///< may be null
   Score score_;
-  bool gap_warned_ = false;
+  bool gap_warned_ = false, goes_on_ = true;
 };
 
 int run(const ModelOptions& model, const RunOptions& options) {
@@ -217,7 +223,8 @@ int run(const ModelOptions& model, const RunOptions& options) {
     fmt::print("{}", run.simulation().parameters().toToml());
     return done;
   }
-  if (!options.simple) throw BadParameter("this build has no window: use --simple for a batch run");
+  if (!options.simple && !options.pictures.wanted())
+    throw BadParameter("this build has no window: use --simple for a batch run, --screenshot or --video for pictures");
   return run.execute();
 }
 
@@ -237,7 +244,7 @@ void addOptions(CLI::App& command, RunOptions& options) {
       .add_option("--decision-interval", options.decision_interval_s,
                   "Time between decisions in s (default: 6 in original physics, 3 in si)")
       ->group(group);
-  command.add_option("--duration", options.duration_s, "Simulated time in s")->group(group)->capture_default_str();
+  command.add_option("--duration", options.duration_s, "Simulated time in s (default: 300; 20 with --screenshot or --video)")->group(group);
   command.add_option("--record", options.record, "Recording to write, FILE.csv (default: run.csv in the run's folder)")->group(group);
   command
       .add_option("--record-interval", options.record_interval_s,
@@ -245,6 +252,7 @@ void addOptions(CLI::App& command, RunOptions& options) {
       ->group(group);
   command.add_option("--out", options.out, "Folder of the run (default: log/runs/<date-time>-<task>-<seed>)")->group(group);
   command.add_flag("--print-config", options.print_config, "Print all parameters as TOML and exit")->group(group);
+  addPictureOptions(command, options.pictures, "Pictures");
 }
 
 }  // namespace

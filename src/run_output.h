@@ -9,6 +9,7 @@
 
 #include "musclesim/log/recording.h"
 #include "musclesim/simulation/simulation.h"
+#include "pictures.h"
 
 namespace musclesim::program {
 
@@ -18,8 +19,9 @@ struct RunOptions {
   std::string controller = "asm", task = "height";
   std::vector<double> target_mm;
   std::optional<double> decision_interval_s, record_interval_s;
-  double duration_s = 300;
+  std::optional<double> duration_s;
   std::optional<std::string> record, out;
+  PictureOptions pictures;
 };
 
 /// Where the recording goes: --record, or run.csv in --out, or in a fresh folder log/runs/<date-time>-<task>-<seed>. Makes the folder.

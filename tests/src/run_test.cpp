@@ -146,7 +146,30 @@ TEST_F(RunCommand, DivergenceKeepsTheRecordingAndExitsWith4) {
 }
 
 TEST_F(RunCommand, WithoutADisplayNamesTheWayOut) {
-  expectRefused({}, 2, {"--simple"});
+  expectRefused({}, 2, {"--simple", "--screenshot"});
+}
+
+TEST_F(RunCommand, PicturesAreDrawnWithoutADisplayAndChangeNothing) {
+  ASSERT_EQ(runRig({"--out", "plain"}).status, 0);
+  const ProgramResult drawn = run({"--robot", "rig", "--controller", "hold", "--duration", "0.2", "--out", "drawn", "--screenshot",
+                                   "pictures/rig.png", "--video", "pictures/rig.mp4", "--picture-size", "160x120"});
+  if (drawn.err.find("cannot draw pictures") != std::string::npos || drawn.err.find("need OSMesa") != std::string::npos)
+    GTEST_SKIP() << drawn.err;
+  ASSERT_EQ(drawn.status, 0) << drawn.err;
+  EXPECT_GT(fs::file_size(folder_ / "pictures" / "rig.png"), 300u);
+  EXPECT_TRUE(fs::exists(folder_ / "pictures" / "rig.mp4") || fs::exists(folder_ / "pictures" / "rig-frames" / "000007.png"));
+  EXPECT_EQ(contentOf(folder_ / "plain" / "run.csv"), contentOf(folder_ / "drawn" / "run.csv"));
+  const ProgramResult replayed =
+      run({"replay", "plain/run.csv", "--screenshot", "again.png", "--picture-size", "160x120", "--camera", "20,10,800"});
+  EXPECT_EQ(replayed.status, 0) << replayed.err;
+  EXPECT_GT(fs::file_size(folder_ / "again.png"), 300u);
+}
+
+TEST_F(RunCommand, RefusesPicturesThatCannotBe) {
+  expectRefused({"--screenshot", "a.jpg", "--robot", "rig", "--controller", "hold"}, 2, {"screenshot"});
+  expectRefused({"--video", "a.avi", "--robot", "rig", "--controller", "hold"}, 2, {"video"});
+  expectRefused({"--screenshot", "a.png", "--picture-size", "5x5", "--robot", "rig", "--controller", "hold"}, 2, {"5", "16"});
+  expectRefused({"--video", "a.mp4", "--speed", "-1", "--robot", "rig", "--controller", "hold"}, 2, {"speed"});
 }
 
 TEST_F(RunCommand, RefusesUnknownNames) {

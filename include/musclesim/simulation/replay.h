@@ -1,6 +1,7 @@
 /// Plays a recording's commands through the model and compares what the model measures with what was recorded.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,6 +22,9 @@ struct ReplayOptions {
   std::uint64_t seed = 1;
   Parameters parameters;              ///< wins over the sidecar's robot_parameters
   std::vector<ActiveEffect> effects;  ///< besides the sidecar's active_effects
+  /// Called before the first row with the simulation; what it returns is shown the readings of every row.
+  using Watcher = std::function<void(const State&)>;
+  std::function<Watcher(Simulation&)> watch;
 };
 
 /// Difference of one signal, simulated minus recorded, over the samples where both are numbers.

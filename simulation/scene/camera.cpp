@@ -1,0 +1,71 @@
+#include "camera.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "musclesim/units.h"
+
+namespace musclesim {
+
+namespace {
+
+constexpr float degrees_per_pixel = 0.4F, steepest_deg = 89;
+constexpr float nearest_mm = 50, farthest_mm = 20000;
+constexpr auto rad = static_cast<float>(rad_per_deg);
+
+}  // namespace
+
+void Camera::rotate(float right_px, float down_px) {
+  azimuth_deg = std::remainder(azimuth_deg - degrees_per_pixel * right_px, 360.0F);
+  elevation_deg = std::clamp(elevation_deg + degrees_per_pixel * down_px, -steepest_deg, steepest_deg);
+}
+
+void Camera::zoom(float factor) {
+  distance_mm = std::clamp(distance_mm / factor, nearest_mm, farthest_mm);
+}
+
+void Camera::pan(float right_px, float down_px, float picture_height_px) {
+  const float mm_per_px = 2 * distance_mm * std::tan(field_of_view_deg / 2 * rad) / picture_height_px;
+  const Eigen::Matrix4f axes = view();
+  center_mm += mm_per_px * (down_px * axes.block<1, 3>(1, 0) - right_px * axes.block<1, 3>(0, 0)).transpose();
+}
+
+Eigen::Vector3f Camera::eyeMm() const {
+  const float a = azimuth_deg * rad, e = elevation_deg * rad;
+  return center_mm + distance_mm * Eigen::Vector3f(std::cos(e) * std::sin(a), std::sin(e), std::cos(e) * std::cos(a));
+}
+
+Eigen::Matrix4f Camera::view() const {
+  const Eigen::Vector3f eye = eyeMm();
+  const Eigen::Vector3f back = (eye - center_mm).normalized();
+  const Eigen::Vector3f right = Eigen::Vector3f::UnitY().cross(back).normalized();
+  Eigen::Matrix4f view = Eigen::Matrix4f::Identity();
+  view.block<1, 3>(0, 0) = right.transpose();
+  view.block<1, 3>(1, 0) = back.cross(right).transpose();
+  view.block<1, 3>(2, 0) = back.transpose();
+  view.topRightCorner<3, 1>() = -view.topLeftCorner<3, 3>() * eye;
+  return view;
+}
+
+Eigen::Matrix4f Camera::projection(float aspect_ratio) const {
+  const float f = 1 / std::tan(field_of_view_deg / 2 * rad);
+  const float z_near = distance_mm / 50, z_far = distance_mm * 10 + 5000;
+  Eigen::Matrix4f p = Eigen::Matrix4f::Zero();
+  p(0, 0) = f / aspect_ratio;
+  p(1, 1) = f;
+  p(2, 2) = (z_far + z_near) / (z_near - z_far);
+  p(2, 3) = 2 * z_far * z_near / (z_near - z_far);
+  p(3, 2) = -1;
+  return p;
+}
+
+Camera Camera::framing(const Eigen::Vector3f& low_mm, const Eigen::Vector3f& high_mm) {
+  constexpr float room_ratio = 1.15F;
+  Camera camera;
+  camera.center_mm = (low_mm + high_mm) / 2;
+  camera.distance_mm = room_ratio * (high_mm - low_mm).norm() / 2 / std::sin(field_of_view_deg / 2 * rad);
+  return camera;
+}
+
+}  // namespace musclesim

@@ -1,0 +1,32 @@
+/// Where a scene is looked at from.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace musclesim {
+
+/// Looks at a centre from a point on a sphere around it; y is up.
+struct Camera {
+  Eigen::Vector3f center_mm{-150, 40, 0};
+  float azimuth_deg = -60;   ///< about the vertical; 0 looks along -z, growing to the right
+  float elevation_deg = 8;   ///< above the horizontal, -89 .. 89
+  float distance_mm = 1100;  ///< 50 .. 20000
+
+  static constexpr float field_of_view_deg = 45;  ///< vertical
+
+  /// Drags of the mouse, in pixels.
+  void rotate(float right_px, float down_px);
+  /// Nearer by a factor above 1, farther below.
+  void zoom(float factor);
+  /// Moves the centre in the plane of the picture.
+  void pan(float right_px, float down_px, float picture_height_px);
+
+  Eigen::Vector3f eyeMm() const;
+  Eigen::Matrix4f view() const;
+  Eigen::Matrix4f projection(float aspect_ratio) const;
+
+  /// Shows the whole of a box, with a little room around it.
+  static Camera framing(const Eigen::Vector3f& low_mm, const Eigen::Vector3f& high_mm);
+};
+
+}  // namespace musclesim

@@ -1,0 +1,38 @@
+/// The functions of OpenGL that the scene draws with, found at run time.
+///
+/// A window finds them in the system's OpenGL, an offscreen picture in OSMesa. Both libraries export the same names, so the scene calls
+/// neither by name: both can be used in one process.
+#pragma once
+
+#define GL_GLEXT_PROTOTYPES
+#include <GL/gl.h>
+#include <GL/glext.h>
+
+#include <functional>
+
+namespace musclesim {
+
+// clang-format off
+#define MUSCLESIM_GL_FUNCTIONS(X) \
+  X(AttachShader) X(BindAttribLocation) X(BindBuffer) X(BindFramebuffer) X(BindRenderbuffer) X(BlendFunc) X(BlitFramebuffer) \
+  X(BufferData) X(CheckFramebufferStatus) X(Clear) X(ClearColor) X(CompileShader) X(CreateProgram) X(CreateShader) X(CullFace) \
+  X(DeleteBuffers) X(DeleteFramebuffers) X(DeleteProgram) X(DeleteRenderbuffers) X(DeleteShader) X(DepthMask) X(Disable) \
+  X(DisableVertexAttribArray) X(DrawElements) X(Enable) X(EnableVertexAttribArray) X(Finish) X(FramebufferRenderbuffer) \
+  X(GenBuffers) X(GenFramebuffers) X(GenRenderbuffers) X(GetIntegerv) X(GetProgramInfoLog) X(GetProgramiv) X(GetShaderInfoLog) \
+  X(GetShaderiv) X(GetString) X(GetUniformLocation) X(LinkProgram) X(PixelStorei) X(ReadPixels) \
+  X(RenderbufferStorageMultisample) X(ShaderSource) X(Uniform1f) X(Uniform3f) X(Uniform4f) X(UniformMatrix3fv) \
+  X(UniformMatrix4fv) X(UseProgram) X(VertexAttribPointer) X(Viewport)
+// clang-format on
+
+/// gl.Clear(...) is glClear(...) of the context that the table was filled for.
+struct Gl {
+#define MUSCLESIM_GL_MEMBER(name) decltype(&::gl##name) name = nullptr;
+  MUSCLESIM_GL_FUNCTIONS(MUSCLESIM_GL_MEMBER)
+#undef MUSCLESIM_GL_MEMBER
+
+  using Find = std::function<void*(const char* name)>;
+  /// Throws SceneError naming the first function that is missing: the scene needs OpenGL 3.0.
+  static Gl load(const Find& find);
+};
+
+}  // namespace musclesim

@@ -1,0 +1,52 @@
+/// Draws snapshots of a simulation with OpenGL.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "camera.h"
+#include "gpu.h"
+#include "snapshot.h"
+
+namespace musclesim {
+
+/// How a snapshot is drawn.
+struct SceneStyle {
+  int selected = -1;           ///< the muscle in red; none: -1
+  bool transparent = false;    ///< bones let the muscles behind them through
+  bool color_tension = false;  ///< hoses in the colour of their tension
+  bool frames = false;         ///< axes of joints and hand
+};
+
+/// The colour of a tension, from dark at 0 over blue to yellow at 100 N and more.
+Color tensionColor(double tension_N);
+
+/// Lives in one context of OpenGL and draws there.
+class Scene {
+ public:
+  /// Throws SceneError if this OpenGL cannot draw it.
+  explicit Scene(const Gl& gl);
+  ~Scene();
+
+  void draw(const Snapshot& snapshot, const Camera& camera, const SceneStyle& style, const GpuTarget& target);
+
+ private:
+  struct Item;
+  void drawBackground() const;
+  std::vector<Item> itemsOf(const Snapshot& snapshot, const SceneStyle& style);
+  void addPart(std::vector<Item>& items, const DrawnPart& part, float alpha) const;
+  void addHose(std::vector<Item>& items, const DrawnHose& hose, std::size_t index, const SceneStyle& style);
+  void addCap(std::vector<Item>& items, const std::vector<Eigen::Vector3f>& curve, const DrawnHose& hose) const;
+  void addFrame(std::vector<Item>& items, const DrawnFrame& frame) const;
+  void drawItem(const Item& item, const Eigen::Matrix4f& before) const;
+  void drawFloor(const std::vector<Item>& items, const Camera& camera, float height_mm, float aspect_ratio) const;
+  void drawTarget(const DrawnTarget& target) const;
+
+  const Gl& gl_;
+  GpuProgram solid_, floor_;
+  GpuMesh box_, sphere_, cylinder_, cone_, square_;
+  std::vector<std::unique_ptr<GpuMesh>> tubes_;
+};
+
+}  // namespace musclesim

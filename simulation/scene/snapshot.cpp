@@ -1,0 +1,144 @@
+#include "snapshot.h"
+
+#include <limits>
+
+#include "../../robot/ode_vector.h"
+#include "musclesim/robot/line_of_pull.h"
+#include "musclesim/robot/muscle_colors.h"
+
+namespace musclesim {
+
+namespace {
+
+constexpr float line_radius_mm = 3;  ///< of massless muscles, which have none
+
+Eigen::Matrix4f poseFrom(const Vector& position, const Eigen::Matrix3d& rotation) {
+  Eigen::Matrix4f pose = Eigen::Matrix4f::Identity();
+  pose.topLeftCorner<3, 3>() = rotation.cast<float>();
+  pose.topRightCorner<3, 1>() = position.cast<float>();
+  return pose;
+}
+
+DrawnPart partOf(const Primitive& primitive) {
+  const dGeomID geom = primitive.geom();
+  const dReal* r = dGeomGetRotation(geom);
+  Eigen::Matrix3d rotation;
+  rotation << r[0], r[1], r[2], r[4], r[5], r[6], r[8], r[9], r[10];
+  return {primitive.shape().kind, primitive.shape().size_mm.cast<float>(), poseFrom(fromOde(dGeomGetPosition(geom)), rotation),
+          primitive.color()};
+}
+
+/// The chain's ends lie one radius beyond the first and the last bead.
+std::vector<Eigen::Vector3f> pointsOf(const Actuator& muscle) {
+  std::vector<Eigen::Vector3f> points;
+  if (muscle.line()) {
+    for (const Vector& point : muscle.line()->pointsMm()) points.push_back(point.cast<float>());
+    return points;
+  }
+  const double radius = muscle.settings().bead_radius_mm;
+  const auto along = [](const Link& link) { return (positionOf(link.bead[1]) - positionOf(link.bead[0])).stableNormalized(); };
+  const Link &first = muscle.links().front(), &last = muscle.links().back();
+  points.push_back((positionOf(first.bead[0]) - radius * along(first)).cast<float>());
+  for (const Link& link : muscle.links())
+    for (const dBodyID bead : link.bead) points.push_back(positionOf(bead).cast<float>());
+  points.push_back((positionOf(last.bead[1]) + radius * along(last)).cast<float>());
+  return points;
+}
+
+DrawnHose hoseOf(const Actuator& muscle, const Color& color) {
+  const float radius = muscle.line() ? line_radius_mm : static_cast<float>(muscle.settings().bead_radius_mm);
+  return {pointsOf(muscle), radius, color, muscle.tensionN(), muscle.minimumLengthMm(), muscle.maximumLengthMm()};
+}
+
+std::optional<Vector> anchorOf(const Joint& joint) {
+  dVector3 anchor = {};
+  if (joint.kind() == Joint::Kind::ball)
+    dJointGetBallAnchor(joint.id(), anchor);
+  else if (joint.kind() == Joint::Kind::hinge)
+    dJointGetHingeAnchor(joint.id(), anchor);
+  else if (joint.kind() == Joint::Kind::hinge2)
+    dJointGetHinge2Anchor(joint.id(), anchor);
+  else if (joint.kind() == Joint::Kind::universal)
+    dJointGetUniversalAnchor(joint.id(), anchor);
+  else
+    return std::nullopt;
+  return fromOde(anchor);
+}
+
+/// The joints between bones with the axes of the bone that moves; those of muscles are left out.
+std::vector<DrawnFrame> framesOf(Simulation& simulation) {
+  std::vector<DrawnFrame> frames;
+  for (const auto& body : simulation.bodies()) {
+    for (const auto& joint : simulation.joints()) {
+      if (dJointGetBody(joint->id(), 0) != body->id) continue;
+      if (const auto anchor = anchorOf(*joint)) frames.push_back({joint->name(), poseFrom(*anchor, rotationOf(body->id))});
+    }
+  }
+  const Robot& robot = simulation.robot();
+  if (robot.hand()) frames.push_back({"hand", poseFrom(robot.handMm(), robot.hand()->getRotation())});
+  return frames;
+}
+
+/// The plane of --plane.
+std::optional<float> floorOf(dSpaceID space) {
+  for (int i = 0; i < dSpaceGetNumGeoms(space); ++i) {
+    const dGeomID geom = dSpaceGetGeom(space, i);
+    if (dGeomGetClass(geom) != dPlaneClass) continue;
+    dVector4 plane;
+    dGeomPlaneGetParams(geom, plane);
+    return static_cast<float>(plane[3]);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+SnapshotTaker::SnapshotTaker(Simulation& simulation) : simulation_(simulation) {
+  const std::vector<Color> own = namedMuscleColors(simulation.robot());
+  for (int i = 0; i < simulation.robot().actuatorCount(); ++i) muscle_colors_.push_back(muscleColor(static_cast<std::size_t>(i), own));
+}
+
+/// A height has no place of its own: it is shown where the hand was at first.
+std::optional<DrawnTarget> SnapshotTaker::target(const State& state) {
+  if (!first_hand_mm_) first_hand_mm_ = state.hand_mm;
+  const Controller* controller = simulation_.controller();
+  if (!controller || !controller->targetMm()) return std::nullopt;
+  Vector point = *controller->targetMm();
+  const bool is_height = controller->targetIsHeight();
+  if (is_height && first_hand_mm_) point = {first_hand_mm_->x(), point.y(), first_hand_mm_->z()};
+  return DrawnTarget{point.cast<float>(), is_height};
+}
+
+Snapshot SnapshotTaker::take(const State& state) {
+  Snapshot snapshot;
+  snapshot.state = state;
+  if (const Controller* controller = simulation_.controller()) snapshot.activity = controller->activity();
+  for (const auto& primitive : simulation_.primitives()) snapshot.parts.push_back(partOf(*primitive));
+  const auto& muscles = simulation_.robot().actuators();
+  for (std::size_t i = 0; i < muscles.size(); ++i) snapshot.hoses.push_back(hoseOf(*muscles[i], muscle_colors_[i]));
+  snapshot.frames = framesOf(simulation_);
+  snapshot.target = target(state);
+  snapshot.floor_mm = floorOf(simulation_.space());
+  return snapshot;
+}
+
+Bounds boundsOf(const Snapshot& snapshot) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  Bounds bounds{Eigen::Vector3f::Constant(infinity), Eigen::Vector3f::Constant(-infinity)};
+  const auto add = [&](const Eigen::Vector3f& point, float margin) {
+    bounds.low = bounds.low.cwiseMin((point.array() - margin).matrix());
+    bounds.high = bounds.high.cwiseMax((point.array() + margin).matrix());
+  };
+  for (const DrawnPart& part : snapshot.parts) {
+    const Eigen::Vector3f center = part.pose.topRightCorner<3, 1>();
+    const Eigen::Vector3f axis = part.pose.block<3, 1>(0, 2) * (part.kind == Shape::Kind::capped_cylinder ? part.size_mm.y() / 2 : 0);
+    const float margin = part.kind == Shape::Kind::box ? part.size_mm.norm() / 2 : part.size_mm.x();
+    add(center + axis, margin);
+    add(center - axis, margin);
+  }
+  for (const DrawnHose& hose : snapshot.hoses)
+    for (const auto& point : hose.points_mm) add(point, hose.radius_mm);
+  return bounds;
+}
+
+}  // namespace musclesim

@@ -1,0 +1,75 @@
+/// What there is to draw at one moment of a simulation.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "musclesim/color.h"
+#include "musclesim/robot/primitive.h"
+#include "musclesim/simulation/simulation.h"
+
+namespace musclesim {
+
+/// A bone: its form and where it is.
+struct DrawnPart {
+  Shape::Kind kind;
+  Eigen::Vector3f size_mm;
+  Eigen::Matrix4f pose;  ///< from the part's frame to the world, mm
+  Color color;
+};
+
+/// A muscle: the points its centre line is led by, the attachments first and last.
+struct DrawnHose {
+  std::vector<Eigen::Vector3f> points_mm;
+  float radius_mm;
+  Color color;
+  double tension_N;
+  double minimum_length_mm, maximum_length_mm;
+};
+
+/// A point with axes and a name: joints and the hand.
+struct DrawnFrame {
+  std::string name;
+  Eigen::Matrix4f pose;
+};
+
+struct DrawnTarget {
+  Eigen::Vector3f point_mm;
+  bool is_height;  ///< only the height counts
+};
+
+/// A value, taken between two steps; whoever draws it needs no simulation, and may be another thread.
+struct Snapshot {
+  State state;
+  std::optional<double> activity;
+  std::vector<DrawnPart> parts;
+  std::vector<DrawnHose> hoses;
+  std::vector<DrawnFrame> frames;
+  std::optional<DrawnTarget> target;
+  std::optional<float> floor_mm;  ///< height of the ground plane, if there is one
+};
+
+/// Takes snapshots of one simulation. Nothing in the simulation changes by that, not even a random stream: readings come from the caller.
+class SnapshotTaker {
+ public:
+  explicit SnapshotTaker(Simulation& simulation);
+  /// `state`: the readings of the moment.
+  Snapshot take(const State& state);
+
+ private:
+  std::optional<DrawnTarget> target(const State& state);
+
+  Simulation& simulation_;
+  std::vector<Color> muscle_colors_;
+  std::optional<Vector> first_hand_mm_;
+};
+
+/// A box around everything in a snapshot, mm: least and greatest x, y, z.
+struct Bounds {
+  Eigen::Vector3f low, high;
+};
+Bounds boundsOf(const Snapshot& snapshot);
+
+}  // namespace musclesim

@@ -1,0 +1,130 @@
+#include "video.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <system_error>
+#include <vector>
+
+#include "musclesim/error.h"
+#include "musclesim/log/file.h"
+
+namespace musclesim {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path findInPath(const std::string& program) {
+  const char* path = std::getenv("PATH");
+  const std::string folders = path ? path : "/usr/local/bin:/usr/bin:/bin";
+  for (std::size_t from = 0; from <= folders.size();) {
+    const std::size_t to = std::min(folders.find(':', from), folders.size());
+    const fs::path candidate = fs::path(folders.substr(from, to - from)) / program;
+    if (access(candidate.c_str(), X_OK) == 0 && fs::is_regular_file(candidate)) return candidate;
+    from = to + 1;
+  }
+  return {};
+}
+
+/// Makes sure the file can be made, and that no old one is taken for the new.
+void requireWritable(const std::string& file) {
+  replaceFile(file, "");
+  fs::remove(file);
+}
+
+/// A pipe that ends when its reader does must not end this process.
+class IgnoredPipeSignal {
+ public:
+  IgnoredPipeSignal() : before_(std::signal(SIGPIPE, SIG_IGN)) {}
+  ~IgnoredPipeSignal() { std::signal(SIGPIPE, before_); }
+  IgnoredPipeSignal(const IgnoredPipeSignal&) = delete;
+  IgnoredPipeSignal& operator=(const IgnoredPipeSignal&) = delete;
+
+ private:
+  void (*before_)(int);
+};
+
+}  // namespace
+
+VideoWriter::VideoWriter(const std::string& file, int width, int height, double frames_per_s)
+    : file_(file), result_(file), width_(width), height_(height) {
+  if (fs::path(file).extension() != ".mp4") throw BadParameter("video", file, "end in .mp4");
+  requireWritable(file);
+  startFfmpeg(frames_per_s);
+  if (child_ > 0) return;
+  result_ = fs::path(file).replace_extension().string() + "-frames";
+  std::error_code failure;
+  fs::create_directories(result_, failure);
+  if (failure) throw IoError(result_ + ": cannot be made: " + failure.message());
+}
+
+/// Raw pictures go to ffmpeg's standard input; it is started by a list of arguments, without a shell.
+void VideoWriter::startFfmpeg(double frames_per_s) {
+  const fs::path program = findInPath("ffmpeg");
+  if (program.empty()) return;
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) return;
+  std::vector<std::string> arguments = {"ffmpeg", "-nostdin", "-loglevel", "error", "-y", "-f", "rawvideo", "-pixel_format", "rgb24",
+                                        "-video_size", fmt::format("{}x{}", width_, height_), "-framerate", fmt::format("{}", frames_per_s),
+                                        "-i", "pipe:0",
+                                        // Players want an even size and this form of colours.
+                                        "-vf", "crop=trunc(iw/2)*2:trunc(ih/2)*2", "-codec:v", "libx264", "-preset", "veryfast", "-crf",
+                                        "20", "-pix_fmt", "yuv420p", "-movflags", "+faststart", "file:" + file_};
+  std::vector<char*> pointers;
+  for (std::string& argument : arguments) pointers.push_back(argument.data());
+  pointers.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  const int failure = posix_spawn(&child_, program.c_str(), &actions, nullptr, pointers.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  ::close(ends[0]);
+  pipe_ = ends[1];
+  if (failure == 0) return;
+  ::close(pipe_);
+  pipe_ = -1;
+  child_ = -1;
+}
+
+VideoWriter::~VideoWriter() {
+  try {
+    close();
+  } catch (const Error&) {
+  }
+}
+
+void VideoWriter::add(const Image& frame) {
+  if (frame.width != width_ || frame.height != height_)
+    throw BadParameter("size of a video's frame", fmt::format("{} x {}", frame.width, frame.height),
+                       fmt::format("be that of the first, {} x {}", width_, height_));
+  ++frame_count_;
+  if (child_ <= 0) return writePng(frame, fmt::format("{}/{:06}.png", result_, frame_count_));
+  const IgnoredPipeSignal ignored;
+  const std::string_view bytes(reinterpret_cast<const char*>(frame.rgb.data()), frame.rgb.size());
+  if (writeAll(pipe_, bytes) == bytes.size()) return;
+  waitForFfmpeg();
+  throw IoError(file_ + ": ffmpeg stopped taking frames");
+}
+
+void VideoWriter::waitForFfmpeg() {
+  ::close(pipe_);
+  pipe_ = -1;
+  int status = 0;
+  while (waitpid(child_, &status, 0) < 0 && errno == EINTR) {
+  }
+  child_ = -1;
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) throw IoError(file_ + ": ffmpeg could not make it");
+}
+
+void VideoWriter::close() {
+  if (child_ > 0) waitForFfmpeg();
+}
+
+}  // namespace musclesim

@@ -1,0 +1,30 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "musclesim/error.h"
+#include "pictures.h"
+
+namespace musclesim::program {
+
+void addPictureOptions(CLI::App& command, PictureOptions& options, const std::string& group) {
+  command.add_option("--screenshot", options.screenshot, "Picture of the last state, FILE.png; needs no display")->group(group);
+  command.add_option("--video", options.video, "Video, FILE.mp4, or pictures in FILE-frames without ffmpeg; needs no display")
+      ->group(group);
+  command.add_option("--picture-size", options.size_px, "Width and height in pixels, WxH")->group(group)->delimiter('x')->expected(2);
+  command.add_option("--camera", options.camera, "Azimuth and elevation in degrees, distance in mm: A,E,D")
+      ->group(group)
+      ->delimiter(',')
+      ->expected(3);
+  command.add_option("--speed", options.speed, "Simulated seconds per second of window or video (default 1; 10 in original physics)")
+      ->group(group);
+}
+
+double speedRatio(const PictureOptions& options, const PhysicsSettings& physics) {
+  constexpr double original = 10;
+  const double speed = options.speed.value_or(physics.kind == PhysicsKind::original ? original : 1.0);
+  if (!(speed >= 1e-3 && speed <= 1e4)) throw BadParameter("speed", fmt::format("{}", speed), "lie in 0.001 .. 10000");
+  return speed;
+}
+
+}  // namespace musclesim::program

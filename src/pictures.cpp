@@ -1,0 +1,88 @@
+#include "pictures.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "musclesim/error.h"
+#include "output_folder.h"
+#include "simulation/scene/offscreen.h"
+#include "simulation/scene/video.h"
+#include "view.h"
+
+namespace musclesim::program {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double frames_per_s = 30;
+
+void prepareFile(const std::string& option, const std::string& file, const std::string& extension) {
+  if (fs::path(file).extension() != extension) throw BadParameter(option, file, "end in " + extension);
+  if (fs::path(file).has_parent_path()) makeFolder(fs::path(file).parent_path());
+}
+
+/// Draws what it sees.
+class Pictures final : public Spectator {
+ public:
+  Pictures(const PictureOptions& options, Simulation& simulation)
+      : options_(options),
+        frame_s_(speedRatio(options, simulation.physics()) / frames_per_s),
+        camera_options_(options.camera),
+        robot_name_(simulation.robot().name()),
+        snapshots_(simulation),
+        offscreen_(options.size_px.at(0), options.size_px.at(1)) {
+    if (options_.screenshot) prepareFile("screenshot", *options_.screenshot, ".png");
+    if (!options_.video) return;
+    prepareFile("video", *options_.video, ".mp4");
+    video_ = std::make_unique<VideoWriter>(*options_.video, options.size_px[0], options.size_px[1], frames_per_s);
+  }
+
+  bool see(const State& state) override {
+    constexpr double rounding_s = 1e-9;
+    const bool frame_due = video_ && state.time_s + rounding_s >= frameTime(video_->frameCount());
+    if (!frame_due && !options_.screenshot) return true;
+    last_ = snapshots_.take(state);
+    if (!frame_due) return true;
+    const Image frame = draw(*last_);
+    while (state.time_s + rounding_s >= frameTime(video_->frameCount())) video_->add(frame);
+    return true;
+  }
+
+  void finish() override {
+    if (options_.screenshot && last_) {
+      writePng(draw(*last_), *options_.screenshot);
+      fmt::print("picture {}\n", *options_.screenshot);
+    }
+    if (!video_) return;
+    video_->close();
+    fmt::print("video   {}\n", video_->result());
+  }
+
+ private:
+  double frameTime(long index) const { return static_cast<double>(index) * frame_s_; }
+
+  Image draw(const Snapshot& snapshot) {
+    if (!camera_) camera_ = initialCamera(robot_name_, snapshot, camera_options_);
+    return offscreen_.draw(snapshot, *camera_);
+  }
+
+  const PictureOptions options_;
+  double frame_s_;
+  std::vector<float> camera_options_;
+  std::string robot_name_;
+  SnapshotTaker snapshots_;
+  Offscreen offscreen_;
+  std::unique_ptr<VideoWriter> video_;
+  std::optional<Camera> camera_;
+  std::optional<Snapshot> last_;
+};
+
+}  // namespace
+
+std::unique_ptr<Spectator> makePictures(const PictureOptions& options, Simulation& simulation) {
+  return std::make_unique<Pictures>(options, simulation);
+}
+
+}  // namespace musclesim::program

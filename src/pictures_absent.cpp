@@ -1,0 +1,11 @@
+/// Stands for pictures.cpp in a build without libraries for pictures.
+#include "musclesim/error.h"
+#include "pictures.h"
+
+namespace musclesim::program {
+
+std::unique_ptr<Spectator> makePictures(const PictureOptions&, Simulation&) {
+  throw BadParameter("this build cannot draw pictures: build it again with libpng-dev, libgl-dev and libosmesa6-dev installed");
+}
+
+}  // namespace musclesim::program

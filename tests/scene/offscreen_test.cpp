@@ -1,0 +1,174 @@
+#include "simulation/scene/offscreen.h"
+
+#include <gtest/gtest.h>
+#include <png.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+#include "musclesim/controller/hold.h"
+#include "simulation/scene/scene_error.h"
+#include "src/view.h"
+
+namespace musclesim {
+namespace {
+
+namespace fs = std::filesystem;
+
+Image readPng(const fs::path& file) {
+  png_image description = {};
+  description.version = PNG_IMAGE_VERSION;
+  if (!png_image_begin_read_from_file(&description, file.c_str())) throw IoError(file.string() + ": " + description.message);
+  description.format = PNG_FORMAT_RGB;
+  Image image{static_cast<int>(description.width), static_cast<int>(description.height),
+              std::vector<std::uint8_t>(PNG_IMAGE_SIZE(description))};
+  png_image_finish_read(&description, nullptr, image.rgb.data(), 0, nullptr);
+  return image;
+}
+
+/// The share of pixels that differ by more than 24 of 255 in a colour: drivers round edges differently, but not whole surfaces.
+double differingShare(const Image& a, const Image& b) {
+  constexpr int allowed = 24;
+  if (a.width != b.width || a.height != b.height) return 1;
+  long differing = 0;
+  for (std::size_t i = 0; i < a.rgb.size(); i += 3) {
+    bool differs = false;
+    for (std::size_t c = i; c < i + 3; ++c) differs |= std::abs(a.rgb[c] - b.rgb[c]) > allowed;
+    differing += differs;
+  }
+  return 3.0 * static_cast<double>(differing) / static_cast<double>(a.rgb.size());
+}
+
+/// A robot under constant pressures for a while, and its pictures. Skipped without OSMesa.
+class Pictures : public testing::Test {
+ protected:
+  static constexpr int width_px = 400, height_px = 300;
+
+  void SetUp() override {
+    try {
+      offscreen_ = std::make_unique<Offscreen>(width_px, height_px);
+    } catch (const SceneError& error) {
+      GTEST_SKIP() << error.what();
+    }
+  }
+
+  Snapshot snapshotOf(const std::string& robot, bool plane = false) {
+    SimulationOptions options;
+    options.plane = plane;
+    Simulation simulation(options);
+    simulation.build(robot);
+    const musclesim::Action action(static_cast<std::size_t>(simulation.robot().actuatorCount()), 0.3);
+    simulation.start(simulation.robot().initialState(), action);
+    for (int i = 0; i < 5; ++i) simulation.step();
+    return SnapshotTaker(simulation).take(simulation.robot().getState());
+  }
+
+  Image draw(const std::string& robot, const Snapshot& snapshot, const SceneStyle& style = {}) {
+    return offscreen_->draw(snapshot, program::initialCamera(robot, snapshot, {}), style);
+  }
+
+  /// Compares with tests/scene/pictures/NAME.png; with MUSCLESIM_STORE_PICTURES=1 it is written anew.
+  void compareWithStored(const std::string& name, const Image& image) {
+    const fs::path stored = fs::path(MUSCLESIM_STORED_PICTURES) / (name + ".png");
+    if (std::getenv("MUSCLESIM_STORE_PICTURES")) writePng(image, stored.string());
+    EXPECT_LT(differingShare(image, readPng(stored)), 0.005) << name;
+  }
+
+  static long countPixels(const Image& image, int red, int green, int blue, int tolerance) {
+    long count = 0;
+    for (std::size_t i = 0; i < image.rgb.size(); i += 3)
+      count += std::abs(image.rgb[i] - red) <= tolerance && std::abs(image.rgb[i + 1] - green) <= tolerance &&
+               std::abs(image.rgb[i + 2] - blue) <= tolerance;
+    return count;
+  }
+
+  std::unique_ptr<Offscreen> offscreen_;
+};
+
+TEST_F(Pictures, ArmRigAndElbowLookAsStored) {
+  for (const std::string robot : {"arm", "rig", "elbow"}) compareWithStored(robot, draw(robot, snapshotOf(robot)));
+  compareWithStored("arm_plane", draw("arm", snapshotOf("arm", true)));
+}
+
+TEST_F(Pictures, StylesLookAsStored) {
+  const Snapshot snapshot = snapshotOf("arm");
+  SceneStyle style;
+  style.transparent = true;
+  compareWithStored("arm_transparent", draw("arm", snapshot, style));
+  style = {};
+  style.color_tension = true;
+  compareWithStored("arm_tension", draw("arm", snapshot, style));
+  style = {};
+  style.frames = true;
+  style.selected = 3;
+  compareWithStored("arm_frames", draw("arm", snapshot, style));
+}
+
+TEST_F(Pictures, NothingIsClippedInTheFirstView) {
+  for (const std::string robot : {"arm", "rig", "elbow"}) {
+    const Image image = draw(robot, snapshotOf(robot));
+    for (int x = 0; x < image.width; ++x)
+      for (const int y : {0, image.height - 1})
+        EXPECT_NEAR(image.rgb[static_cast<std::size_t>((y * image.width + x) * 3)], 230, 1) << robot << " at " << x << ", " << y;
+    for (int y = 0; y < image.height; ++y)
+      for (const int x : {0, image.width - 1})
+        EXPECT_NEAR(image.rgb[static_cast<std::size_t>((y * image.width + x) * 3)], 230, 1) << robot << " at " << x << ", " << y;
+  }
+}
+
+TEST_F(Pictures, SelectedMuscleIsRed) {
+  const Snapshot snapshot = snapshotOf("elbow");
+  const auto red = [](const Image& image) {
+    long count = 0;
+    for (std::size_t i = 0; i < image.rgb.size(); i += 3)
+      count += image.rgb[i] > 80 && 4 * image.rgb[i + 1] < image.rgb[i] && 4 * image.rgb[i + 2] < image.rgb[i];
+    return count;
+  };
+  SceneStyle style;
+  EXPECT_EQ(red(draw("elbow", snapshot, style)), 0);
+  style.selected = 1;
+  EXPECT_GT(red(draw("elbow", snapshot, style)), 300);
+}
+
+TEST_F(Pictures, ColoursAreThePapers) {
+  const Image image = draw("arm", snapshotOf("arm"));
+  EXPECT_GT(countPixels(image, 230, 230, 230, 1), image.width * image.height / 2) << "background 0.9";
+  EXPECT_GT(countPixels(image, 42, 42, 42, 14), 1000) << "hoses 0.2, lit";
+  EXPECT_GT(countPixels(image, 170, 170, 170, 40), 5000) << "bones 0.8, lit";
+}
+
+TEST_F(Pictures, TensionColoursGoFromDarkToBright) {
+  EXPECT_LT(tensionColor(0).green, tensionColor(50).green);
+  EXPECT_LT(tensionColor(50).green, tensionColor(100).green);
+  EXPECT_EQ(tensionColor(100).red, tensionColor(1e9).red);
+  EXPECT_EQ(tensionColor(-5).red, tensionColor(0).red);
+}
+
+TEST_F(Pictures, LookingOnChangesNothing) {
+  const auto hand = [](bool watched) {
+    Simulation simulation;
+    simulation.build("arm");
+    simulation.start("built", musclesim::Action(10, 0.4));
+    for (int i = 0; i < 20; ++i) {
+      simulation.step();
+      if (watched) SnapshotTaker(simulation).take(State{});
+    }
+    return simulation.robot().handMm();
+  };
+  EXPECT_EQ(hand(true), hand(false));
+}
+
+TEST(Offscreen, RefusesSizesThatCannotBe) {
+  EXPECT_THROW(Offscreen(0, 100), BadParameter);
+  EXPECT_THROW(Offscreen(100, 100000), BadParameter);
+}
+
+TEST(InitialCamera, RefusesNumbersThatCannotBe) {
+  EXPECT_THROW(program::initialCamera("rig", Snapshot{}, {0, 95, 500}), BadParameter);
+  EXPECT_THROW(program::initialCamera("rig", Snapshot{}, {0, 0, 0}), BadParameter);
+  EXPECT_FLOAT_EQ(program::initialCamera("rig", Snapshot{}, {20, 30, 500}).elevation_deg, 30);
+}
+
+}  // namespace
+}  // namespace musclesim
