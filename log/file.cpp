@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -23,6 +24,11 @@ namespace {
 std::string temporaryName(const std::string& file) {
   static std::atomic<unsigned> counter{0};
   return fmt::format("{}.{}-{}.tmp", file, getpid(), counter++);
+}
+
+std::string folderOf(const std::string& file) {
+  const auto slash = file.rfind('/');
+  return slash == std::string::npos ? "." : file.substr(0, slash + 1);
 }
 
 }  // namespace
@@ -74,6 +80,27 @@ FileReplacement::~FileReplacement() {
 void FileReplacement::commit() {
   if (rename(temporary_file_.c_str(), file_.c_str()) != 0) failed(file_, "replaced", errno);
   committed_ = true;
+  syncFolder(folderOf(file_));
+}
+
+bool FileReplacement::commitIfAbsent() {
+  const int linked = link(temporary_file_.c_str(), file_.c_str());
+  const int reason = errno;
+  struct stat status {};
+  // A network file system may lose the answer to a link that it made: the number of names tells.
+  const bool absent = linked == 0 || (stat(temporary_file_.c_str(), &status) == 0 && status.st_nlink == 2);
+  if (!absent && reason != EEXIST) failed(file_, "created", reason);
+  if (absent) syncFolder(folderOf(file_));
+  return absent;
+}
+
+void syncFolder(const std::string& folder) {
+  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0 && errno == EACCES) return;  // may be written but not listed
+  if (descriptor < 0) failed(folder, "opened", errno);
+  const int synced = fsync(descriptor), reason = errno;
+  close(descriptor);
+  if (synced != 0 && reason != EINVAL) failed(folder, "written to the disk", reason);  // EINVAL: this file system needs none
 }
 
 void replaceFile(const std::string& file, std::string_view text) {

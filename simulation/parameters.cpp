@@ -1,17 +1,15 @@
 #include "musclesim/parameters.h"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <functional>
 #include <numeric>
-#include <sstream>
 
 #include "musclesim/error.h"
+#include "toml_document.h"
 
 namespace musclesim {
 
@@ -107,18 +105,7 @@ void Parameters::setFromText(const std::string& assignment, const std::string& s
 }
 
 void Parameters::readToml(const std::string& file) {
-  std::ifstream stream(file);
-  if (!stream) throw IoError(file + ": cannot be opened for reading");
-  std::ostringstream content;
-  content << stream.rdbuf();
-  if (stream.bad()) throw IoError(file + ": cannot be read (is it a folder?)");
-  toml::table table;
-  try {
-    table = toml::parse(content.str(), file);
-  } catch (const toml::parse_error& error) {
-    throw BadFile(file, static_cast<int>(error.source().begin.line), static_cast<int>(error.source().begin.column),
-                  std::string(error.description()));
-  }
+  const toml::table table = musclesim::readToml(file);
   const std::function<void(const toml::table&, const std::string&)> readTable = [&](const toml::table& entries, const std::string& prefix) {
     for (const auto& [key, node] : entries) {
       const std::string name = prefix + std::string(key.str());

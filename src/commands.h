@@ -9,7 +9,16 @@
 namespace musclesim::program {
 
 /// What the program ends with; see the table in docs/getting_started.md.
-enum ExitStatus { done = 0, internal_error = 1, bad_usage = 2, bad_input = 3, diverged = 4, io_error = 5, interrupted_base = 128 };
+enum ExitStatus {
+  done = 0,
+  internal_error = 1,
+  bad_usage = 2,
+  bad_input = 3,
+  diverged = 4,
+  io_error = 5,
+  incomplete_sweep = 6,
+  interrupted_base = 128
+};
 
 /// Runs a chosen command and returns the exit status; errors are thrown.
 using Action = std::function<int()>;
@@ -24,6 +33,10 @@ Action addEffects(CLI::App& command);
 Action addExperiment(CLI::App& command, ModelOptions& model);
 /// `fit`: force laws from measured static points.
 Action addFit(CLI::App& command);
+/// `plan`, `work`, `collect`: parameter sweeps over many processes or machines.
+Action addPlan(CLI::App& command);
+Action addWork(CLI::App& command);
+Action addCollect(CLI::App& command);
 /// `bench`: real-time ratio over the number of muscles.
 Action addBench(CLI::App& command, ModelOptions& model);
 

@@ -56,6 +56,9 @@ int parseAndRun(int argument_count, char** arguments) {
       [&](CLI::App& command) { return addBench(command, model); });
   add("diagnose", "Says where recordings differ from the model, why, and how far that can be closed",
       [&](CLI::App& command) { return addDiagnose(command, model); });
+  add("plan", "Writes down the runs of a parameter sweep", addPlan);
+  add("work", "Runs rows of a sweep that no other worker has taken, until none is left", addWork);
+  add("collect", "Puts the results of a sweep into one table", addCollect);
   refuseEmptyValues(app);
   for (const auto& [command, action] : commands) refuseEmptyValues(*command);
   try {

@@ -19,8 +19,11 @@ class FileReplacement {
   ~FileReplacement();
   FileReplacement(const FileReplacement&) = delete;
   FileReplacement& operator=(const FileReplacement&) = delete;
-  /// Renames the temporary file to its final name.
+  /// Renames the temporary file to its final name and waits until the folder is on the disk.
   void commit();
+  /// The same, but only if there is no file of that name yet; of several that try at once, on one or many machines, one succeeds.
+  /// Returns whether this one did.
+  bool commitIfAbsent();
 
  private:
   std::string file_, temporary_file_;
@@ -29,6 +32,9 @@ class FileReplacement {
 
 /// Replaces or creates `file`. Throws IoError.
 void replaceFile(const std::string& file, std::string_view text);
+
+/// Waits until a folder's entries are on the disk. Throws IoError.
+void syncFolder(const std::string& folder);
 
 /// Writes all bytes to an open file descriptor. Returns how many reached the file; fewer than given means failure, with the reason in
 /// errno.

@@ -1,0 +1,105 @@
+#include "child.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+
+#include "musclesim/error.h"
+
+namespace musclesim {
+
+namespace {
+
+constexpr int could_not_start = 127;
+constexpr double patience_s = 5;
+
+bool redirect(const char* file, int descriptor) {
+  const int opened = open(file, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  return opened >= 0 && dup2(opened, descriptor) >= 0;
+}
+
+/// What the child does before it becomes the program; only calls that are safe between fork and exec.
+[[noreturn]] void become(const ChildCommand& command, char* const* arguments, pid_t parent) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(could_not_start);
+  setpgid(0, 0);  // Ctrl-C reaches the worker, which ends the child in order
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+  const int empty_input = open("/dev/null", O_RDONLY | O_CLOEXEC);
+  if (empty_input >= 0 && dup2(empty_input, STDIN_FILENO) >= 0 && redirect(command.out_file.c_str(), STDOUT_FILENO) &&
+      redirect(command.error_file.c_str(), STDERR_FILENO) && chdir(command.folder.c_str()) == 0)
+    execv(command.program.c_str(), arguments);
+  _exit(could_not_start);
+}
+
+/// The process until its end; asks `stop` in between.
+class Child {
+ public:
+  explicit Child(pid_t pid) : pid_(pid), descriptor_(static_cast<int>(syscall(SYS_pidfd_open, pid, 0))) {}
+  ~Child() {
+    if (descriptor_ >= 0) close(descriptor_);
+  }
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+
+  ChildEnd wait(const std::function<bool()>& stop) {
+    ChildEnd end;
+    int status = 0;
+    double stopped_at_s = 0;
+    bool killed = false;
+    while (waitpid(pid_, &status, WNOHANG) == 0) {
+      if (!end.stopped && stop()) {
+        end.stopped = true;
+        stopped_at_s = elapsedS();
+        kill(pid_, SIGTERM);
+      }
+      if (end.stopped && !killed && elapsedS() - stopped_at_s > patience_s) {
+        killed = true;
+        kill(pid_, SIGKILL);
+      }
+      pause();
+    }
+    end.wall_s = elapsedS();
+    end.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+    end.exit_status = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
+    return end;
+  }
+
+ private:
+  /// Until the child ends or a signal arrives, a fifth of a second at most; without descriptors of processes (Linux before 5.3) 5 ms.
+  void pause() const {
+    pollfd ended{descriptor_, POLLIN, 0};
+    poll(&ended, descriptor_ >= 0 ? 1 : 0, descriptor_ >= 0 ? 200 : 5);
+  }
+  double elapsedS() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
+
+  pid_t pid_;
+  int descriptor_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+ChildEnd runChild(const ChildCommand& command, const std::function<bool()>& stop) {
+  std::vector<char*> arguments = {const_cast<char*>(command.program.c_str())};
+  for (const std::string& argument : command.arguments) arguments.push_back(const_cast<char*>(argument.c_str()));
+  arguments.push_back(nullptr);
+  const pid_t parent = getpid(), pid = fork();
+  if (pid < 0) throw IoError(fmt::format("{}: no process can be started: {}", command.program, std::strerror(errno)));
+  if (pid == 0) become(command, arguments.data(), parent);
+  const ChildEnd end = Child(pid).wait(stop);
+  if (end.signal == 0 && end.exit_status == could_not_start) throw IoError(command.program + ": cannot be started");
+  return end;
+}
+
+}  // namespace musclesim

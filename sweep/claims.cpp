@@ -1,0 +1,166 @@
+#include "claims.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <chrono>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "musclesim/error.h"
+#include "musclesim/log/file.h"
+#include "sweep.h"
+
+namespace musclesim {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t claim_limit_bytes = std::size_t{1} << 20;
+constexpr std::array<const char*, 3> end_names = {"crashed", "killed", "abandoned"};
+
+std::string firstLine(const std::string& file) {
+  std::ifstream stream(file);
+  std::string line;
+  std::getline(stream, line);
+  return line;
+}
+
+/// Processes with equal ids are the same only within one boot of one machine and one space of ids (containers).
+std::string thisMachine() {
+  std::error_code error;
+  const auto ids = fs::read_symlink("/proc/self/ns/pid", error).string();
+  return firstLine("/proc/sys/kernel/random/boot_id") + " " + ids;
+}
+
+/// When a process began, in clock ticks since boot: ids are used again, this pair is not. Empty: there is no such process.
+std::string beginOf(long pid) {
+  const std::string line = firstLine(fmt::format("/proc/{}/stat", pid));
+  const auto name_end = line.rfind(')');
+  if (name_end == std::string::npos) return {};
+  std::istringstream fields(line.substr(name_end + 1));
+  std::string field, state;
+  for (int number = 3; number <= 22 && fields >> field; ++number)
+    if (number == 3) state = field;
+  return state == "Z" || state == "X" ? std::string() : field;
+}
+
+std::string hostName() {
+  char name[256] = "";
+  gethostname(name, sizeof name - 1);
+  return name;
+}
+
+double steadySeconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+double modifiedS(const std::string& file, int& reason) {
+  struct stat status {};
+  reason = stat(file.c_str(), &status) == 0 ? 0 : errno;
+  return static_cast<double>(status.st_mtim.tv_sec) + 1e-9 * static_cast<double>(status.st_mtim.tv_nsec);
+}
+
+}  // namespace
+
+Claims::Claims(const std::string& folder, double stale_after_s) : folder_(folder), machine_(thisMachine()), stale_after_s_(stale_after_s) {
+  const std::string begin = beginOf(getpid());
+  worker_ = fmt::format("{}-{}-{}", hostName(), getpid(), begin);
+  text_ = nlohmann::json{{"worker", worker_}, {"host", hostName()}, {"machine", machine_}, {"pid", getpid()}, {"begin", begin}}.dump();
+  replaceFile(folder_ + "/workers/" + worker_, text_);
+  beat();
+}
+
+Claims::~Claims() {
+  unlink((folder_ + "/workers/" + worker_).c_str());
+}
+
+std::string Claims::path(std::size_t row, int attempt) const {
+  return fmt::format("{}/claims/{}.{}", folder_, rowName(row), attempt);
+}
+
+void Claims::beat() {
+  const double now_s = steadySeconds();
+  if (now_s - last_beat_s_ < stale_after_s_ / 10) return;
+  last_beat_s_ = now_s;
+  const std::string file = folder_ + "/workers/" + worker_;
+  if (utimensat(AT_FDCWD, file.c_str(), nullptr, 0) == 0) return;
+  if (errno != ENOENT) throw IoError(fmt::format("{}: cannot be touched: {}", file, std::strerror(errno)));
+  replaceFile(file, text_);
+}
+
+bool Claims::claim(std::size_t row, int attempt) {
+  const std::string file = path(row, attempt);
+  if (access(file.c_str(), F_OK) == 0) return false;
+  return FileReplacement(file, text_).commitIfAbsent();
+}
+
+void Claims::end(std::size_t row, int attempt, AttemptEnd how, const std::string& message) {
+  const nlohmann::json json = {{"end", end_names[static_cast<std::size_t>(how)]}, {"message", message}};
+  replaceFile(path(row, attempt) + ".end", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+RowHistory Claims::history(std::size_t row) const {
+  RowHistory history;
+  for (int attempt = 1; access(path(row, attempt).c_str(), F_OK) == 0; ++attempt) {
+    history.attempt_count = attempt;
+    const std::string end_file = path(row, attempt) + ".end";
+    history.free = true;
+    if (access(end_file.c_str(), F_OK) == 0) {
+      const auto json = nlohmann::json::parse(readTextFile(end_file, claim_limit_bytes), nullptr, false);
+      if (!json.is_object() || !json.contains("end")) throw BadFile(end_file, "is not the end of an attempt");
+      history.crash_count += json["end"] == end_names[0];
+      history.kill_count += json["end"] == end_names[1];
+      if (json["end"] != end_names[2]) history.message = json.value("message", "");
+      continue;
+    }
+    // Whoever took over has seen that the worker was gone.
+    const bool is_last = access(path(row, attempt + 1).c_str(), F_OK) != 0;
+    history.free = !is_last || isGone(readTextFile(path(row, attempt), claim_limit_bytes));
+    if (!history.free) return history;
+    ++history.kill_count;
+    history.message = "its worker vanished";
+  }
+  return history;
+}
+
+bool Claims::isGone(const std::string& claim_text) const {
+  const auto claim = nlohmann::json::parse(claim_text, nullptr, false);
+  if (!claim.is_object() || !claim.contains("worker") || !claim.contains("pid"))
+    throw BadFile(folder_ + "/claims", "holds a file that is not a claim");
+  const std::string worker = claim.value("worker", "");
+  if (worker == worker_) return false;
+  if (claim.value("machine", "") == machine_) return beginOf(claim.value("pid", 0L)) != claim.value("begin", "");
+  return heartbeatAgeS(worker) > stale_after_s_;
+}
+
+double Claims::heartbeatAgeS(const std::string& worker) const {
+  int reason = 0;
+  const double then_s = modifiedS(folder_ + "/workers/" + worker, reason);
+  if (reason == ENOENT) return 1e300;  // it has ended
+  const double now_s = modifiedS(folder_ + "/workers/" + worker_, reason);
+  if (reason != 0) throw IoError(fmt::format("{}/workers: cannot be read: {}", folder_, std::strerror(reason)));
+  // This worker's own heartbeat may be old by as much as it waits between two.
+  return now_s - then_s;
+}
+
+std::vector<bool> Claims::tried(std::size_t row_count) const {
+  std::vector<bool> tried(row_count, false);
+  for (const auto& entry : fs::directory_iterator(folder_ + "/claims")) {
+    const std::string name = entry.path().filename().string();
+    std::size_t row = 0;
+    const auto result = std::from_chars(name.data(), name.data() + name.size(), row);
+    if (result.ec == std::errc() && *result.ptr == '.' && row < row_count) tried[row] = true;
+  }
+  return tried;
+}
+
+}  // namespace musclesim
