@@ -46,8 +46,8 @@ struct Sweep {
 
 constexpr std::size_t most_sweep_rows = 100'000, most_sweep_values = 1'000'000;  ///< a plan beyond is refused
 
-/// The arguments of row `number` with everything substituted. Throws BadParameter for a {name} that is no parameter of the row and for a parameter that
-/// the command does not use.
+/// The arguments of row `number` with everything substituted. Throws BadParameter for a {name} that is no parameter of the row and for a
+/// parameter that the command does not use.
 std::vector<std::string> argumentsOf(const Sweep& sweep, std::size_t number, const std::string& out_folder);
 
 /// Copies a file that rows read into the folder of a sweep to be written; of a recording NAME.csv also NAME.json. Returns its path there,
