@@ -12,17 +12,34 @@ namespace musclesim {
 
 namespace {
 
-constexpr int look_rows = 900;           ///< the first look ends after that many rows of a stretch
-constexpr std::size_t single_count = 7;  ///< suspects that are fitted
-constexpr std::size_t pair_count = 5;    ///< second effects that are fitted beside the best
-constexpr double worth_a_pair = 0.15;    ///< log misfit per affected cell above which a second effect is looked for
-constexpr int round_count = 8;
+constexpr int look_rows = 1500;           ///< the look's stretches have that many rows together
+constexpr std::size_t look_count = 3;     ///< recordings that are looked at
+constexpr std::size_t single_count = 9;   ///< suspects that are fitted
+constexpr std::size_t pair_count = 6;     ///< second effects that are fitted beside the best
+constexpr double worth_a_pair = 0.15;     ///< log misfit per affected cell above which a second effect is looked for
+constexpr int first_rounds = 2, more_rounds = 6, last_rounds = 2;
+/// A fit goes on while its log misfit per affected cell is within that of the best: on the look, on all recordings.
+struct Reach {
+  double on_look, on_all;
+};
+constexpr Reach single_reach = {0.8, 0.4}, pair_reach = {0.25, 0.1};
 
-/// At most two stretches, the first and the last, and not more than look_rows of each.
-std::vector<Stretch> lookStretches(const Split& split) {
-  std::vector<Stretch> result = {split.fit.front()};
-  if (split.fit.size() > 1) result.push_back(split.fit.back());
-  for (Stretch& stretch : result) stretch.end_row = std::min(stretch.end_row, stretch.first_row + look_rows);
+bool sameCommands(const Recording& a, const Recording& b) {
+  return std::ranges::all_of(a.signals, [&](const Signal& signal) {
+    const Signal* other = b.find(signal.name);
+    return !signal.name.starts_with("command_") || (other && other->values == signal.values);
+  });
+}
+
+/// The beginnings of the first recordings with different commands.
+std::vector<Stretch> lookStretches(const Plant& plant) {
+  std::vector<Stretch> result;
+  for (const Stretch& stretch : plant.split().fit) {
+    auto recordingOf = [&](const Stretch& s) -> const Recording& { return plant.recordings()[static_cast<std::size_t>(s.recording)]; };
+    const bool repeated = std::ranges::any_of(result, [&](const Stretch& other) { return sameCommands(recordingOf(stretch), recordingOf(other)); });
+    if (!repeated && result.size() < look_count) result.push_back(stretch);
+  }
+  for (Stretch& stretch : result) stretch.end_row = std::min(stretch.end_row, stretch.first_row + look_rows / static_cast<int>(result.size()));
   return result;
 }
 
@@ -32,7 +49,7 @@ Attributor::Attributor(const Plant& plant, const DiagnosisOptions& options, OnSi
     : plant_(plant),
       options_(options),
       on_simulation_(std::move(on_simulation)),
-      look_(plant, lookStretches(plant.split())),
+      look_(plant, lookStretches(plant)),
       fit_(plant, plant.split().fit) {}
 
 void Attributor::look() {
@@ -65,10 +82,10 @@ Eigen::VectorXd Attributor::startOf(std::size_t index, const Signature& signatur
   return z;
 }
 
-Explanation Attributor::refit(const std::vector<std::size_t>& members, const Eigen::VectorXd& start, int rounds) const {
-  Explanation explanation{members, start, {}, {}, 0, 0};
+void Attributor::refit(Explanation& explanation, const Comparison& comparison, int rounds) const {
+  const std::vector<std::size_t>& members = explanation.suspects;
   FitProblem problem;
-  problem.start = start;
+  problem.start = explanation.z;
   problem.clamped = [&](const Eigen::VectorXd& z) {
     Eigen::VectorXd result = z;
     Eigen::Index first = 0;
@@ -79,20 +96,39 @@ Explanation Attributor::refit(const std::vector<std::size_t>& members, const Eig
     }
     return result;
   };
-  auto fitOn = [&](const Comparison& comparison, int some) {
-    problem.predicted = [&](const Eigen::VectorXd& z) {
-      on_simulation_();
-      return comparison.predicted(modelOf({members, z, {}, {}, 0, 0}));
-    };
-    return fit(comparison, problem, some);
+  problem.predicted = [&](const Eigen::VectorXd& z) {
+    on_simulation_();
+    return comparison.predicted(modelOf({members, z, {}, {}, 0, 0}));
   };
-  problem.start = fitOn(look_, rounds).z;
-  const FitResult all = fitOn(fit_, 2);
-  explanation.z = all.z;
-  explanation.half_width = all.half_width;
-  explanation.residual = all.residual;
-  explanation.log_misfit = all.log_misfit / fit_.affectedCells(nominal_residual_);
-  return explanation;
+  const FitResult result = fit(comparison, problem, rounds);
+  explanation.z = result.z;
+  if (rounds > 0 || explanation.half_width.size() == 0) explanation.half_width = result.half_width;
+  explanation.residual = result.residual;
+  explanation.log_misfit =
+      result.log_misfit / comparison.affectedCells(&comparison == &fit_ ? nominal_residual_ : look_residual_);
+}
+
+/// In three rounds, each for those that the round before left within reach of the best: a few steps on the look, more steps, all
+/// recordings. Those out of reach keep what they had, with their misfit on all recordings.
+void Attributor::fitTogether(std::vector<Explanation> candidates, double on_look, double on_all) {
+  auto forEach = [&](const std::function<bool(const Explanation&)>& chosen, const std::function<void(Explanation&)>& work) {
+    parallelFor(static_cast<int>(candidates.size()), options_.job_count, [&](int i) {
+      Explanation& candidate = candidates[static_cast<std::size_t>(i)];
+      if (!plant_.interrupted() && chosen(candidate)) work(candidate);
+    });
+  };
+  auto within = [&](double reach) {
+    double best = std::numeric_limits<double>::infinity();
+    for (const Explanation& candidate : candidates) best = std::min(best, candidate.log_misfit);
+    return [limit = best + reach](const Explanation& candidate) { return candidate.log_misfit <= limit; };
+  };
+  forEach([](const Explanation&) { return true; }, [&](Explanation& candidate) { refit(candidate, look_, first_rounds); });
+  forEach(within(on_look), [&](Explanation& candidate) { refit(candidate, look_, more_rounds); });
+  const auto is_close = within(on_all);
+  forEach([](const Explanation&) { return true; },
+          [&](Explanation& candidate) { refit(candidate, fit_, is_close(candidate) ? last_rounds : 0); });
+  for (Explanation& candidate : candidates)
+    if (candidate.residual.size() == fit_.size()) result_.explanations.push_back(std::move(candidate));
 }
 
 /// The best by the first look, and the best of every stage; each id and component once.
@@ -119,14 +155,9 @@ void Attributor::fitSingles() {
   std::vector<double> log_misfit;
   for (const Signature& signature : result_.signatures) log_misfit.push_back(signature.log_misfit);
   const std::vector<std::size_t> chosen = survivors(log_misfit, single_count, true);
-  std::vector<Explanation> fitted(chosen.size());
-  parallelFor(static_cast<int>(chosen.size()), options_.job_count, [&](int i) {
-    const std::size_t index = chosen[static_cast<std::size_t>(i)];
-    if (plant_.interrupted()) return;
-    fitted[static_cast<std::size_t>(i)] = refit({index}, startOf(index, result_.signatures[index]), round_count);
-  });
-  for (Explanation& explanation : fitted)
-    if (explanation.residual.size()) result_.explanations.push_back(std::move(explanation));
+  std::vector<Explanation> candidates;
+  for (const std::size_t index : chosen) candidates.push_back({{index}, startOf(index, result_.signatures[index]), {}, {}, 0, 0});
+  fitTogether(std::move(candidates), single_reach.on_look, single_reach.on_all);
 }
 
 /// Second effects are looked for with the first look's signatures on what the best single effect leaves.
@@ -144,17 +175,14 @@ void Attributor::fitPairs() {
     log_misfit.push_back(same ? std::numeric_limits<double>::infinity() : signatures[s].log_misfit);
   }
   const std::vector<std::size_t> chosen = survivors(log_misfit, pair_count, false);
-  std::vector<Explanation> fitted(chosen.size());
-  parallelFor(static_cast<int>(chosen.size()), options_.job_count, [&](int i) {
-    const std::size_t index = chosen[static_cast<std::size_t>(i)];
-    if (plant_.interrupted()) return;
+  std::vector<Explanation> candidates;
+  for (const std::size_t index : chosen) {
     const Eigen::VectorXd second = startOf(index, signatures[index]);
     Eigen::VectorXd start(best.z.size() + second.size());
     start << best.z, second;
-    fitted[static_cast<std::size_t>(i)] = refit({best.suspects.front(), index}, start, round_count);
-  });
-  for (Explanation& explanation : fitted)
-    if (explanation.residual.size()) result_.explanations.push_back(std::move(explanation));
+    candidates.push_back({{best.suspects.front(), index}, start, {}, {}, 0, 0});
+  }
+  fitTogether(std::move(candidates), pair_reach.on_look, pair_reach.on_all);
 }
 
 void Attributor::sort() {

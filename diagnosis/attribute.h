@@ -54,7 +54,8 @@ class Attributor {
   Model modelOf(const Explanation& explanation) const;
 
  private:
-  Explanation refit(const std::vector<std::size_t>& members, const Eigen::VectorXd& start, int rounds) const;
+  void refit(Explanation& explanation, const Comparison& comparison, int rounds) const;
+  void fitTogether(std::vector<Explanation> candidates, double on_look, double on_all);
   std::vector<std::size_t> survivors(const std::vector<double>& log_misfit, std::size_t count, bool from_every_stage) const;
   Eigen::VectorXd startOf(std::size_t index, const Signature& signature) const;
   void fitSingles();

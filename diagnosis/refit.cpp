@@ -9,7 +9,7 @@ namespace musclesim {
 
 namespace {
 
-constexpr double enough = 2e-3;  ///< a fall of logMisfit that is not worth another round
+constexpr double enough = 0.01;  ///< a fall of logMisfit that is not worth another round
 constexpr double normal_95 = 1.96;
 
 struct Point {
@@ -72,33 +72,55 @@ Eigen::VectorXd halfWidths(const Comparison& comparison, const Point& point, con
 
 }  // namespace
 
+namespace {
+
+/// One step downhill with at most three dampings; false if none goes down.
+bool stepDown(const Comparison& comparison, const FitProblem& problem, const Eigen::MatrixXd& jacobian, double& damping, Point& best) {
+  const Eigen::VectorXd weights = comparison.weights(best.residual);
+  const Eigen::MatrixXd weighted = weights.asDiagonal() * jacobian;
+  const Eigen::MatrixXd normal = weighted.transpose() * weighted;
+  const Eigen::VectorXd slope = weighted.transpose() * weights.cwiseProduct(best.residual);
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    Eigen::MatrixXd damped = normal;
+    damped.diagonal() *= 1 + damping;
+    damped.diagonal().array() += 1e-9;
+    Point next = evaluate(comparison, problem, best.z + damped.ldlt().solve(slope));
+    if (next.log_misfit < best.log_misfit) {
+      best = std::move(next);
+      damping *= 0.2;
+      return true;
+    }
+    damping = std::max(damping * 10, 0.1);
+  }
+  return false;
+}
+
+/// The change of the derivatives that the step just made tells of.
+void update(Eigen::MatrixXd& jacobian, const Point& from, const Point& to) {
+  const Eigen::VectorXd step = to.z - from.z;
+  if (step.squaredNorm() > 0) jacobian += (from.residual - to.residual - jacobian * step) * step.transpose() / step.squaredNorm();
+}
+
+}  // namespace
+
 FitResult fit(const Comparison& comparison, const FitProblem& problem, int round_count) {
   Point best = evaluate(comparison, problem, problem.start);
-  if (!best.residual.size()) return {best.z, {}, best.log_misfit, Eigen::VectorXd::Zero(best.z.size())};
-  Eigen::MatrixXd jacobian;
+  if (!best.residual.size() || round_count == 0)
+    return {best.z, best.residual, best.log_misfit, Eigen::VectorXd::Zero(best.z.size())};
+  Eigen::MatrixXd jacobian = derivatives(comparison, problem, best);
+  bool fresh = true;
   double damping = 0.01;
   for (int round = 0; round < round_count && !comparison.plant().interrupted(); ++round) {
-    jacobian = derivatives(comparison, problem, best);
-    const Eigen::VectorXd weights = comparison.weights(best.residual);
-    const Eigen::MatrixXd weighted = weights.asDiagonal() * jacobian;
-    const Eigen::MatrixXd normal = weighted.transpose() * weighted;
-    const Eigen::VectorXd slope = weighted.transpose() * weights.cwiseProduct(best.residual);
-    const double before = best.log_misfit;
-    for (int attempt = 0; attempt < 3; ++attempt) {
-      Eigen::MatrixXd damped = normal;
-      damped.diagonal() *= 1 + damping;
-      damped.diagonal().array() += 1e-9;
-      const Point next = evaluate(comparison, problem, best.z + damped.ldlt().solve(slope));
-      if (next.log_misfit < best.log_misfit) {
-        best = next;
-        damping *= 0.2;
-        break;
-      }
-      damping = std::max(damping * 10, 0.1);
-    }
-    if (!(best.log_misfit < before - enough)) break;
+    const Point before = best;
+    const bool down = stepDown(comparison, problem, jacobian, damping, best);
+    const bool settled = best.log_misfit > before.log_misfit - enough;
+    if (settled && (fresh || round + 1 == round_count)) break;
+    if (settled)
+      jacobian = derivatives(comparison, problem, best);
+    else if (down)
+      update(jacobian, before, best);
+    fresh = settled;
   }
-  if (!jacobian.size()) jacobian = derivatives(comparison, problem, best);
   return {best.z, best.residual, best.log_misfit, halfWidths(comparison, best, jacobian)};
 }
 

@@ -23,7 +23,8 @@ struct FitResult {
 };
 
 /// Minimises Comparison::logMisfit with Levenberg and Marquardt's method on residuals that are weighted anew in every round (Marquardt
-/// 1963); derivatives by differences of 5 % of the coordinate, at least 0.02: the response may have kinks.
+/// 1963); derivatives by differences of 5 % of the coordinate, at least 0.02: the response may have kinks. They are found anew when a step
+/// gains nothing, otherwise carried on by rank-one updates (Broyden 1965), since simulations are what a fit costs.
 /// The intervals are those of the linearised problem with the residual's own variance, widened by the number of samples over the
 /// effective number of samples (from the residual's autocorrelation).
 FitResult fit(const Comparison& comparison, const FitProblem& problem, int round_count);

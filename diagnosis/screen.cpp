@@ -12,6 +12,7 @@ namespace musclesim {
 namespace {
 
 constexpr double largest_amount = 5;  ///< beyond that many typical strengths a straight line says nothing
+constexpr double strong = 4;          ///< typical strengths at which one that shows nothing is looked at again
 
 /// A simulation whose result gives columns of one or more suspects.
 struct Probe {
@@ -107,27 +108,56 @@ void explain(const Comparison& comparison, const Suspect& suspect, const Eigen::
   }
 }
 
-std::vector<Signature> screen(const Comparison& comparison, const std::vector<Suspect>& suspects, const Eigen::VectorXd& nominal,
-                              int job_count, const OnSimulation& on_simulation) {
-  const std::vector<Probe> all = probes(comparison, suspects);
-  std::vector<Eigen::VectorXd> changes(all.size());
-  parallelFor(static_cast<int>(all.size()), job_count, [&](int i) {
+namespace {
+
+/// What the probes change, empty where the model diverged.
+std::vector<Eigen::VectorXd> changesBy(const Comparison& comparison, const std::vector<Probe>& probes, const Eigen::VectorXd& nominal,
+                                       int job_count, const OnSimulation& on_simulation) {
+  std::vector<Eigen::VectorXd> changes(probes.size());
+  parallelFor(static_cast<int>(probes.size()), job_count, [&](int i) {
     if (comparison.plant().interrupted()) return;
     const auto index = static_cast<std::size_t>(i);
-    const Eigen::VectorXd predicted = comparison.predicted(all[index].model);
+    const Eigen::VectorXd predicted = comparison.predicted(probes[index].model);
     if (predicted.size() == nominal.size() && predicted.allFinite()) changes[index] = predicted - nominal;
     on_simulation();
   });
+  return changes;
+}
+
+/// Strengths that change nothing at their typical value, though they would if they were stronger: limits that nothing reaches.
+std::vector<Probe> strongerProbes(const Comparison& comparison, const std::vector<Suspect>& suspects, const std::vector<Signature>& looks) {
+  std::vector<Probe> result;
+  for (std::size_t s = 0; s < suspects.size(); ++s) {
+    if (suspects[s].info().stage == Stage::sensor) continue;
+    for (std::size_t k = 0; k < suspects[s].strengths().size(); ++k) {
+      const int coordinate = suspects[s].strengths()[k];
+      if (suspects[s].isSigned(coordinate) || excitationOf(comparison, {looks[s].per_strength[k]}) >= 1) continue;
+      Eigen::VectorXd z = Eigen::VectorXd::Zero(suspects[s].coordinateCount());
+      z[coordinate] = strong;
+      result.push_back({{{suspects[s].at(z)}, {}}, {{s, k, -1}}});
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<Signature> screen(const Comparison& comparison, const std::vector<Suspect>& suspects, const Eigen::VectorXd& nominal,
+                              int job_count, const OnSimulation& on_simulation) {
   std::vector<Signature> result(suspects.size());
   for (std::size_t s = 0; s < suspects.size(); ++s) result[s].per_strength.resize(std::max<std::size_t>(1, suspects[s].strengths().size()));
-  for (std::size_t i = 0; i < all.size(); ++i)
-    for (const Probe::Target& target : all[i].targets)
-      if (changes[i].size()) result[target.suspect].per_strength[target.strength] = only(comparison, changes[i], target.signal);
+  auto look = [&](const std::vector<Probe>& probes, double strength) {
+    const std::vector<Eigen::VectorXd> changes = changesBy(comparison, probes, nominal, job_count, on_simulation);
+    for (std::size_t i = 0; i < probes.size(); ++i)
+      for (const Probe::Target& target : probes[i].targets)
+        if (changes[i].size())
+          result[target.suspect].per_strength[target.strength] = only(comparison, changes[i] / strength, target.signal);
+  };
+  look(probes(comparison, suspects), 1);
+  for (std::size_t s = 0; s < suspects.size(); ++s) result[s].excitation_ratio = excitationOf(comparison, result[s].per_strength);
+  look(strongerProbes(comparison, suspects, result), strong);
   const Eigen::VectorXd residual = comparison.measured() - nominal;
-  for (std::size_t s = 0; s < suspects.size(); ++s) {
-    result[s].excitation_ratio = excitationOf(comparison, result[s].per_strength);
-    explain(comparison, suspects[s], residual, result[s]);
-  }
+  for (std::size_t s = 0; s < suspects.size(); ++s) explain(comparison, suspects[s], residual, result[s]);
   return result;
 }
 

@@ -215,6 +215,8 @@ std::vector<Suspect> suspects(const Plant& plant, const DiagnosisOptions& option
     for (const std::string& component : plant.componentsFor(info)) {
       // A wall stands before one joint or the hand.
       if (component == "all" && info.acts_on.size() > 1) continue;
+      // There is no play between a gauge and a pressure.
+      if (!info.parameters.empty() && relevantParameters(info, component).empty()) continue;
       // One sensor fails at a time; clocks and loggers may fail for all at once.
       const bool shared = info.id == "sensor_delay" || info.id == "sensor_dropout";
       if (info.stage == Stage::sensor && (!plant.compares(component) || (component == "all" && !shared))) continue;

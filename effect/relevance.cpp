@@ -27,11 +27,12 @@ std::vector<std::size_t> relevantParameters(const EffectInfo& info, const std::s
   auto has = [&](Measure measure) {
     return std::any_of(info.parameters.begin(), info.parameters.end(), [&](const auto& p) { return measureOf(p) == measure; });
   };
-  const Measure place = has(Measure::angle) && has(Measure::length) ? measureOf(component) : Measure::any;
+  const bool by_place = component != "all" && has(Measure::angle) && has(Measure::length);
+  const Measure place = measureOf(component);
   std::vector<std::size_t> relevant;
   for (std::size_t i = 0; i < info.parameters.size(); ++i) {
     const Measure parameter = measureOf(info.parameters[i]);
-    if (place == Measure::any || parameter == Measure::any || parameter == place) relevant.push_back(i);
+    if (!by_place || parameter == Measure::any || parameter == place) relevant.push_back(i);
   }
   return relevant;
 }

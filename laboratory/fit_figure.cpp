@@ -77,7 +77,12 @@ std::string fitFigureSvg(const LawReport& report, const StaticPoints& points) {
     forces.series.push_back(curve);
     addPoints(forces, residuals, group, *law, points, color);
   }
-  residuals.series.push_back({"", {0.3, 0.3, 0.3, ""}, {points.shortestMm(), points.longestMm()}, {0, 0}, SvgMark::none, 0.8});
+  DiagramSeries zero;
+  zero.color = {0.3, 0.3, 0.3, ""};
+  zero.x = {points.shortestMm(), points.longestMm()};
+  zero.y = {0, 0};
+  zero.width = 0.8;
+  residuals.series.push_back(std::move(zero));
   return diagramsSvg(fmt::format("{}: relative squared error {:.2e}", report.model->name(), report.fit.error.relativeSquaredError()),
                      {forces, residuals}, 2);
 }

@@ -40,6 +40,16 @@ TEST(FlowLimit, LeavesSlowCommandsAlone) {
     EXPECT_NEAR(valuesOf(run, "pressure_0")[row], commands.signals[0].values[row - 1], 1e-12);
 }
 
+TEST(FlowLimit, IsALagWithinItsBand) {
+  const std::vector<ActiveEffect> limit = {{"flow_limit", "all", {{"fill_rate_per_s", 1.0}, {"proportional_band", 0.05}}}};
+  const ReplayResult run = replayWith(stepOf("rig", {0.3}, {0.5}), limit);
+  for (std::size_t row = 0; row < run.simulated.time_s.size(); ++row) {
+    const double t = sinceStep(run.simulated.time_s[row]);
+    const double expected = t < 0.15 ? 0.3 + t : 0.5 - 0.05 * std::exp(-(t - 0.15) / 0.05);
+    EXPECT_NEAR(valuesOf(run, "pressure_0")[row], expected, 1e-12);
+  }
+}
+
 TEST(Leak, HoldsLessAndFollowsItsRegulator) {
   const double k = 2, u = 0.5, held = u / (1 + k * 0.05);
   const ReplayResult run = replayWith(stepOf("rig", {0.3}, {u}), {{"leak", "all", {{"leak_per_s", k}}}});
