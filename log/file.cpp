@@ -26,11 +26,6 @@ std::string temporaryName(const std::string& file) {
   return fmt::format("{}.{}-{}.tmp", file, getpid(), counter++);
 }
 
-std::string folderOf(const std::string& file) {
-  const auto slash = file.rfind('/');
-  return slash == std::string::npos ? "." : file.substr(0, slash + 1);
-}
-
 }  // namespace
 
 std::string readTextFile(const std::string& file, std::size_t limit_bytes) {
@@ -62,11 +57,12 @@ std::size_t writeAll(int descriptor, std::string_view bytes) {
   return written;
 }
 
-FileReplacement::FileReplacement(std::string file, std::string_view text) : file_(std::move(file)), temporary_file_(temporaryName(file_)) {
+FileReplacement::FileReplacement(std::string file, std::string_view text, bool to_disk)
+    : file_(std::move(file)), temporary_file_(temporaryName(file_)) {
   const int descriptor = open(temporary_file_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor < 0) failed(file_, "opened for writing", errno);
   int reason = 0;
-  if (writeAll(descriptor, text) != text.size() || fsync(descriptor) != 0) reason = errno;
+  if (writeAll(descriptor, text) != text.size() || (to_disk && fsync(descriptor) != 0)) reason = errno;
   if (close(descriptor) != 0 && reason == 0) reason = errno;
   if (reason == 0) return;
   unlink(temporary_file_.c_str());
@@ -80,7 +76,6 @@ FileReplacement::~FileReplacement() {
 void FileReplacement::commit() {
   if (rename(temporary_file_.c_str(), file_.c_str()) != 0) failed(file_, "replaced", errno);
   committed_ = true;
-  syncFolder(folderOf(file_));
 }
 
 bool FileReplacement::commitIfAbsent() {
@@ -90,7 +85,6 @@ bool FileReplacement::commitIfAbsent() {
   // A network file system may lose the answer to a link that it made: the number of names tells.
   const bool absent = linked == 0 || (stat(temporary_file_.c_str(), &status) == 0 && status.st_nlink == 2);
   if (!absent && reason != EEXIST) failed(file_, "created", reason);
-  if (absent) syncFolder(folderOf(file_));
   return absent;
 }
 

@@ -23,21 +23,34 @@ namespace {
 constexpr int could_not_start = 127;
 constexpr double patience_s = 5;
 
-bool redirect(const char* file, int descriptor) {
-  const int opened = open(file, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  return opened >= 0 && dup2(opened, descriptor) >= 0;
-}
+/// An open file, also if the child is killed before it does anything.
+class OpenFile {
+ public:
+  OpenFile(const std::string& file, int flags) : descriptor_(open(file.c_str(), flags | O_CLOEXEC, 0666)) {
+    if (descriptor_ < 0) throw IoError(fmt::format("{}: cannot be opened: {}", file, std::strerror(errno)));
+  }
+  ~OpenFile() { close(descriptor_); }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  bool become(int descriptor) const { return dup2(descriptor_, descriptor) >= 0; }
+
+ private:
+  int descriptor_;
+};
+
+struct StandardFiles {
+  OpenFile in, out, error;
+};
 
 /// What the child does before it becomes the program; only calls that are safe between fork and exec.
-[[noreturn]] void become(const ChildCommand& command, char* const* arguments, pid_t parent) {
+[[noreturn]] void become(const ChildCommand& command, const StandardFiles& files, char* const* arguments, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(could_not_start);
   setpgid(0, 0);  // Ctrl-C reaches the worker, which ends the child in order
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
-  const int empty_input = open("/dev/null", O_RDONLY | O_CLOEXEC);
-  if (empty_input >= 0 && dup2(empty_input, STDIN_FILENO) >= 0 && redirect(command.out_file.c_str(), STDOUT_FILENO) &&
-      redirect(command.error_file.c_str(), STDERR_FILENO) && chdir(command.folder.c_str()) == 0)
+  if (files.in.become(STDIN_FILENO) && files.out.become(STDOUT_FILENO) && files.error.become(STDERR_FILENO) &&
+      chdir(command.folder.c_str()) == 0)
     execv(command.program.c_str(), arguments);
   _exit(could_not_start);
 }
@@ -94,9 +107,11 @@ ChildEnd runChild(const ChildCommand& command, const std::function<bool()>& stop
   std::vector<char*> arguments = {const_cast<char*>(command.program.c_str())};
   for (const std::string& argument : command.arguments) arguments.push_back(const_cast<char*>(argument.c_str()));
   arguments.push_back(nullptr);
+  constexpr int anew = O_WRONLY | O_CREAT | O_TRUNC;
+  const StandardFiles files{{"/dev/null", O_RDONLY}, {command.out_file, anew}, {command.error_file, anew}};
   const pid_t parent = getpid(), pid = fork();
   if (pid < 0) throw IoError(fmt::format("{}: no process can be started: {}", command.program, std::strerror(errno)));
-  if (pid == 0) become(command, arguments.data(), parent);
+  if (pid == 0) become(command, files, arguments.data(), parent);
   const ChildEnd end = Child(pid).wait(stop);
   if (end.signal == 0 && end.exit_status == could_not_start) throw IoError(command.program + ": cannot be started");
   return end;

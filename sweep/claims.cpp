@@ -100,7 +100,8 @@ void Claims::beat() {
 bool Claims::claim(std::size_t row, int attempt) {
   const std::string file = path(row, attempt);
   if (access(file.c_str(), F_OK) == 0) return false;
-  return FileReplacement(file, text_).commitIfAbsent();
+  constexpr bool to_disk = false;  // a claim that a power failure took away is of nobody who lives
+  return FileReplacement(file, text_, to_disk).commitIfAbsent();
 }
 
 void Claims::end(std::size_t row, int attempt, AttemptEnd how, const std::string& message) {

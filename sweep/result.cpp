@@ -31,7 +31,9 @@ bool writeResult(const std::string& folder, std::size_t row, const RowResult& re
                              {"wall_s", result.wall_s},
                              {"result", result.numbers}};
   const std::string text = json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
-  return FileReplacement(pathOf(folder, row), text).commitIfAbsent();
+  const bool first = FileReplacement(pathOf(folder, row), text).commitIfAbsent();
+  if (first) syncFolder(folder + "/results");
+  return first;
 }
 
 RowResult readResult(const std::string& folder, std::size_t row) {

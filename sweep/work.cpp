@@ -29,6 +29,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t output_limit_bytes = std::size_t{64} << 20;
 constexpr int most_crashes = 2, most_kills = 5;
+constexpr std::chrono::milliseconds longest_wait(1000);
 constexpr double end_margin_s = 1.0;  ///< what a worker needs to give a row back
 
 /// What the program's exit statuses say about a row; see docs/getting_started.md.
@@ -116,7 +117,8 @@ class Worker {
     }
     if (!others_are_at_work || !options_.wait) return false;
     claims_.beat();
-    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    std::this_thread::sleep_for(wait_);
+    wait_ = std::min(2 * wait_, longest_wait);
     return true;
   }
 
@@ -234,6 +236,7 @@ class Worker {
   std::vector<bool> tried_;
   std::size_t next_ = 0, first_open_ = 0;
   double longest_row_s_ = 0;
+  std::chrono::milliseconds wait_{10};  ///< before it looks again whether others have finished or died
   WorkSummary summary_;
 };
 

@@ -14,12 +14,12 @@ std::string readTextFile(const std::string& file, std::size_t limit_bytes);
 /// happened. Throws IoError naming the file and the system's reason.
 class FileReplacement {
  public:
-  /// Writes `text` to the temporary file and to the disk (fsync).
-  FileReplacement(std::string file, std::string_view text);
+  /// Writes `text` to the temporary file and, unless told otherwise, to the disk (fsync).
+  FileReplacement(std::string file, std::string_view text, bool to_disk = true);
   ~FileReplacement();
   FileReplacement(const FileReplacement&) = delete;
   FileReplacement& operator=(const FileReplacement&) = delete;
-  /// Renames the temporary file to its final name and waits until the folder is on the disk.
+  /// Renames the temporary file to its final name.
   void commit();
   /// The same, but only if there is no file of that name yet; of several that try at once, on one or many machines, one succeeds.
   /// Returns whether this one did.
