@@ -56,6 +56,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME musclesim)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "libosmesa6")  # pictures without a display; looked for at run time
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "libmusclesim-dev, gnuplot-nox, ffmpeg, bash-completion")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "simulator of robots driven by pneumatic artificial muscles
  Simulates robots, replays recordings through them, and says where and why recordings of a real machine differ from the model.")

@@ -2,7 +2,9 @@
 # Installs what building musclesim needs and is not there yet, with Debian's apt-get.
 #
 #     scripts/install_dependencies.sh          what the program needs
-#     scripts/install_dependencies.sh --test   and what the tests need
+#     scripts/install_dependencies.sh --test      and what the tests need
+#     scripts/install_dependencies.sh --cluster   and what the tests of sweeps under GNU parallel and Slurm need
+#     scripts/install_dependencies.sh --package   and what the Debian packages of musclesim need
 #
 # When everything is there it does nothing, needs no rights and no network. On a system without apt-get it says what is needed.
 set -euo pipefail
@@ -37,6 +39,16 @@ test_packages=(
   "xvfb                   a display for the tests of the window"
   "xdotool                keys and mouse for the tests of the window"
 )
+cluster_packages=(
+  "parallel               GNU parallel"
+  "munge                  authentication of Slurm"
+  "slurm-wlm              Slurm"
+)
+package_packages=(
+  "help2man               manual page"
+  "dpkg-dev               Debian packages"
+  "debootstrap            a fresh Debian to try them in"
+)
 
 fail() {
   printf 'install_dependencies: %s\n' "$@" >&2
@@ -47,7 +59,9 @@ wanted=("${build_packages[@]}")
 case "${1-}" in
   "") ;;
   --test) wanted+=("${test_packages[@]}") ;;
-  *) fail "unknown argument '$1'; allowed: --test" ;;
+  --cluster) wanted+=("${test_packages[@]}" "${cluster_packages[@]}") ;;
+  --package) wanted+=("${package_packages[@]}") ;;
+  *) fail "unknown argument '$1'; allowed: --test, --cluster, --package" ;;
 esac
 
 if ! command -v apt-get >/dev/null; then
