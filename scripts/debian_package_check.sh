@@ -10,6 +10,7 @@ set -euo pipefail
 root=$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")
 # shellcheck source=scripts/common.sh
 source "$root/scripts/common.sh"
+command -v help2man >/dev/null || { say "debian_package_check: needs help2man (scripts/install_dependencies.sh --package)"; exit 2; }
 # shellcheck source=scripts/fresh_debian.sh
 source "$root/scripts/fresh_debian.sh"
 
@@ -18,12 +19,11 @@ enter_private_mounts "$@"
 build=${2-}
 if [[ -z $build ]]; then
   build=$root/build/release
-  build_preset release all -DMUSCLESIM_TESTS=OFF
+  build_preset release manual_page -DMUSCLESIM_TESTS=OFF
 else
   build=$(realpath "$build")
-  cmake --build "$build" --target all >&2
+  cmake --build "$build" --target manual_page >&2
 fi
-[[ -e $build/musclesim.1 ]] || fail "$build has no manual page; install help2man and configure it again"
 make_debian "$1"
 mkdir -p "$debian/packages"
 (cd "$build" && cpack -G DEB -B "$debian/packages" >"$dir/cpack.log") || fail "cpack failed, see $dir/cpack.log"

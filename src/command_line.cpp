@@ -1,0 +1,70 @@
+#include "command_line.h"
+
+#include <cstdio>
+#include <string>
+
+#include "musclesim/version.h"
+
+namespace musclesim::program {
+
+namespace {
+
+/// An empty value (--step "") would count as "not given".
+void refuseEmptyValues(CLI::App& command) {
+  for (CLI::Option* option : command.get_options())
+    if (option->get_expected_max() > 0) option->check([](const std::string& value) { return value.empty() ? "must not be empty" : ""; });
+}
+
+}  // namespace
+
+CommandLine::CommandLine()
+    : app_(
+          "Simulator of robots driven by pneumatic artificial muscles.\n"
+          "Without a sub-command it is `run`: the RoboticArm finds its height under attractor selection.") {
+  app_.name("musclesim");
+  app_.set_version_flag("--version", "musclesim " MUSCLESIM_VERSION);
+  app_.footer(
+      "Exit status: 0 done, 1 internal error, 2 usage, 3 bad input file, 4 simulation diverged,\n"
+      "5 input/output error, 6 incomplete sweep, 130/143 interrupted (files complete up to then).");
+  app_.require_subcommand(0, 1);
+
+  run_ = addRun(app_, model_);
+  const auto add = [&](const std::string& name, const std::string& description, auto addTo) {
+    CLI::App* command = app_.add_subcommand(name, description);
+    commands_.emplace_back(command, addTo(*command));
+  };
+  add("replay", "Plays a recording's commands through the model and compares",
+      [&](CLI::App& command) { return addReplay(command, model_); });
+  add("effects", "Lists the effects that a clean model leaves out, or describes one", addEffects);
+  add("fit", "Fits force laws to measured static points", addFit);
+  add("experiment", "The paper's load-frame experiment in the simulator",
+      [&](CLI::App& command) { return addExperiment(command, model_); });
+  add("bench", "Measures r(n), CPU time over simulated time, for all steppers and muscle models",
+      [&](CLI::App& command) { return addBench(command, model_); });
+  add("diagnose", "Says where recordings differ from the model, why, and how far that can be closed",
+      [&](CLI::App& command) { return addDiagnose(command, model_); });
+  add("plan", "Writes down the runs of a parameter sweep", addPlan);
+  add("work", "Runs rows of a sweep that no other worker has taken, until none is left", addWork);
+  add("collect", "Puts the results of a sweep into one table", addCollect);
+  refuseEmptyValues(app_);
+  for (const auto& [command, action] : commands_) refuseEmptyValues(*command);
+}
+
+std::optional<int> CommandLine::parse(int argument_count, const char* const* arguments) {
+  try {
+    app_.parse(argument_count, arguments);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app_.exit(error);  // --help, --version
+    std::fprintf(stderr, "musclesim: error: %s\nmusclesim --help lists the options\n", error.what());
+    return bad_usage;
+  }
+  return std::nullopt;
+}
+
+int CommandLine::run() {
+  for (const auto& [command, action] : commands_)
+    if (command->parsed()) return action();
+  return run_();
+}
+
+}  // namespace musclesim::program

@@ -1,0 +1,31 @@
+/// The command line: which command is to run, with which options.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "commands.h"
+
+namespace musclesim::program {
+
+class CommandLine {
+ public:
+  CommandLine();
+  CommandLine(const CommandLine&) = delete;
+  CommandLine& operator=(const CommandLine&) = delete;
+
+  /// Reads the arguments, the program's name first. Returns an exit status if all is said with that (--help, a usage error).
+  std::optional<int> parse(int argument_count, const char* const* arguments);
+  /// Runs the command that was parsed; returns the exit status, errors are thrown.
+  int run();
+
+ private:
+  CLI::App app_;
+  ModelOptions model_;
+  Action run_;
+  std::vector<std::pair<CLI::App*, Action>> commands_;
+};
+
+}  // namespace musclesim::program
