@@ -1,4 +1,4 @@
-/// `musclesim run`: the paper's program without its window. A robot, a controller, a log and a figure.
+/// `musclesim run`: the paper's program. A robot, a controller, a log and a figure; a window, pictures, or neither.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -11,8 +11,10 @@
 #include "musclesim/log/recorder.h"
 #include "musclesim/robot/muscle_colors.h"
 #include "musclesim/units.h"
+#include "output_folder.h"
 #include "progress.h"
 #include "run_output.h"
+#include "window.h"
 
 namespace musclesim::program {
 
@@ -37,10 +39,16 @@ ControllerRequest controllerRequest(Simulation& simulation, const RunOptions& op
   return request;
 }
 
-/// Without --duration: the published 300 s, or as much as makes a video worth looking at.
+constexpr double longest_s = 1e7;
+
+bool hasWindow(const RunOptions& options) {
+  return !options.simple && !options.pictures.wanted();
+}
+
+/// Without --duration: the published 300 s; as much as makes a video worth looking at; with a window until it is closed.
 double defaultDurationS(const RunOptions& options) {
   constexpr double batch_s = 300, pictures_s = 20;
-  return options.simple ? batch_s : pictures_s;
+  return options.simple ? batch_s : hasWindow(options) ? longest_s : pictures_s;
 }
 
 /// One run from the first command to the last row.
@@ -48,11 +56,10 @@ class Run {
  public:
   Run(const ModelOptions& model, const RunOptions& options) : model_(model), options_(options), simulation_(simulationOptions(model)) {
     simulation_.build(model.robot.value_or("arm"));
-    controller_ = &simulation_.control(Controller::make(options.controller, controllerRequest(simulation_, options)));
+    addController();
     simulation_.parameters().requireAllKnown();
     duration_s_ = options.duration_s.value_or(defaultDurationS(options));
     requireDuration();
-    if (options.pictures.wanted()) spectator_ = makePictures(options.pictures, simulation_);
   }
 
   Simulation& simulation() { return simulation_; }
@@ -60,15 +67,18 @@ class Run {
   int execute() {
     const std::string initial_state = model_.initial_state.value_or(simulation_.robot().initialState());
     // The first decision comes before the files: what the controller reports by then decides the columns.
-    const musclesim::Action first_action = controller_->output(robot().getState());
+    const State first_state = robot().getState();
+    const musclesim::Action first_action = controller_->output(first_state);
     const fs::path csv = recordingPath(options_, simulation_.seed());
+    addSpectator(first_state, csv);
+    if (csv.has_parent_path()) makeFolder(csv.parent_path());
     Recorder recorder(csv.string(), describe(simulation_, options_, initial_state), columns());
     say(model_, fmt::format("{} physics, stepper {}, {} internal steps of {:.4g} s per step of {:g} s, seed {}",
                             nameOf(simulation_.physics().kind), simulation_.stepper().name(), simulation_.substeps(),
                             simulation_.internalStepS(), simulation_.stepS(), simulation_.seed()));
     if (!simulation_.stepper().message().empty()) say(model_, simulation_.stepper().message());
     std::optional<Diverged> divergence;
-    Progress progress(duration_s_, model_.quiet);
+    Progress progress(duration_s_, model_.quiet || hands_);
     try {
       simulation_.start(initial_state, first_action);
       loop(recorder, progress, first_action);
@@ -77,12 +87,44 @@ class Run {
     }
     const nlohmann::json verdict = conclude(divergence, progress.wallS());
     recorder.note("verdict", verdict.dump());
+    if (hands_) noteHands(recorder);
     recorder.close(!divergence && interruptSignal() == 0);
-    if (spectator_) spectator_->finish();
+    dismissSpectator(divergence);
     return report(verdict, csv, drawFigure(csv, recorder.rowCount()), divergence);
   }
 
  private:
+  /// A window puts the user's hands before the controller.
+  void addController() {
+    auto controller = Controller::make(options_.controller, controllerRequest(simulation_, options_));
+    if (hasWindow(options_)) {
+      auto hands = std::make_unique<ManualController>(std::move(controller), robot().actuatorCount());
+      hands_ = hands.get();
+      controller = std::move(hands);
+    }
+    controller_ = &simulation_.control(std::move(controller));
+  }
+
+  void addSpectator(const State& first_state, const fs::path& csv) {
+    if (options_.pictures.wanted()) spectator_ = makePictures(options_.pictures, simulation_);
+    if (!hands_) return;
+    const fs::path folder = csv.has_parent_path() ? csv.parent_path() : ".";
+    spectator_ = openWindow(options_.pictures, simulation_, *hands_, first_state, folder.string(), options_.window_log.value_or(""));
+  }
+
+  void dismissSpectator(const std::optional<Diverged>& divergence) {
+    if (!spectator_) return;
+    if (divergence) spectator_->diverge(divergence->what());
+    spectator_->finish();
+    spectator_.reset();
+  }
+
+  void noteHands(Recorder& recorder) const {
+    nlohmann::json intervals = nlohmann::json::array();
+    for (const auto& interval : hands_->manualIntervals()) intervals.push_back({interval.from_s, interval.to_s});
+    recorder.note("by_hand_s", intervals.dump());
+  }
+
   static SimulationOptions simulationOptions(const ModelOptions& model) {
     SimulationOptions options;
     options.physics = physicsFromName(model.physics.value_or("si"));
@@ -107,7 +149,7 @@ class Run {
   }
 
   void requireDuration() const {
-    if (!(duration_s_ >= simulation_.stepS() && duration_s_ <= 1e7))
+    if (!(duration_s_ >= simulation_.stepS() && duration_s_ <= longest_s))
       throw BadParameter("duration", fmt::format("{} s", duration_s_),
                          fmt::format("lie between one step, {} s, and 1e7 s", simulation_.stepS()));
     if (options_.record_interval_s && !(*options_.record_interval_s > 0 && std::isfinite(*options_.record_interval_s)))
@@ -211,6 +253,7 @@ class Run {
   Simulation simulation_;
   Controller* controller_ = nullptr;
   double duration_s_;
+  ManualController* hands_ = nullptr;      ///< null without a window
   std::unique_ptr<Spectator> spectator_;  ///< may be null
   Score score_;
   bool gap_warned_ = false, goes_on_ = true;
@@ -223,14 +266,13 @@ int run(const ModelOptions& model, const RunOptions& options) {
     fmt::print("{}", run.simulation().parameters().toToml());
     return done;
   }
-  if (!options.simple && !options.pictures.wanted())
-    throw BadParameter("this build has no window: use --simple for a batch run, --screenshot or --video for pictures");
+  if (hasWindow(options)) requireWindow();
   return run.execute();
 }
 
 void addOptions(CLI::App& command, RunOptions& options) {
   const std::string group = "Run";
-  command.add_flag("--simple", options.simple, "Batch run without display or interaction")->group(group);
+  command.add_flag("--simple", options.simple, "Batch run without display or interaction; without it a window opens")->group(group);
   command.add_flag("--verbose", options.verbose, "List all primitives and actuators on standard output")->group(group);
   command.add_option("--controller", options.controller, "Controller: " + fmt::format("{}", fmt::join(Controller::names(), ", ")))
       ->group(group)
@@ -244,7 +286,7 @@ void addOptions(CLI::App& command, RunOptions& options) {
       .add_option("--decision-interval", options.decision_interval_s,
                   "Time between decisions in s (default: 6 in original physics, 3 in si)")
       ->group(group);
-  command.add_option("--duration", options.duration_s, "Simulated time in s (default: 300; 20 with --screenshot or --video)")->group(group);
+  command.add_option("--duration", options.duration_s, "Simulated time in s (default: until the window is closed; 300 with --simple; 20 with --screenshot or --video)")->group(group);
   command.add_option("--record", options.record, "Recording to write, FILE.csv (default: run.csv in the run's folder)")->group(group);
   command
       .add_option("--record-interval", options.record_interval_s,
@@ -252,6 +294,8 @@ void addOptions(CLI::App& command, RunOptions& options) {
       ->group(group);
   command.add_option("--out", options.out, "Folder of the run (default: log/runs/<date-time>-<task>-<seed>)")->group(group);
   command.add_flag("--print-config", options.print_config, "Print all parameters as TOML and exit")->group(group);
+  command.add_option("--window-log", options.window_log, "One line of JSON per key or click in the window, with the state after it, FILE")
+      ->group("Pictures");
   addPictureOptions(command, options.pictures, "Pictures");
 }
 

@@ -47,7 +47,6 @@ fs::path recordingPath(const RunOptions& options, std::uint64_t seed) {
                             ? fs::path(*options.record)
                             : (options.out ? fs::path(*options.out) : freshFolder(fmt::format("{}-{}", options.task, seed))) / "run.csv";
   if (file.extension() != ".csv") throw BadParameter("record", file.string(), "end in .csv");
-  if (file.has_parent_path()) makeFolder(file.parent_path());
   return file;
 }
 

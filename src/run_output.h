@@ -20,12 +20,12 @@ struct RunOptions {
   std::vector<double> target_mm;
   std::optional<double> decision_interval_s, record_interval_s;
   std::optional<double> duration_s;
-  std::optional<std::string> record, out;
+  std::optional<std::string> record, out, window_log;
   PictureOptions pictures;
 };
 
-/// Where the recording goes: --record, or run.csv in --out, or in a fresh folder log/runs/<date-time>-<task>-<seed>. Makes the folder.
-/// Throws BadParameter for a name that does not end in .csv, IoError if the folder cannot be made.
+/// Where the recording goes: --record, or run.csv in --out, or in a fresh folder log/runs/<date-time>-<task>-<seed>.
+/// Throws BadParameter for a name that does not end in .csv.
 std::filesystem::path recordingPath(const RunOptions& options, std::uint64_t seed);
 
 /// The sidecar of a run: robot, physics, seed, every parameter.

@@ -1,6 +1,8 @@
 /// Whoever looks on while a simulation runs.
 #pragma once
 
+#include <string>
+
 #include "musclesim/robot/state.h"
 
 namespace musclesim::program {
@@ -11,6 +13,8 @@ class Spectator {
   virtual ~Spectator() = default;
   /// The readings once per control step, in order of time, the first and the last included. False: the run is to end here.
   virtual bool see(const State& state) = 0;
+  /// The run has ended in a divergence; before finish().
+  virtual void diverge(const std::string& message) { static_cast<void>(message); }
   /// The run is over; the simulation may be gone.
   virtual void finish() = 0;
 };

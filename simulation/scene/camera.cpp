@@ -31,6 +31,12 @@ void Camera::pan(float right_px, float down_px, float picture_height_px) {
   center_mm += mm_per_px * (down_px * axes.block<1, 3>(1, 0) - right_px * axes.block<1, 3>(0, 0)).transpose();
 }
 
+std::optional<Eigen::Vector2f> Camera::pixelOf(const Eigen::Vector3f& point_mm, float width_px, float height_px) const {
+  const Eigen::Vector4f clip = projection(width_px / height_px) * view() * point_mm.homogeneous();
+  if (clip.w() <= 0) return std::nullopt;
+  return Eigen::Vector2f((clip.x() / clip.w() + 1) / 2 * width_px, (1 - clip.y() / clip.w()) / 2 * height_px);
+}
+
 Eigen::Vector3f Camera::eyeMm() const {
   const float a = azimuth_deg * rad, e = elevation_deg * rad;
   return center_mm + distance_mm * Eigen::Vector3f(std::cos(e) * std::sin(a), std::sin(e), std::cos(e) * std::cos(a));

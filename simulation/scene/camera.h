@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 namespace musclesim {
 
@@ -20,6 +21,9 @@ struct Camera {
   void zoom(float factor);
   /// Moves the centre in the plane of the picture.
   void pan(float right_px, float down_px, float picture_height_px);
+
+  /// Where a point of the world appears in a picture, in pixels from the upper left corner; none behind the eye.
+  std::optional<Eigen::Vector2f> pixelOf(const Eigen::Vector3f& point_mm, float width_px, float height_px) const;
 
   Eigen::Vector3f eyeMm() const;
   Eigen::Matrix4f view() const;

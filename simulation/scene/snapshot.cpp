@@ -65,13 +65,20 @@ std::optional<Vector> anchorOf(const Joint& joint) {
   return fromOde(anchor);
 }
 
+/// The name of its angle, or that of the bone.
+std::string labelOf(const Joint& joint, const Body& body, const Robot& robot) {
+  for (const Robot::Angle& angle : robot.angles())
+    if (angle.joint == &joint) return angle.name;
+  return body.parts.empty() ? joint.name() : body.parts.front()->name();
+}
+
 /// The joints between bones with the axes of the bone that moves; those of muscles are left out.
 std::vector<DrawnFrame> framesOf(Simulation& simulation) {
   std::vector<DrawnFrame> frames;
   for (const auto& body : simulation.bodies()) {
     for (const auto& joint : simulation.joints()) {
       if (dJointGetBody(joint->id(), 0) != body->id) continue;
-      if (const auto anchor = anchorOf(*joint)) frames.push_back({joint->name(), poseFrom(*anchor, rotationOf(body->id))});
+      if (const auto anchor = anchorOf(*joint)) frames.push_back({labelOf(*joint, *body, simulation.robot()), poseFrom(*anchor, rotationOf(body->id))});
     }
   }
   const Robot& robot = simulation.robot();

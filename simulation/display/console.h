@@ -1,0 +1,70 @@
+/// What the user of a window can do, and what the window shows because of it. Knows nothing of windows.
+#pragma once
+
+#include <chrono>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "musclesim/controller/manual.h"
+#include "pace.h"
+#include "simulation/scene/camera.h"
+#include "simulation/scene/scene.h"
+
+namespace musclesim {
+
+/// A key: its character, lower case, or one of these.
+namespace key {
+inline constexpr int escape = 27, f1 = 1001, up = 1002, down = 1003, left = 1004, right = 1005, tab = 9;
+}
+
+class Console {
+ public:
+  /// Muscles, pressures and pace are those of a run, which may be in another thread.
+  Console(ManualController& hands, Pace& pace, const Camera& camera);
+
+  /// A key and what it does, for the help overlay and the documentation.
+  struct Binding {
+    std::string keys, meaning;
+    std::vector<int> codes;
+    void (*act)(Console&, int code);
+  };
+  static const std::vector<Binding>& bindings();
+
+  /// Does what a key is for; false if it is for nothing.
+  bool press(int code);
+  void select(int muscle);
+  void raise(double by_ratio);
+  /// By hand, with a word about it if that is new.
+  void setPressure(int muscle, double pressure_ratio);
+  void toggleManual();
+
+  ManualController& hands() const { return hands_; }
+  Pace& pace() const { return pace_; }
+  int muscleCount() const { return muscle_count_; }
+  int selected() const { return style.selected; }
+
+  /// A line for the user that is shown for some seconds.
+  void say(const std::string& message);
+  std::string notice() const;
+
+  Camera camera;
+  SceneStyle style;
+  bool show_help = false, show_panel = true;
+  bool wants_screenshot = false, wants_video = false;
+  std::optional<std::string> divergence;  ///< the banner
+
+  /// All of the above, for logs and tests.
+  nlohmann::json state() const;
+
+ private:
+  ManualController& hands_;
+  Pace& pace_;
+  Camera first_camera_;
+  int muscle_count_;
+  std::string notice_;
+  std::chrono::steady_clock::time_point notice_until_;
+};
+
+}  // namespace musclesim

@@ -1,0 +1,59 @@
+#include "display.h"
+
+#include <chrono>
+
+#include "shared.h"
+#include "window.h"
+
+namespace musclesim {
+
+namespace {
+
+void runWindow(Display::Shared& shared) {
+  bool is_open = false;
+  try {
+    Window window(shared);
+    shared.opened_at = std::chrono::steady_clock::now();
+    is_open = true;
+    shared.opened.set_value();
+    window.loop();
+  } catch (...) {
+    if (!is_open) shared.opened.set_exception(std::current_exception());
+  }
+  shared.pace.close();
+}
+
+}  // namespace
+
+Display::Display(DisplayOptions options, ManualController& hands, Snapshot first)
+    : shared_(std::make_unique<Shared>(std::move(options), hands, std::move(first))) {
+  thread_ = std::jthread([shared = shared_.get()] { runWindow(*shared); });
+  shared_->opened.get_future().get();
+}
+
+Display::~Display() {
+  shared_->pace.close();
+  if (!shared_->is_lost) return;
+  thread_.detach();
+  static_cast<void>(shared_.release());  // in use by the thread that cannot end
+}
+
+bool Display::show(Snapshot snapshot, const Interrupted& interrupted) {
+  const double time_s = snapshot.state.time_s;
+  shared_->publish(std::move(snapshot));
+  return shared_->pace.waitFor(time_s, interrupted);
+}
+
+void Display::showDivergence(const std::string& message, const Interrupted& interrupted) {
+  constexpr auto look_around = std::chrono::milliseconds(50);
+  shared_->setDivergence(message);
+  shared_->pace.setPaused(true);
+  while (!shared_->pace.isClosed() && !interrupted()) std::this_thread::sleep_for(look_around);
+}
+
+double Display::framesPerS() const {
+  const std::chrono::duration<double> open = std::chrono::steady_clock::now() - shared_->opened_at;
+  return static_cast<double>(shared_->frame_count) / open.count();
+}
+
+}  // namespace musclesim

@@ -1,0 +1,27 @@
+/// The last seconds of a run, for live plots.
+#pragma once
+
+#include <deque>
+
+#include "simulation/scene/snapshot.h"
+
+namespace musclesim {
+
+class History {
+ public:
+  static constexpr double duration_s = 20;
+
+  struct Sample {
+    State state;
+    std::optional<double> activity, target_height_mm;
+  };
+
+  /// Takes a snapshot unless its time is that of the last one.
+  void add(const Snapshot& snapshot);
+  const std::deque<Sample>& samples() const { return samples_; }
+
+ private:
+  std::deque<Sample> samples_;
+};
+
+}  // namespace musclesim

@@ -1,0 +1,118 @@
+#include "overlay.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <optional>
+#include <sstream>
+
+namespace musclesim {
+
+std::string paceLine(const Console& console) {
+  const double target = 1 / console.pace().speed(), measured = console.pace().measuredSpeed();
+  return fmt::format("wall/simulated: target {:.3g}, measured {}", target, measured > 0 ? fmt::format("{:.3g}", 1 / measured) : "-");
+}
+
+namespace {
+
+const Color ink{0.13, 0.14, 0.16, ""}, paper{1, 1, 1, ""}, night{0.10, 0.11, 0.13, ""}, accent{1, 0.80, 0.35, ""}, alarm{0.72, 0.08, 0.06, ""};
+constexpr float margin = 12;
+
+/// Lines of text in a box.
+void drawBox(Painter& painter, float x, float y, const std::vector<std::string>& lines, const Color& text, const Color& box, float alpha) {
+  float width = 0;
+  for (const std::string& line : lines) width = std::max(width, painter.widthOf(line));
+  const float line = painter.lineHeight();
+  painter.rectangle(x, y, width + 2 * margin, line * static_cast<float>(lines.size()) + margin, box, alpha);
+  for (std::size_t i = 0; i < lines.size(); ++i) painter.text(x + margin, y + margin / 2 + line * static_cast<float>(i), lines[i], text);
+}
+
+std::vector<std::string> statusLines(const Console& console, const Snapshot& snapshot) {
+  const State& state = snapshot.state;
+  const char* mode = console.pace().isPaused() ? "paused" : "running";
+  std::vector<std::string> lines = {fmt::format("{:.2f} s   {}, {}", state.time_s, mode, console.hands().isManual() ? "by hand" : "automatic"),
+                                    paceLine(console)};
+  if (state.hand_mm)
+    lines.push_back(fmt::format("hand {:.0f}, {:.0f}, {:.0f} mm", state.hand_mm->x(), state.hand_mm->y(), state.hand_mm->z()));
+  const auto muscle = static_cast<std::size_t>(console.selected());
+  if (console.selected() >= 0 && muscle < state.pressure.size())
+    lines.push_back(fmt::format("muscle {}: pressure {:.2f}, length {:.1f} mm, force {:.1f} N", muscle, state.pressure[muscle],
+                                state.length_mm[muscle], state.force_N[muscle]));
+  return lines;
+}
+
+void drawLabels(Painter& painter, const Console& console, const Snapshot& snapshot, float width, float height) {
+  const auto label = [&](const Eigen::Vector3f& point, const std::string& text, const Color& color) {
+    const auto at = console.camera.pixelOf(point, width, height);
+    if (!at) return;
+    const float w = painter.widthOf(text) + 8, h = painter.lineHeight();
+    painter.rectangle(at->x() + 6, at->y() - h / 2, w, h, paper, 0.75F);
+    painter.text(at->x() + 10, at->y() - h / 2, text, color);
+  };
+  for (const DrawnFrame& frame : snapshot.frames) label(frame.pose.topRightCorner<3, 1>(), frame.name, ink);
+  for (std::size_t i = 0; i < snapshot.hoses.size(); ++i) {
+    const auto& points = snapshot.hoses[i].points_mm;
+    label((points[(points.size() - 1) / 2] + points[points.size() / 2]) / 2, std::to_string(i),
+          static_cast<int>(i) == console.selected() ? alarm : ink);
+  }
+}
+
+void drawHelp(Painter& painter, float width, float height) {
+  const auto& bindings = Console::bindings();
+  std::vector<std::pair<std::string, std::string>> rows = {{"drag", "rotate (left button), move (right or middle button)"},
+                                                           {"click", "select the muscle under the pointer"}};
+  for (const auto& binding : bindings) rows.emplace_back(binding.keys, binding.meaning);
+  float keys_width = 0, meanings_width = 0;
+  for (const auto& [keys, meaning] : rows) {
+    keys_width = std::max(keys_width, painter.widthOf(keys));
+    meanings_width = std::max(meanings_width, painter.widthOf(meaning));
+  }
+  const float line = painter.lineHeight() + 5, gap = 24, edge = 22;
+  const float box_width = keys_width + gap + meanings_width + 2 * edge;
+  const float box_height = line * static_cast<float>(rows.size() + 1) + 2 * edge;
+  const float x = std::max(0.0F, (width - box_width) / 2), y = std::max(0.0F, (height - box_height) / 2);
+  painter.rectangle(x, y, box_width, box_height, night, 0.90F);
+  painter.text(x + edge, y + edge - 4, "Keys and mouse", paper);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const float row_y = y + edge + line * static_cast<float>(i + 1);
+    painter.text(x + edge, row_y, rows[i].first, accent);
+    painter.text(x + edge + keys_width + gap, row_y, rows[i].second, paper);
+  }
+}
+
+/// Breaks a text into lines no wider than `width`.
+std::vector<std::string> wrapped(const Painter& painter, const std::string& text, float width) {
+  std::vector<std::string> lines(1);
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const std::string longer = lines.back().empty() ? word : lines.back() + " " + word;
+    if (painter.widthOf(longer) <= width || lines.back().empty())
+      lines.back() = longer;
+    else
+      lines.push_back(word);
+  }
+  return lines;
+}
+
+void drawBanner(Painter& painter, const std::string& divergence, float width, float y) {
+  std::vector<std::string> lines;
+  for (const std::string& text : {divergence, std::string("The run stands still; its recording is complete up to here. q ends it.")})
+    for (const std::string& line : wrapped(painter, text, width - 6 * margin)) lines.push_back(line);
+  drawBox(painter, 2 * margin, y, lines, paper, alarm, 0.92F);
+}
+
+}  // namespace
+
+void drawOverlay(Painter& painter, const Console& console, const Snapshot& snapshot, float width, float height, bool with_status) {
+  const float line = painter.lineHeight();
+  if (console.style.frames) drawLabels(painter, console, snapshot, width, height);
+  if (with_status) drawBox(painter, margin, margin, statusLines(console, snapshot), ink, paper, 0.78F);
+  if (const std::string notice = console.notice(); !notice.empty())
+    drawBox(painter, (width - painter.widthOf(notice)) / 2 - margin, height - 3 * line - margin, {notice}, paper, night, 0.80F);
+  painter.text(margin, height - line - margin / 2, "h: keys", ink);
+  if (console.divergence) drawBanner(painter, *console.divergence, width, with_status ? 9 * line : 2 * margin);
+  if (console.show_help) drawHelp(painter, width, height);
+}
+
+}  // namespace musclesim

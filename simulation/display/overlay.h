@@ -1,0 +1,16 @@
+/// What is written over the scene: state of the run, notices, labels, help, the banner of a divergence.
+#pragma once
+
+#include "console.h"
+#include "painter.h"
+#include "simulation/scene/snapshot.h"
+
+namespace musclesim {
+
+/// Wall time over simulated time, target and measured.
+std::string paceLine(const Console& console);
+
+/// Draws all of it into the scene's part of the window.
+void drawOverlay(Painter& painter, const Console& console, const Snapshot& snapshot, float width_px, float height_px, bool with_status);
+
+}  // namespace musclesim

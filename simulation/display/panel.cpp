@@ -1,0 +1,259 @@
+#include "panel.h"
+
+#include <GL/freeglut.h>
+#include <backends/imgui_impl_glut.h>
+#include <backends/imgui_impl_opengl2.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <vector>
+
+#include "plot.h"
+
+namespace musclesim {
+
+namespace {
+
+constexpr int panel_width_px = 310;
+constexpr float font_px = 15, slider_row_px = 23;
+const Color height_color{0.87, 0.05, 0.05, ""}, target_color{0.95, 0.50, 0.0, ""}, activity_color{0.1, 0.55, 0.1, ""},
+    command_color{0.55, 0.60, 0.68, ""}, pressure_color{0.05, 0.30, 0.65, ""}, length_color{0.42, 0.20, 0.55, ""},
+    force_color{0.65, 0.25, 0.10, ""};
+
+ImVec4 shade(const Color& color, float alpha = 1) {
+  return {static_cast<float>(color.red), static_cast<float>(color.green), static_cast<float>(color.blue), alpha};
+}
+
+/// A font of the system if there is one, since the built-in one is coarse.
+void chooseFont() {
+  for (const char* file : {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf",
+                           "/usr/share/fonts/truetype/noto/NotoSans-Regular.ttf"})
+    if (std::filesystem::exists(file) && ImGui::GetIO().Fonts->AddFontFromFileTTF(file, font_px)) return;
+  ImGui::GetIO().Fonts->AddFontDefault();
+}
+
+void chooseLook() {
+  ImGui::StyleColorsLight();
+  ImGuiStyle& style = ImGui::GetStyle();
+  style.WindowRounding = 0;
+  style.FrameRounding = 3;
+  style.GrabRounding = 3;
+  style.WindowBorderSize = 0;
+  style.WindowPadding = {12, 10};
+  style.ItemSpacing = {7, 5};
+  style.Colors[ImGuiCol_WindowBg] = {0.955F, 0.958F, 0.964F, 1};
+  style.Colors[ImGuiCol_FrameBg] = {1, 1, 1, 1};
+}
+
+/// Draws the overlay with the panel's font.
+class ImGuiPainter final : public Painter {
+ public:
+  void rectangle(float x, float y, float width, float height, const Color& color, float alpha) override {
+    list_->AddRectFilled({x, y}, {x + width, y + height}, ImGui::ColorConvertFloat4ToU32(shade(color, alpha)), 5);
+  }
+  void text(float x, float y, const std::string& text, const Color& color) override {
+    list_->AddText({x, y}, ImGui::ColorConvertFloat4ToU32(shade(color)), text.c_str());
+  }
+  float widthOf(const std::string& text) const override { return ImGui::CalcTextSize(text.c_str()).x; }
+  float lineHeight() const override { return ImGui::GetFontSize() + 4; }
+
+ private:
+  ImDrawList* list_ = ImGui::GetBackgroundDrawList();
+};
+
+class ImGuiPanel final : public Panel {
+ public:
+  ImGuiPanel() {
+    ImGui::CreateContext();
+    ImGui::GetIO().IniFilename = nullptr;
+    chooseFont();
+    chooseLook();
+    ImGui_ImplGLUT_Init();
+    ImGui_ImplOpenGL2_Init();
+  }
+  ~ImGuiPanel() override {
+    ImGui_ImplOpenGL2_Shutdown();
+    ImGui_ImplGLUT_Shutdown();
+    ImGui::DestroyContext();
+  }
+
+  int widthPx() const override { return panel_width_px; }
+  void resize(int width, int height) override { ImGui_ImplGLUT_ReshapeFunc(width, height); }
+
+  /// Only while a number is being typed: a slider that was dragged must not swallow the keys of the scene.
+  bool key(unsigned char character) override {
+    if (!ImGui::GetIO().WantTextInput) return false;
+    ImGui_ImplGLUT_KeyboardFunc(character, 0, 0);
+    return true;
+  }
+  void keyUp(unsigned char character) override { ImGui_ImplGLUT_KeyboardUpFunc(character, 0, 0); }
+
+  /// A press and its release can arrive between two pictures; the release then waits for the next, so that the press is seen.
+  bool button(int glut_button, int glut_state, int x, int y) override {
+    ImGuiIO& io = ImGui::GetIO();
+    io.MousePos = {static_cast<float>(x), static_cast<float>(y)};
+    const int which = glut_button == GLUT_LEFT_BUTTON ? 0 : glut_button == GLUT_RIGHT_BUTTON ? 1 : 2;
+    if (glut_button > GLUT_RIGHT_BUTTON) return isOver(x);
+    if (glut_state == GLUT_DOWN) {
+      io.MouseDown[which] = is_fresh_[which] = true;
+      is_released_[which] = false;
+    } else if (is_fresh_[which]) {
+      is_released_[which] = true;
+    } else {
+      io.MouseDown[which] = false;
+    }
+    return glut_state == GLUT_DOWN && isOver(x);
+  }
+  bool move(int x, int y) override {
+    ImGui_ImplGLUT_MotionFunc(x, y);
+    return false;
+  }
+
+  void draw(Console& console, const Snapshot& snapshot, const History& history, int width, int height) override {
+    ImGui_ImplOpenGL2_NewFrame();
+    ImGui_ImplGLUT_NewFrame();
+    const bool shown = console.show_panel;
+    left_px_ = shown ? width - panel_width_px : width;
+    ImGuiPainter painter;
+    drawOverlay(painter, console, snapshot, static_cast<float>(left_px_), static_cast<float>(height), !shown);
+    if (shown) drawPanel(console, snapshot, history, static_cast<float>(height));
+    ImGui::Render();
+    glViewport(0, 0, width, height);
+    ImGui_ImplOpenGL2_RenderDrawData(ImGui::GetDrawData());
+    releaseButtons();
+  }
+
+ private:
+  bool isOver(int x) const { return x >= left_px_; }
+
+  void releaseButtons() {
+    for (int which = 0; which < 3; ++which) {
+      is_fresh_[which] = false;
+      if (is_released_[which]) ImGui::GetIO().MouseDown[which] = is_released_[which] = false;
+    }
+  }
+
+  void drawPanel(Console& console, const Snapshot& snapshot, const History& history, float height) const {
+    ImGui::SetNextWindowPos({static_cast<float>(left_px_), 0});
+    ImGui::SetNextWindowSize({panel_width_px, height});
+    ImGui::Begin("panel", nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav);
+    drawRun(console, snapshot);
+    ImGui::Separator();
+    drawPressures(console, snapshot);
+    ImGui::Separator();
+    drawPlots(console, snapshot, history);
+    ImGui::Separator();
+    drawSwitches(console);
+    ImGui::End();
+  }
+
+  static void drawRun(Console& console, const Snapshot& snapshot) {
+    ImGui::Text("%.2f s", snapshot.state.time_s);
+    ImGui::SameLine(110);
+    bool by_hand = console.hands().isManual();
+    if (ImGui::RadioButton("automatic", !by_hand) && by_hand) console.toggleManual();
+    ImGui::SameLine();
+    if (ImGui::RadioButton("by hand", by_hand) && !by_hand) console.toggleManual();
+    if (ImGui::Button(console.pace().isPaused() ? "Go on" : "Pause", {68, 0})) console.press('p');
+    ImGui::SameLine();
+    if (ImGui::Button("Step")) console.press(key::right);
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(-1);
+    auto speed = static_cast<float>(console.pace().speed());
+    if (ImGui::SliderFloat("##speed", &speed, 0.01F, 100, "speed %.3g", ImGuiSliderFlags_Logarithmic)) console.pace().setSpeed(speed);
+    ImGui::TextUnformatted(paceLine(console).c_str());
+  }
+
+  /// One slider per muscle with a patch of its colour, a click on which selects it; many muscles scroll.
+  static void drawPressures(Console& console, const Snapshot& snapshot) {
+    constexpr int most_rows = 10;
+    const auto rows = static_cast<float>(std::min(console.muscleCount(), most_rows));
+    ImGui::BeginChild("pressures", {0, rows * slider_row_px + 2}, false, ImGuiWindowFlags_NoNav);
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {7, 3});
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {4, 2});
+    const musclesim::Action pressures = console.hands().pressures();
+    for (int i = 0; i < console.muscleCount(); ++i) drawPressure(console, i, pressures[static_cast<std::size_t>(i)], snapshot);
+    ImGui::PopStyleVar(2);
+    ImGui::EndChild();
+  }
+
+  static void drawPressure(Console& console, int muscle, double pressure, const Snapshot& snapshot) {
+    ImGui::PushID(muscle);
+    const Color& color = snapshot.hoses.at(static_cast<std::size_t>(muscle)).color;
+    const bool selected = muscle == console.selected();
+    if (ImGui::ColorButton("##color", shade(color), ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoDragDrop, {20, 18}))
+      console.select(muscle);
+    ImGui::SameLine();
+    ImGui::PushStyleColor(ImGuiCol_Text, selected ? ImVec4(0.75F, 0.05F, 0.05F, 1) : ImGui::GetStyleColorVec4(ImGuiCol_Text));
+    ImGui::Text("%2d", muscle);
+    ImGui::PopStyleColor();
+    ImGui::SameLine(52);
+    ImGui::SetNextItemWidth(-1);
+    ImGui::PushStyleColor(ImGuiCol_SliderGrab, shade(color));
+    ImGui::PushStyleColor(ImGuiCol_SliderGrabActive, shade(color));
+    ImGui::PushStyleColor(ImGuiCol_FrameBg, selected ? ImVec4(1, 0.90F, 0.88F, 1) : ImVec4(1, 1, 1, 1));
+    auto value = static_cast<float>(pressure);
+    if (ImGui::SliderFloat("##pressure", &value, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp)) {
+      console.select(muscle);
+      console.setPressure(muscle, static_cast<double>(value));
+    }
+    ImGui::PopStyleColor(3);
+    ImGui::PopID();
+  }
+
+  static void drawPlots(const Console& console, const Snapshot& snapshot, const History& history) {
+    constexpr float switches_px = 34, title_px = 21, smallest_px = 30;
+    const bool has_height = snapshot.state.hand_mm.has_value();
+    const float plot_count = has_height ? (snapshot.activity ? 5 : 4) : 3;
+    const float height = std::max(smallest_px, (ImGui::GetContentRegionAvail().y - switches_px) / plot_count - title_px - 5);
+    if (has_height) drawTask(snapshot, history, height);
+    const auto muscle = static_cast<std::size_t>(std::max(0, console.selected()));
+    const auto of = [muscle](std::vector<double> State::*signal) {
+      return [muscle, signal](const History::Sample& sample) -> std::optional<double> {
+        const auto& values = sample.state.*signal;
+        return muscle < values.size() ? std::optional(values[muscle]) : std::nullopt;
+      };
+    };
+    drawPlot(fmt::format("muscle {}", muscle), {{"command", command_color, of(&State::command)}, {"pressure", pressure_color, of(&State::pressure)}},
+             history, height, std::pair(0.0, 1.0));
+    drawPlot("", {{"length/mm", length_color, of(&State::length_mm)}}, history, height, std::nullopt);
+    drawPlot("", {{"force/N", force_color, of(&State::force_N)}}, history, height, std::nullopt);
+  }
+
+  static void drawTask(const Snapshot& snapshot, const History& history, float height) {
+    std::vector<PlotCurve> curves;
+    if (snapshot.target) curves.push_back({"target", target_color, [](const History::Sample& s) { return s.target_height_mm; }});
+    curves.push_back({"height/mm", height_color, [](const History::Sample& s) -> std::optional<double> {
+                        return s.state.hand_mm ? std::optional(s.state.hand_mm->y()) : std::nullopt;
+                      }});
+    drawPlot("", curves, history, height, std::nullopt);
+    if (snapshot.activity)
+      drawPlot("", {{"activity", activity_color, [](const History::Sample& s) { return s.activity; }}}, history, height, std::nullopt);
+  }
+
+  static void drawSwitches(Console& console) {
+    ImGui::Checkbox("bones", &console.style.transparent);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("transparent bones (t)");
+    ImGui::SameLine();
+    ImGui::Checkbox("tension", &console.style.color_tension);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("muscles in the colour of their tension (m)");
+    ImGui::SameLine();
+    ImGui::Checkbox("labels", &console.style.frames);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("frames and labels (f)");
+  }
+
+  int left_px_ = 1 << 30;
+  std::array<bool, 3> is_fresh_ = {}, is_released_ = {};
+};
+
+}  // namespace
+
+std::unique_ptr<Panel> Panel::make() {
+  return std::make_unique<ImGuiPanel>();
+}
+
+}  // namespace musclesim

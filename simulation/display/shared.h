@@ -1,0 +1,55 @@
+/// What the run's thread and the window's thread share.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "display.h"
+
+namespace musclesim {
+
+struct Display::Shared {
+  Shared(DisplayOptions given, ManualController& controller, Snapshot first)
+      : options(std::move(given)),
+        hands(controller),
+        pace(options.speed_ratio),
+        latest(std::make_shared<const Snapshot>(std::move(first))) {}
+
+  const DisplayOptions options;
+  ManualController& hands;
+  Pace pace;
+  std::promise<void> opened;  ///< or why it could not be
+  std::atomic<bool> is_lost = false;  ///< the connection to the display broke: the thread cannot end
+  std::atomic<long> frame_count = 0;
+  std::chrono::steady_clock::time_point opened_at;
+
+  void publish(Snapshot snapshot) {
+    auto next = std::make_shared<const Snapshot>(std::move(snapshot));
+    const std::lock_guard lock(access);
+    latest = std::move(next);
+  }
+  std::shared_ptr<const Snapshot> current() {
+    const std::lock_guard lock(access);
+    return latest;
+  }
+  void setDivergence(const std::string& message) {
+    const std::lock_guard lock(access);
+    divergence = message;
+  }
+  std::optional<std::string> currentDivergence() {
+    const std::lock_guard lock(access);
+    return divergence;
+  }
+
+ private:
+  std::mutex access;
+  std::shared_ptr<const Snapshot> latest;
+  std::optional<std::string> divergence;
+};
+
+}  // namespace musclesim

@@ -1,0 +1,317 @@
+#include "window.h"
+
+#include <GL/freeglut.h>
+#include <X11/Xlib.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "musclesim/error.h"
+#include "painter.h"
+#include "simulation/scene/scene_error.h"
+
+namespace musclesim {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto shortest_frame = std::chrono::microseconds(16666), longest_frame = std::chrono::microseconds(31000);
+constexpr double video_frames_per_s = 30;
+constexpr int wheel_up = 3, wheel_down = 4, drag_threshold_px = 3;
+constexpr float wheel_zoom = 1.1F;
+
+/// Xlib's handlers get no pointer of ours.
+Display::Shared* shared_of_handlers = nullptr;
+
+/// The display is gone. Xlib would end the process, before the run's files are complete; so this thread stops here.
+int parkThread(::Display*) {
+  shared_of_handlers->is_lost = true;
+  shared_of_handlers->pace.close();
+  for (;;) pause();
+}
+
+int closeAfterError(::Display*, XErrorEvent*) {
+  shared_of_handlers->pace.close();
+  return 0;
+}
+
+/// Whether there is a display: GLUT does not ask. The connection stays while GLUT makes its own, since a server may start anew when the last
+/// one goes.
+class DisplayProbe {
+ public:
+  DisplayProbe() : display_(XOpenDisplay(nullptr)) {
+    if (!display_)
+      throw SceneError("there is no display for a window: use --simple for a batch run, --screenshot or --video for pictures without one");
+  }
+  ~DisplayProbe() { XCloseDisplay(display_); }
+  DisplayProbe(const DisplayProbe&) = delete;
+  DisplayProbe& operator=(const DisplayProbe&) = delete;
+
+ private:
+  ::Display* display_;
+};
+
+[[noreturn]] void throwGlutError(const char* format, va_list arguments, void*) {
+  char text[256];
+  std::vsnprintf(text, sizeof text, format, arguments);
+  throw SceneError(std::string("no window can be opened: ") + text + "; use --simple, or --screenshot and --video for pictures");
+}
+
+int codeOf(int glut_key) {
+  switch (glut_key) {
+    case GLUT_KEY_F1: return key::f1;
+    case GLUT_KEY_UP: return key::up;
+    case GLUT_KEY_DOWN: return key::down;
+    case GLUT_KEY_LEFT: return key::left;
+    case GLUT_KEY_RIGHT: return key::right;
+    default: return -1;
+  }
+}
+
+std::string nameOfKey(int code) {
+  for (const auto& [named, name] : {std::pair{key::escape, "Esc"}, {key::f1, "F1"}, {key::up, "Up"}, {key::down, "Down"}, {key::left, "Left"},
+                                    {key::right, "Right"}, {key::tab, "Tab"}, {static_cast<int>(' '), "Space"}})
+    if (named == code) return name;
+  return std::string(1, static_cast<char>(code));
+}
+
+}  // namespace
+
+Window::Window(Display::Shared& shared)
+    : shared_(shared),
+      console_(shared.hands, shared.pace, shared.options.camera),
+      width_(shared.options.width_px),
+      height_(shared.options.height_px) {
+  if (!shared.options.log_file.empty()) {
+    log_.open(shared.options.log_file);
+    if (!log_) throw IoError(shared.options.log_file + ": cannot be written");
+  }
+  shared_of_handlers = &shared_;
+  open();
+  gl_ = Gl::load([](const char* name) { return reinterpret_cast<void*>(glutGetProcAddress(name)); });
+  scene_ = std::make_unique<Scene>(gl_);
+  panel_ = Panel::make();
+  if (panel_) panel_->resize(width_, height_);
+  console_.show_panel = panel_ != nullptr;
+  listen();
+}
+
+Window::~Window() {
+  if (window_ != 0) {
+    closed();
+    glutDestroyWindow(window_);
+  }
+  glutExit();
+}
+
+void Window::open() {
+  const DisplayProbe probe;
+  glutInitErrorFuncUcall(throwGlutError, nullptr);
+  int count = 1;
+  char name[] = "musclesim";
+  char* arguments[] = {name, nullptr};
+  glutInit(&count, arguments);
+  XSetIOErrorHandler(parkThread);
+  XSetErrorHandler(closeAfterError);
+  glutSetOption(GLUT_ACTION_ON_WINDOW_CLOSE, GLUT_ACTION_CONTINUE_EXECUTION);
+  glutInitDisplayMode(GLUT_RGB | GLUT_DOUBLE | GLUT_DEPTH);
+  glutInitWindowSize(width_, height_);
+  window_ = glutCreateWindow(shared_.options.title.c_str());
+}
+
+void Window::listen() {
+  glutDisplayFuncUcall([](void*) {}, nullptr);  // drawn by loop()
+  glutCloseFuncUcall([](void* w) { static_cast<Window*>(w)->closed(); }, this);
+  glutReshapeFuncUcall(
+      [](int width, int height, void* w) {
+        auto* window = static_cast<Window*>(w);
+        window->width_ = std::max(1, width);
+        window->height_ = std::max(1, height);
+        if (window->panel_) window->panel_->resize(width, height);
+      },
+      this);
+  glutKeyboardFuncUcall([](unsigned char c, int, int, void* w) { static_cast<Window*>(w)->press(c); }, this);
+  glutSpecialFuncUcall([](int k, int, int, void* w) { static_cast<Window*>(w)->press(codeOf(k)); }, this);
+  glutKeyboardUpFuncUcall(
+      [](unsigned char c, int, int, void* w) {
+        if (auto& panel = static_cast<Window*>(w)->panel_) panel->keyUp(c);
+      },
+      this);
+  glutMouseFuncUcall([](int which, int state, int x, int y, void* w) { static_cast<Window*>(w)->button(which, state, x, y); }, this);
+  glutMotionFuncUcall([](int x, int y, void* w) { static_cast<Window*>(w)->drag(x, y); }, this);
+  glutPassiveMotionFuncUcall(
+      [](int x, int y, void* w) {
+        if (auto& panel = static_cast<Window*>(w)->panel_) panel->move(x, y);
+      },
+      this);
+}
+
+/// The context is still there and current.
+void Window::closed() {
+  window_ = 0;
+  panel_.reset();
+  target_.reset();
+  scene_.reset();
+  video_.reset();
+  shared_.pace.close();
+}
+
+void Window::loop() {
+  auto next_frame = Clock::now();
+  while (!shared_.pace.isClosed()) {
+    glutMainLoopEvent();
+    if (window_ == 0) return;
+    const auto now = Clock::now();
+    if (now < next_frame) {
+      std::this_thread::sleep_for(std::min<Clock::duration>(next_frame - now, 2ms));
+      continue;
+    }
+    draw();
+    // Half of the time at least is left to the simulation and to events.
+    const auto cost = Clock::now() - now;
+    next_frame = now + std::clamp<Clock::duration>(2 * cost, shortest_frame, longest_frame);
+  }
+}
+
+void Window::fitTarget() {
+  const int scene_width = std::max(1, width_ - (panel_ && console_.show_panel ? panel_->widthPx() : 0));
+  if (target_ && target_->width() == scene_width && target_->height() == height_) return;
+  target_ = std::make_unique<GpuTarget>(gl_, scene_width, height_);
+}
+
+void Window::draw() {
+  const auto snapshot = shared_.current();
+  console_.divergence = shared_.currentDivergence();
+  history_.add(*snapshot);
+  fitTarget();
+  scene_->draw(*snapshot, console_.camera, console_.style, *target_);
+  savePictures();
+  drawOver(*snapshot);
+  glutSwapBuffers();
+  ++shared_.frame_count;
+}
+
+void Window::drawOver(const Snapshot& snapshot) {
+  if (panel_) return panel_->draw(console_, snapshot, history_, width_, height_);
+  BitmapPainter painter(width_, height_);
+  drawOverlay(painter, console_, snapshot, static_cast<float>(width_), static_cast<float>(height_), true);
+}
+
+void Window::press(int code) {
+  if (panel_ && code < 128 && panel_->key(static_cast<unsigned char>(code))) return;
+  if (code == key::tab && !panel_) return console_.say("this build has no panel");
+  if (console_.press(code)) log(nameOfKey(code));
+}
+
+void Window::button(int which, int state, int x, int y) {
+  if (panel_ && panel_->button(which, state, x, y)) return;
+  if (which == wheel_up || which == wheel_down) {
+    if (state == GLUT_DOWN) console_.camera.zoom(which == wheel_up ? wheel_zoom : 1 / wheel_zoom);
+    return log("wheel");
+  }
+  if (state == GLUT_DOWN) {
+    dragged_button_ = which;
+    last_x_ = x;
+    last_y_ = y;
+    has_moved_ = false;
+    return;
+  }
+  if (dragged_button_ != which) return;
+  dragged_button_ = -1;
+  if (!has_moved_ && which == GLUT_LEFT_BUTTON) pickMuscle(x, y);
+  log(has_moved_ ? "drag" : "click");
+}
+
+void Window::drag(int x, int y) {
+  if (panel_) panel_->move(x, y);
+  const int right = x - last_x_, down = y - last_y_;
+  if (dragged_button_ < 0 || (!has_moved_ && std::abs(right) + std::abs(down) < drag_threshold_px)) return;
+  has_moved_ = true;
+  last_x_ = x;
+  last_y_ = y;
+  const auto dx = static_cast<float>(right), dy = static_cast<float>(down);
+  if (dragged_button_ == GLUT_LEFT_BUTTON)
+    console_.camera.rotate(dx, dy);
+  else
+    console_.camera.pan(dx, dy, static_cast<float>(height_));
+}
+
+/// The muscle whose line passes nearest to the pointer, if one is near.
+void Window::pickMuscle(int x, int y) {
+  constexpr float near_px = 12;
+  const Eigen::Vector2f pointer(static_cast<float>(x), static_cast<float>(y));
+  const auto snapshot = shared_.current();
+  float nearest = near_px;
+  for (std::size_t i = 0; i < snapshot->hoses.size(); ++i) {
+    for (const Eigen::Vector3f& point : smoothCurve(snapshot->hoses[i].points_mm)) {
+      const auto seen = console_.camera.pixelOf(point, static_cast<float>(target_->width()), static_cast<float>(height_));
+      if (!seen || (*seen - pointer).norm() >= nearest) continue;
+      nearest = (*seen - pointer).norm();
+      console_.select(static_cast<int>(i));
+    }
+  }
+}
+
+std::string Window::fileFor(const char* extension) const {
+  for (int number = 1;; ++number) {
+    const std::string file = fmt::format("{}/window-{}{}", shared_.options.picture_folder, number, extension);
+    if (!std::filesystem::exists(file)) return file;
+  }
+}
+
+/// The scene without what is written over it.
+void Window::savePictures() {
+  try {
+    if (console_.wants_screenshot) saveScreenshot();
+    updateVideo();
+  } catch (const Error& error) {
+    console_.say(error.what());
+    console_.wants_video = false;
+    video_.reset();
+  }
+  console_.wants_screenshot = false;
+}
+
+void Window::saveScreenshot() {
+  const std::string file = fileFor(".png");
+  writePng(target_->read(), file);
+  console_.say("picture " + file);
+}
+
+/// A video shows what the window shows, at the wall's time; frames that come late are repeated.
+void Window::updateVideo() {
+  if (console_.wants_video && !video_) {
+    video_ = std::make_unique<VideoWriter>(fileFor(".mp4"), target_->width(), target_->height(), video_frames_per_s);
+    video_start_ = Clock::now();
+    console_.say("video started; v ends it");
+  }
+  if (!video_) return;
+  if (!console_.wants_video) {
+    video_->close();
+    console_.say("video " + video_->result());
+    video_.reset();
+    return;
+  }
+  const double elapsed_s = std::chrono::duration<double>(Clock::now() - video_start_).count();
+  if (elapsed_s * video_frames_per_s < static_cast<double>(video_->frameCount())) return;
+  const Image frame = target_->read();
+  while (elapsed_s * video_frames_per_s >= static_cast<double>(video_->frameCount())) video_->add(frame);
+}
+
+void Window::log(const std::string& event) {
+  if (!log_.is_open()) return;
+  nlohmann::json line = console_.state();
+  line["event"] = event;
+  line["time_s"] = shared_.current()->state.time_s;
+  line["frames_per_s"] = static_cast<double>(shared_.frame_count) / std::chrono::duration<double>(Clock::now() - shared_.opened_at).count();
+  log_ << line.dump() << std::endl;
+}
+
+}  // namespace musclesim

@@ -1,0 +1,63 @@
+/// The window of a Display: GLUT's callbacks, drawing, pictures and videos. All in the thread that made it.
+#pragma once
+
+#include <chrono>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "console.h"
+#include "history.h"
+#include "panel.h"
+#include "shared.h"
+#include "simulation/scene/scene.h"
+#include "simulation/scene/video.h"
+
+namespace musclesim {
+
+class Window {
+ public:
+  /// Throws SceneError where there is no display, or OpenGL is too old.
+  explicit Window(Display::Shared& shared);
+  ~Window();
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+
+  /// Until the run or the user ends it.
+  void loop();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void open();
+  void listen();
+  void closed();
+  void draw();
+  void drawOver(const Snapshot& snapshot);
+  void fitTarget();
+  void press(int code);
+  void button(int which, int state, int x, int y);
+  void drag(int x, int y);
+  void pickMuscle(int x, int y);
+  void savePictures();
+  void saveScreenshot();
+  void updateVideo();
+  std::string fileFor(const char* extension) const;
+  void log(const std::string& event);
+
+  Display::Shared& shared_;
+  Console console_;
+  History history_;
+  Gl gl_;
+  std::unique_ptr<Scene> scene_;
+  std::unique_ptr<GpuTarget> target_;
+  std::unique_ptr<Panel> panel_;
+  std::unique_ptr<VideoWriter> video_;
+  Clock::time_point video_start_;
+  std::ofstream log_;
+  int window_ = 0, width_, height_;
+  int dragged_button_ = -1, last_x_ = 0, last_y_ = 0;
+  bool has_moved_ = false;
+};
+
+}  // namespace musclesim

@@ -1,0 +1,21 @@
+/// The window of a run.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "musclesim/controller/manual.h"
+#include "pictures.h"
+#include "spectator.h"
+
+namespace musclesim::program {
+
+/// Opens a window that shows the run and sets its pace; `folder` is where its pictures go, `log_file` takes a line of JSON per key or click
+/// (empty: none). Throws BadParameter if this build has no window or there is no display.
+std::unique_ptr<Spectator> openWindow(const PictureOptions& options, Simulation& simulation, ManualController& hands, const State& first,
+                                      const std::string& folder, const std::string& log_file);
+
+/// Throws BadParameter, as openWindow, for a build without a window.
+void requireWindow();
+
+}  // namespace musclesim::program

@@ -1,0 +1,17 @@
+/// Stands for window.cpp in a build without libraries for a window.
+#include "musclesim/error.h"
+#include "window.h"
+
+namespace musclesim::program {
+
+void requireWindow() {
+  throw BadParameter("this build has no window: use --simple for a batch run, --screenshot or --video for pictures");
+}
+
+std::unique_ptr<Spectator> openWindow(const PictureOptions&, Simulation&, ManualController&, const State&, const std::string&,
+                                      const std::string&) {
+  requireWindow();
+  return nullptr;
+}
+
+}  // namespace musclesim::program
