@@ -16,7 +16,8 @@ std::string paceLine(const Console& console) {
 
 namespace {
 
-const Color ink{0.13, 0.14, 0.16, ""}, paper{1, 1, 1, ""}, night{0.10, 0.11, 0.13, ""}, accent{1, 0.80, 0.35, ""}, alarm{0.72, 0.08, 0.06, ""};
+const Color ink{0.13, 0.14, 0.16, ""}, paper{1, 1, 1, ""}, night{0.10, 0.11, 0.13, ""}, accent{1, 0.80, 0.35, ""},
+    alarm{0.72, 0.08, 0.06, ""};
 constexpr float margin = 12;
 
 /// Lines of text in a box.
@@ -31,8 +32,8 @@ void drawBox(Painter& painter, float x, float y, const std::vector<std::string>&
 std::vector<std::string> statusLines(const Console& console, const Snapshot& snapshot) {
   const State& state = snapshot.state;
   const char* mode = console.pace().isPaused() ? "paused" : "running";
-  std::vector<std::string> lines = {fmt::format("{:.2f} s   {}, {}", state.time_s, mode, console.hands().isManual() ? "by hand" : "automatic"),
-                                    paceLine(console)};
+  std::vector<std::string> lines = {
+      fmt::format("{:.2f} s   {}, {}", state.time_s, mode, console.hands().isManual() ? "by hand" : "automatic"), paceLine(console)};
   if (state.hand_mm)
     lines.push_back(fmt::format("hand {:.0f}, {:.0f}, {:.0f} mm", state.hand_mm->x(), state.hand_mm->y(), state.hand_mm->z()));
   const auto muscle = static_cast<std::size_t>(console.selected());

@@ -30,8 +30,9 @@ ImVec4 shade(const Color& color, float alpha = 1) {
 
 /// A font of the system if there is one, since the built-in one is coarse.
 void chooseFont() {
-  for (const char* file : {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf",
-                           "/usr/share/fonts/truetype/noto/NotoSans-Regular.ttf"})
+  for (const char* file :
+       {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf",
+        "/usr/share/fonts/truetype/noto/NotoSans-Regular.ttf"})
     if (std::filesystem::exists(file) && ImGui::GetIO().Fonts->AddFontFromFileTTF(file, font_px)) return;
   ImGui::GetIO().Fonts->AddFontDefault();
 }
@@ -43,10 +44,13 @@ void chooseLook() {
   style.FrameRounding = 3;
   style.GrabRounding = 3;
   style.WindowBorderSize = 0;
+  style.FrameBorderSize = 1;
   style.WindowPadding = {12, 10};
   style.ItemSpacing = {7, 5};
   style.Colors[ImGuiCol_WindowBg] = {0.955F, 0.958F, 0.964F, 1};
   style.Colors[ImGuiCol_FrameBg] = {1, 1, 1, 1};
+  style.Colors[ImGuiCol_Border] = {0.75F, 0.77F, 0.80F, 1};
+  style.Colors[ImGuiCol_BorderShadow] = {0, 0, 0, 0};
 }
 
 /// Draws the overlay with the panel's font.
@@ -140,7 +144,8 @@ class ImGuiPanel final : public Panel {
   void drawPanel(Console& console, const Snapshot& snapshot, const History& history, float height) const {
     ImGui::SetNextWindowPos({static_cast<float>(left_px_), 0});
     ImGui::SetNextWindowSize({panel_width_px, height});
-    ImGui::Begin("panel", nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav);
+    ImGui::Begin("panel", nullptr,
+                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav);
     drawRun(console, snapshot);
     ImGui::Separator();
     drawPressures(console, snapshot);
@@ -218,10 +223,14 @@ class ImGuiPanel final : public Panel {
         return muscle < values.size() ? std::optional(values[muscle]) : std::nullopt;
       };
     };
-    drawPlot(fmt::format("muscle {}", muscle), {{"command", command_color, of(&State::command)}, {"pressure", pressure_color, of(&State::pressure)}},
-             history, height, std::pair(0.0, 1.0));
+    drawPlot(fmt::format("muscle {}", muscle),
+             {{"command", command_color, of(&State::command)}, {"pressure", pressure_color, of(&State::pressure)}}, history, height,
+             std::pair(0.0, 1.0));
     drawPlot("", {{"length/mm", length_color, of(&State::length_mm)}}, history, height, std::nullopt);
     drawPlot("", {{"force/N", force_color, of(&State::force_N)}}, history, height, std::nullopt);
+    const std::string reach = fmt::format("last {:g} s", History::duration_s);
+    const ImVec2 corner = ImGui::GetItemRectMax(), size = ImGui::CalcTextSize(reach.c_str());
+    ImGui::GetWindowDrawList()->AddText({corner.x - size.x - 5, corner.y - size.y - 1}, IM_COL32(130, 135, 142, 255), reach.c_str());
   }
 
   static void drawTask(const Snapshot& snapshot, const History& history, float height) {
@@ -236,7 +245,7 @@ class ImGuiPanel final : public Panel {
   }
 
   static void drawSwitches(Console& console) {
-    ImGui::Checkbox("bones", &console.style.transparent);
+    ImGui::Checkbox("transparent", &console.style.transparent);
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("transparent bones (t)");
     ImGui::SameLine();
     ImGui::Checkbox("tension", &console.style.color_tension);

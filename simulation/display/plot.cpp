@@ -57,7 +57,7 @@ void drawTitle(const std::string& title, const std::vector<PlotCurve>& curves, c
   ImGui::TextUnformatted(title.c_str());
   for (const PlotCurve& curve : curves) {
     const auto latest = history.samples().empty() ? std::nullopt : curve.value(history.samples().back());
-    const std::string text = curve.name + (latest ? fmt::format(" {:.4g}", *latest) : "");
+    const std::string text = curve.name + (latest ? fmt::format(" {:.3g}", *latest) : "");
     ImGui::SameLine();
     ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(packed(curve.color)), "%s", text.c_str());
   }

@@ -23,7 +23,7 @@ struct Display::Shared {
   const DisplayOptions options;
   ManualController& hands;
   Pace pace;
-  std::promise<void> opened;  ///< or why it could not be
+  std::promise<void> opened;          ///< or why it could not be
   std::atomic<bool> is_lost = false;  ///< the connection to the display broke: the thread cannot end
   std::atomic<long> frame_count = 0;
   std::chrono::steady_clock::time_point opened_at;

@@ -42,8 +42,8 @@ int closeAfterError(::Display*, XErrorEvent*) {
   return 0;
 }
 
-/// Whether there is a display: GLUT does not ask. The connection stays while GLUT makes its own, since a server may start anew when the last
-/// one goes.
+/// Whether there is a display: GLUT does not ask. The connection stays while GLUT makes its own, since a server may start anew when the
+/// last one goes.
 class DisplayProbe {
  public:
   DisplayProbe() : display_(XOpenDisplay(nullptr)) {
@@ -66,18 +66,30 @@ class DisplayProbe {
 
 int codeOf(int glut_key) {
   switch (glut_key) {
-    case GLUT_KEY_F1: return key::f1;
-    case GLUT_KEY_UP: return key::up;
-    case GLUT_KEY_DOWN: return key::down;
-    case GLUT_KEY_LEFT: return key::left;
-    case GLUT_KEY_RIGHT: return key::right;
-    default: return -1;
+    case GLUT_KEY_F1:
+      return key::f1;
+    case GLUT_KEY_UP:
+      return key::up;
+    case GLUT_KEY_DOWN:
+      return key::down;
+    case GLUT_KEY_LEFT:
+      return key::left;
+    case GLUT_KEY_RIGHT:
+      return key::right;
+    default:
+      return -1;
   }
 }
 
 std::string nameOfKey(int code) {
-  for (const auto& [named, name] : {std::pair{key::escape, "Esc"}, {key::f1, "F1"}, {key::up, "Up"}, {key::down, "Down"}, {key::left, "Left"},
-                                    {key::right, "Right"}, {key::tab, "Tab"}, {static_cast<int>(' '), "Space"}})
+  for (const auto& [named, name] : {std::pair{key::escape, "Esc"},
+                                    {key::f1, "F1"},
+                                    {key::up, "Up"},
+                                    {key::down, "Down"},
+                                    {key::left, "Left"},
+                                    {key::right, "Right"},
+                                    {key::tab, "Tab"},
+                                    {static_cast<int>(' '), "Space"}})
     if (named == code) return name;
   return std::string(1, static_cast<char>(code));
 }
@@ -176,14 +188,23 @@ void Window::loop() {
     draw();
     // Half of the time at least is left to the simulation and to events.
     const auto cost = Clock::now() - now;
+    watchCost(cost);
     next_frame = now + std::clamp<Clock::duration>(2 * cost, shortest_frame, longest_frame);
   }
 }
 
 void Window::fitTarget() {
   const int scene_width = std::max(1, width_ - (panel_ && console_.show_panel ? panel_->widthPx() : 0));
-  if (target_ && target_->width() == scene_width && target_->height() == height_) return;
-  target_ = std::make_unique<GpuTarget>(gl_, scene_width, height_);
+  if (target_ && target_->width() == scene_width && target_->height() == height_ && target_->isSmooth() == is_smooth_) return;
+  target_ = std::make_unique<GpuTarget>(gl_, scene_width, height_, is_smooth_ ? GpuTarget::smooth : GpuTarget::plain);
+}
+
+/// The rate of pictures matters more than smooth edges: where drawing is too slow, there is one sample per pixel from then on.
+void Window::watchCost(Clock::duration cost) {
+  constexpr auto affordable = 27ms;
+  constexpr int weight = 10, warm_up_frames = 30;
+  mean_cost_ += (cost - mean_cost_) / weight;
+  if (is_smooth_ && shared_.frame_count > warm_up_frames && mean_cost_ > affordable) is_smooth_ = false;
 }
 
 void Window::draw() {
@@ -279,9 +300,12 @@ void Window::savePictures() {
   console_.wants_screenshot = false;
 }
 
+/// Always with smooth edges.
 void Window::saveScreenshot() {
   const std::string file = fileFor(".png");
-  writePng(target_->read(), file);
+  const GpuTarget target(gl_, target_->width(), target_->height(), GpuTarget::smooth);
+  scene_->draw(*shared_.current(), console_.camera, console_.style, target);
+  writePng(target.read(), file);
   console_.say("picture " + file);
 }
 

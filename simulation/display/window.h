@@ -35,6 +35,7 @@ class Window {
   void draw();
   void drawOver(const Snapshot& snapshot);
   void fitTarget();
+  void watchCost(Clock::duration cost);
   void press(int code);
   void button(int which, int state, int x, int y);
   void drag(int x, int y);
@@ -54,6 +55,8 @@ class Window {
   std::unique_ptr<Panel> panel_;
   std::unique_ptr<VideoWriter> video_;
   Clock::time_point video_start_;
+  bool is_smooth_ = true;  ///< several samples per pixel, as long as that is fast enough
+  Clock::duration mean_cost_ = {};
   std::ofstream log_;
   int window_ = 0, width_, height_;
   int dragged_button_ = -1, last_x_ = 0, last_y_ = 0;

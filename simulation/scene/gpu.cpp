@@ -9,8 +9,6 @@ namespace musclesim {
 
 namespace {
 
-constexpr GLint most_samples = 4;
-
 GLuint compile(const Gl& gl, GLenum kind, const char* source) {
   const GLuint shader = gl.CreateShader(kind);
   gl.ShaderSource(shader, 1, &source, nullptr);
@@ -73,16 +71,15 @@ void GpuMesh::draw() const {
   gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, 0);
 }
 
-GpuTarget::GpuTarget(const Gl& gl, int width, int height) : gl_(gl), width_(width), height_(height) {
-  GLint samples = 0;
-  gl_.GetIntegerv(GL_MAX_SAMPLES, &samples);
-  samples = std::min(samples, most_samples);
+GpuTarget::GpuTarget(const Gl& gl, int width, int height, int samples) : gl_(gl), width_(width), height_(height), samples_(samples) {
+  GLint most = 0;
+  gl_.GetIntegerv(GL_MAX_SAMPLES, &most);
   gl_.GenFramebuffers(1, &framebuffer_);
   gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
   const auto attach = [&](GLuint& buffer, GLenum format, GLenum where) {
     gl_.GenRenderbuffers(1, &buffer);
     gl_.BindRenderbuffer(GL_RENDERBUFFER, buffer);
-    gl_.RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, format, width_, height_);
+    gl_.RenderbufferStorageMultisample(GL_RENDERBUFFER, std::min(samples, most), format, width_, height_);
     gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, where, GL_RENDERBUFFER, buffer);
   };
   attach(color_, GL_RGBA8, GL_COLOR_ATTACHMENT0);

@@ -51,16 +51,18 @@ class GpuMesh {
   GLsizei index_count_ = 0;
 };
 
-/// A picture being drawn, with several samples per pixel where OpenGL can.
+/// A picture being drawn, with up to `samples` samples per pixel where OpenGL can.
 class GpuTarget {
  public:
-  GpuTarget(const Gl& gl, int width, int height);
+  static constexpr int smooth = 4, plain = 0;
+  GpuTarget(const Gl& gl, int width, int height, int samples);
   ~GpuTarget();
   GpuTarget(const GpuTarget&) = delete;
   GpuTarget& operator=(const GpuTarget&) = delete;
 
   int width() const { return width_; }
   int height() const { return height_; }
+  bool isSmooth() const { return samples_ > plain; }
   /// What is drawn from now on goes here.
   void bind() const;
   /// Copies the picture, its samples averaged, to the context's own buffer, which is then current.
@@ -70,7 +72,7 @@ class GpuTarget {
 
  private:
   const Gl& gl_;
-  int width_, height_;
+  int width_, height_, samples_;
   GLuint framebuffer_ = 0, color_ = 0, depth_ = 0;
 };
 

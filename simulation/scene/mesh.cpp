@@ -9,7 +9,7 @@ namespace musclesim {
 namespace {
 
 using V = Eigen::Vector3f;
-constexpr std::uint32_t round_count = 24, sphere_ring_count = 16, tube_round_count = 20, pieces_per_point = 3;
+constexpr std::uint32_t round_count = 16, tube_round_count = 12, pieces_per_point = 2;  // few: software draws them, too
 
 float angle(std::uint32_t part, std::uint32_t of) {
   return 2 * std::numbers::pi_v<float> * static_cast<float>(part) / static_cast<float>(of);
@@ -46,31 +46,36 @@ Mesh boxMesh() {
   return mesh;
 }
 
-Mesh sphereMesh() {
+Mesh sphereMesh(std::uint32_t ring_count) {
   Mesh mesh;
-  for (std::uint32_t ring = 0; ring <= sphere_ring_count; ++ring) {
-    const float polar = angle(ring, 2 * sphere_ring_count);
-    for (std::uint32_t i = 0; i <= round_count; ++i) {
-      const float a = angle(i, round_count);
+  for (std::uint32_t ring = 0; ring <= ring_count; ++ring) {
+    const float polar = angle(ring, 2 * ring_count);
+    for (std::uint32_t i = 0; i <= 2 * ring_count; ++i) {
+      const float a = angle(i, 2 * ring_count);
       const V n(std::sin(polar) * std::cos(a), std::sin(polar) * std::sin(a), -std::cos(polar));
       mesh.vertices.push_back({n, n});
     }
   }
-  joinRings(mesh, sphere_ring_count + 1, round_count);
+  joinRings(mesh, ring_count + 1, 2 * ring_count);
   return mesh;
 }
 
-Mesh frustumMesh(float end_radius) {
+Mesh turnedMesh(const std::vector<Eigen::Vector2f>& profile) {
   Mesh mesh;
-  for (const float z : {0.0F, 1.0F}) {
-    const float radius = z == 0 ? 1 : end_radius;
-    for (std::uint32_t i = 0; i <= round_count; ++i) {
-      const float a = angle(i, round_count);
-      const V out(std::cos(a), std::sin(a), 0);
-      mesh.vertices.push_back({radius * out + z * V::UnitZ(), (out + (1 - end_radius) * V::UnitZ()).normalized()});
+  for (std::size_t piece = 0; piece + 1 < profile.size(); ++piece) {
+    const Eigen::Vector2f along = profile[piece + 1] - profile[piece], out_of(along.y(), -along.x());
+    Mesh ring;
+    for (const auto& point : {profile[piece], profile[piece + 1]}) {
+      for (std::uint32_t i = 0; i <= round_count; ++i) {
+        const V out(std::cos(angle(i, round_count)), std::sin(angle(i, round_count)), 0);
+        ring.vertices.push_back({point.x() * out + point.y() * V::UnitZ(), (out_of.x() * out + out_of.y() * V::UnitZ()).normalized()});
+      }
     }
+    joinRings(ring, 2, round_count);
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), ring.vertices.begin(), ring.vertices.end());
+    for (const std::uint32_t index : ring.indices) mesh.indices.push_back(first + index);
   }
-  joinRings(mesh, 2, round_count);
   return mesh;
 }
 

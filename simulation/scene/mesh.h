@@ -18,10 +18,10 @@ struct Mesh {
 
 /// Edges of 1 along x, y, z about the origin.
 Mesh boxMesh();
-/// Radius 1 about the origin.
-Mesh sphereMesh();
-/// The side of a cone's frustum along z from 0 to 1, radius 1 at z = 0 and `end_radius` at z = 1; without ends.
-Mesh frustumMesh(float end_radius);
+/// Radius 1 about the origin; twice as many edges around as rings.
+Mesh sphereMesh(std::uint32_t ring_count);
+/// Turned about z: straight pieces between points (radius, z), z never falling; edges stay sharp.
+Mesh turnedMesh(const std::vector<Eigen::Vector2f>& profile);
 /// From -1 to 1 in x and z, at y = 0, facing up.
 Mesh squareMesh();
 

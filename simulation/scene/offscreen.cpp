@@ -67,7 +67,7 @@ Offscreen::Offscreen(int width, int height) {
   context_ = std::make_unique<Context>(width, height);
   gl_ = context_->functions();
   scene_ = std::make_unique<Scene>(gl_);
-  target_ = std::make_unique<GpuTarget>(gl_, width, height);
+  target_ = std::make_unique<GpuTarget>(gl_, width, height, GpuTarget::smooth);
 }
 
 Offscreen::~Offscreen() = default;

@@ -17,7 +17,7 @@ constexpr float background = 0.9F, hose_grey = 0.2F;
 const V selected_color(0.80F, 0.06F, 0.06F), target_color(1.0F, 0.10F, 0.10F), shadow_color(0.80F, 0.805F, 0.815F);
 constexpr float target_radius_mm = 30, level_radius_mm = 220, target_alpha = 0.45F, bone_alpha = 0.35F;
 constexpr float grid_mm = 100, floor_reach_mm = 1600;
-constexpr float cap_cone_in_radii = 1.5F, cap_length_in_radii = 3.0F, cap_tip_ratio = 0.45F, cap_width_ratio = 1.2F;
+constexpr float cap_cone_in_radii = 1.5F, cap_length_in_radii = 3.0F, cap_width_ratio = 1.2F;
 constexpr float frame_mm = 45, frame_radius_mm = 1.6F;
 
 M scaled(float x, float y, float z) {
@@ -93,9 +93,10 @@ Scene::Scene(const Gl& gl)
       solid_(gl, shaders::vertex, shaders::solid_fragment),
       floor_(gl, shaders::vertex, shaders::floor_fragment),
       box_(gl, boxMesh()),
-      sphere_(gl, sphereMesh()),
-      cylinder_(gl, frustumMesh(1)),
-      cone_(gl, frustumMesh(cap_tip_ratio)),
+      sphere_(gl, sphereMesh(10)),
+      fine_sphere_(gl, sphereMesh(20)),
+      cylinder_(gl, turnedMesh({{1, 0}, {1, 1}})),
+      cap_(gl, turnedMesh({{0, -0.06F}, {0.30F, -0.04F}, {0.45F, 0.02F}, {1, 0.5F}, {1, 1}, {0.8F, 1.04F}, {0, 1.04F}})),
       square_(gl, squareMesh()) {}
 
 Scene::~Scene() = default;
@@ -118,15 +119,9 @@ void Scene::addPart(std::vector<Item>& items, const DrawnPart& part, float alpha
 
 /// A coloured sleeve over the hose's end, tapering to the attachment.
 void Scene::addCap(std::vector<Item>& items, const std::vector<V>& curve, const DrawnHose& hose) const {
-  const float r = hose.radius_mm, wide = cap_width_ratio * r;
-  const V color = rgb(hose.color), tip = curve.front(), shoulder = pointAt(curve, cap_cone_in_radii * r),
-          end = pointAt(curve, cap_length_in_radii * r);
-  if ((shoulder - tip).norm() < 1e-3F || (end - shoulder).norm() < 1e-3F) return;
-  items.push_back({&sphere_, moved(tip) * scaled(cap_tip_ratio * wide, cap_tip_ratio * wide, cap_tip_ratio * wide), color});
-  items.push_back({&cone_, between(shoulder, tip, wide), color});
-  items.push_back({&cylinder_, between(shoulder, end, wide), color});
-  const V thin = (end - shoulder).normalized() * 0.25F * r;  // lenses fill the joint of the two and close the end
-  for (const V& at : {shoulder, end}) items.push_back({&sphere_, between(at, at + thin, wide), color});
+  const V tip = curve.front(), end = pointAt(curve, cap_length_in_radii * hose.radius_mm);
+  if ((end - tip).norm() < 1e-3F) return;
+  items.push_back({&cap_, between(tip, end, cap_width_ratio * hose.radius_mm), rgb(hose.color)});
 }
 
 void Scene::addHose(std::vector<Item>& items, const DrawnHose& hose, std::size_t index, const SceneStyle& style) {
@@ -202,11 +197,12 @@ void Scene::drawFloor(const std::vector<Item>& items, const Camera& camera, floa
 /// A sphere; around it, where only the height counts, a thin disc.
 void Scene::drawTarget(const DrawnTarget& target) const {
   if (target.is_height) {
-    const Item level{&sphere_, moved(target.point_mm) * scaled(level_radius_mm, 0.4F, level_radius_mm), target_color, 0.10F, 0};
+    const Item level{&fine_sphere_, moved(target.point_mm) * scaled(level_radius_mm, 0.4F, level_radius_mm), target_color, 0.10F, 0};
     drawItem(level, M::Identity());
   }
-  drawItem({&sphere_, moved(target.point_mm) * scaled(target_radius_mm, target_radius_mm, target_radius_mm), target_color, target_alpha},
-           M::Identity());
+  drawItem(
+      {&fine_sphere_, moved(target.point_mm) * scaled(target_radius_mm, target_radius_mm, target_radius_mm), target_color, target_alpha},
+      M::Identity());
 }
 
 void Scene::drawBackground() const {

@@ -45,7 +45,7 @@ class Scene {
 
   const Gl& gl_;
   GpuProgram solid_, floor_;
-  GpuMesh box_, sphere_, cylinder_, cone_, square_;
+  GpuMesh box_, sphere_, fine_sphere_, cylinder_, cap_, square_;
   std::vector<std::unique_ptr<GpuMesh>> tubes_;
 };
 

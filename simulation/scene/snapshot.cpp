@@ -78,7 +78,8 @@ std::vector<DrawnFrame> framesOf(Simulation& simulation) {
   for (const auto& body : simulation.bodies()) {
     for (const auto& joint : simulation.joints()) {
       if (dJointGetBody(joint->id(), 0) != body->id) continue;
-      if (const auto anchor = anchorOf(*joint)) frames.push_back({labelOf(*joint, *body, simulation.robot()), poseFrom(*anchor, rotationOf(body->id))});
+      if (const auto anchor = anchorOf(*joint))
+        frames.push_back({labelOf(*joint, *body, simulation.robot()), poseFrom(*anchor, rotationOf(body->id))});
     }
   }
   const Robot& robot = simulation.robot();

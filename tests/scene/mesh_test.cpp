@@ -40,13 +40,14 @@ TEST(Mesh, BoxEnclosesItsVolume) {
 }
 
 TEST(Mesh, SphereEnclosesNearlyItsVolume) {
-  EXPECT_NEAR(enclosed(sphereMesh()) / (4.0 / 3 * std::numbers::pi), 1, 0.03);
-  expectNormalsOutwards(sphereMesh());
+  EXPECT_NEAR(enclosed(sphereMesh(16)) / (4.0 / 3 * std::numbers::pi), 1, 0.03);
+  expectNormalsOutwards(sphereMesh(16));
 }
 
-TEST(Mesh, SidesOfCylinderAndConeFaceOutwards) {
-  expectNormalsOutwards(frustumMesh(1));
-  expectNormalsOutwards(frustumMesh(0.4F));
+TEST(Mesh, TurnedBodyFacesOutwardsAndEnclosesNearlyItsVolume) {
+  const Mesh cone = turnedMesh({{0, 0}, {1, 0}, {0, 1}});
+  expectNormalsOutwards(cone);
+  EXPECT_NEAR(enclosed(cone) / (std::numbers::pi / 3), 1, 0.04);
 }
 
 TEST(Mesh, TubeKeepsItsRadiusAroundBends) {
