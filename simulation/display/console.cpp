@@ -115,24 +115,26 @@ std::string Console::notice() const {
 }
 
 nlohmann::json Console::state() const {
-  return {{"manual", hands_.isManual()},
-          {"pressures", hands_.pressures()},
-          {"selected", style.selected},
-          {"paused", pace_.isPaused()},
-          {"closed", pace_.isClosed()},
-          {"speed", pace_.speed()},
-          {"measured_speed", pace_.measuredSpeed()},
-          {"camera",
-           {{"azimuth_deg", camera.azimuth_deg},
-            {"elevation_deg", camera.elevation_deg},
-            {"distance_mm", camera.distance_mm},
-            {"center_mm", {camera.center_mm.x(), camera.center_mm.y(), camera.center_mm.z()}}}},
-          {"transparent", style.transparent},
-          {"color_tension", style.color_tension},
-          {"frames", style.frames},
-          {"help", show_help},
-          {"panel", show_panel},
-          {"video", wants_video}};
+  nlohmann::json state = {{"manual", hands_.isManual()},
+                          {"pressures", hands_.pressures()},
+                          {"selected", style.selected},
+                          {"paused", pace_.isPaused()},
+                          {"closed", pace_.isClosed()},
+                          {"speed", pace_.speed()},
+                          {"measured_speed", pace_.measuredSpeed()},
+                          {"camera",
+                           {{"azimuth_deg", camera.azimuth_deg},
+                            {"elevation_deg", camera.elevation_deg},
+                            {"distance_mm", camera.distance_mm},
+                            {"center_mm", {camera.center_mm.x(), camera.center_mm.y(), camera.center_mm.z()}}}},
+                          {"transparent", style.transparent},
+                          {"color_tension", style.color_tension},
+                          {"frames", style.frames},
+                          {"help", show_help},
+                          {"panel", show_panel},
+                          {"video", wants_video}};
+  if (divergence) state["divergence"] = *divergence;
+  return state;
 }
 
 }  // namespace musclesim

@@ -186,11 +186,13 @@ void Window::loop() {
       continue;
     }
     draw();
+    if (shared_.frame_count == 1) log("open");
     // Half of the time at least is left to the simulation and to events.
     const auto cost = Clock::now() - now;
     watchCost(cost);
     next_frame = now + std::clamp<Clock::duration>(2 * cost, shortest_frame, longest_frame);
   }
+  log("close");
 }
 
 void Window::fitTarget() {
@@ -333,6 +335,7 @@ void Window::log(const std::string& event) {
   if (!log_.is_open()) return;
   nlohmann::json line = console_.state();
   line["event"] = event;
+  line["smooth"] = is_smooth_;
   line["time_s"] = shared_.current()->state.time_s;
   line["frames_per_s"] = static_cast<double>(shared_.frame_count) / std::chrono::duration<double>(Clock::now() - shared_.opened_at).count();
   log_ << line.dump() << std::endl;

@@ -1,0 +1,99 @@
+#!/usr/bin/env bash
+# Makes the pictures of docs/window.md, docs/figures/window*.png, and the table of its section "Measured".
+# Usage: scripts/make_window_docs.sh [build folder]   (default: build/dev)
+# Needs Xvfb, xdotool, ffmpeg and ImageMagick.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+build="${1:-build/dev}"
+program="$PWD/$build/musclesim"
+figures="$PWD/docs/figures"
+page="$PWD/docs/window.md"
+[[ -x "$program" ]] || { echo "make_window_docs.sh: there is no program $program; build it first" >&2; exit 1; }
+for tool in Xvfb xdotool ffmpeg ffprobe import montage; do
+  command -v "$tool" >/dev/null || { echo "make_window_docs.sh: $tool is not installed" >&2; exit 1; }
+done
+
+work=$(mktemp -d)
+mkfifo "$work/number"
+Xvfb -displayfd 3 -screen 0 1024x768x24 -noreset 3>"$work/number" 2>/dev/null &
+server=$!
+trap 'kill "$server"; rm -rf "$work"' EXIT
+read -r number <"$work/number"
+export DISPLAY=":$number"
+cd "$work"
+
+# window ARGUMENT...: opens one and waits until it has drawn.
+window() {
+  rm -rf log.jsonl run
+  "$program" --out run --window-log log.jsonl --quiet "$@" >out.txt 2>&1 &
+  child=$!
+  until [[ -s log.jsonl ]]; do sleep 0.1; done
+  xdotool mousemove 100 100
+}
+close_window() {
+  xdotool key q
+  wait "$child" || true
+}
+shot() { import -window root png24:"$figures/$1"; }
+
+window --seed 1
+sleep 5
+xdotool key 7
+sleep 0.5
+shot window.png
+xdotool key h
+sleep 1
+shot window_help.png
+xdotool key h t f
+sleep 5
+shot window_labels.png
+close_window
+
+window --robot elbow --controller random --decision-interval 0.05 --substeps 1 --step 0.05 --speed 100
+until grep -q verdict run/run.json 2>/dev/null; do sleep 0.1; done
+sleep 1
+shot window_diverged.png
+close_window
+
+for robot in rig elbow; do
+  "$program" --robot "$robot" --controller hold --duration 1 --plane --picture-size 800x600 --screenshot "$robot.png" --out "$robot" --quiet >/dev/null
+done
+montage rig.png elbow.png -tile 2x1 -geometry 640x480+2+0 "$figures/window_rig_elbow.png"
+
+begin=$(date +%s.%N)
+"$program" --video arm.mp4 --duration 20 --out video --quiet >/dev/null
+video_s=$(echo "$(date +%s.%N) - $begin" | bc)
+frames=$(ffprobe -v error -show_entries stream=nb_frames -of csv=p=0 arm.mp4)
+ffmpeg -v error -y -i arm.mp4 -vf "select='eq(mod(n-30,100),0)',crop=700:768:150:0,scale=350:-1,tile=6x1" -frames:v 1 "$figures/window_video.png"
+
+# Rate of pictures and pace over 20 s, in a window of 1024 x 768 with software rendering.
+measure() {
+  rm -f log.jsonl
+  "$program" --duration 20 --window-log log.jsonl --out measured --quiet --json "$@" | tail -1 >verdict.json
+  python3 - <<'PYTHON'
+import json
+last = json.loads(open("log.jsonl").read().splitlines()[-1])
+verdict = json.load(open("verdict.json"))
+print(f'{last["frames_per_s"]:.1f} | {verdict["wall_per_simulated_s"]:.3f} | {"4" if last["smooth"] else "1"}')
+PYTHON
+}
+{
+  echo "A window of 1024 x 768 pixels with panel, 20 s of the height task, $(nproc) cores, drawn in software (llvmpipe under Xvfb, which needs processor time, too); load of the machine at the beginning: $(cut -d' ' -f1 /proc/loadavg)."
+  echo
+  echo "| run | pictures per second | wall time / simulated time | samples per pixel |"
+  echo "|---|---|---|---|"
+  echo "| arm, si, at real time | $(measure) |"
+  echo "| arm, si, without panel, so that the scene fills the window | $(xdotool mousemove 100 100; (until [[ -s log.jsonl ]]; do sleep 0.1; done; xdotool key Tab) & sleep 0.2; measure) |"
+  echo "| arm, original, at speed 10 | $(measure --physics original --duration 100) |"
+  echo
+  echo "The 20 s video of the height task without a display, 1024 x 768, $frames frames: $(printf '%.0f' "$video_s") s, ffmpeg included."
+} >measured.txt
+python3 - "$page" measured.txt <<'PYTHON'
+import sys
+page, text = (open(name).read() for name in sys.argv[1:])
+begin, end = "<!-- window: written by scripts/make_window_docs.sh -->\n", "<!-- end of window -->"
+head, rest = page.split(begin)
+tail = rest.split(end)[1]
+open(sys.argv[1], "w").write(head + begin + text + end + tail)
+PYTHON
+echo "written: $figures/window*.png, $page"

@@ -1,0 +1,60 @@
+/// An X server and a window of musclesim on it, steered by real keys and a real mouse.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace musclesim {
+
+/// Xvfb on a free display.
+class XServer {
+ public:
+  /// Empty if Xvfb and xdotool are there, otherwise what is missing.
+  static std::string missing();
+  XServer();
+  ~XServer();
+  XServer(const XServer&) = delete;
+  XServer& operator=(const XServer&) = delete;
+  const std::string& display() const { return display_; }
+  void kill();
+
+ private:
+  pid_t child_ = -1;
+  std::string display_;
+};
+
+/// The program with a window, run in a folder; its recording goes to run/run.csv there, its window's log to window.jsonl.
+class Session {
+ public:
+  /// Waits until the window has drawn and has the pointer over its middle. Throws std::runtime_error if that takes a minute.
+  Session(const XServer& server, const std::filesystem::path& folder, std::vector<std::string> arguments);
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  /// Presses keys, by X's names, waits until the window has seen them all, and returns its state after the last.
+  nlohmann::json press(const std::string& key, int times = 1);
+  /// Runs xdotool with words separated by spaces.
+  void xdotool(const std::string& words) const;
+  /// Waits until the window's log has so many lines and returns the last.
+  nlohmann::json stateAfter(std::size_t line_count) const;
+  std::size_t lineCount() const;
+  /// As a window manager asks for it.
+  void requestClose() const;
+  void signal(int number) const;
+  bool isAlive();
+  /// Waits for the end, a minute at most; 128 + signal if it had to be killed.
+  int exitStatus();
+
+ private:
+  std::string display_;
+  std::filesystem::path folder_;
+  pid_t child_ = -1;
+  int status_ = -1;
+};
+
+}  // namespace musclesim

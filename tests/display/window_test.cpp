@@ -1,0 +1,263 @@
+#include <gtest/gtest.h>
+#include <png.h>
+
+#include <csignal>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <thread>
+
+#include "display/session.h"
+#include "musclesim/log/recording.h"
+#include "simulation/display/console.h"
+#include "simulation/scene/image.h"
+#include "src/program.h"
+
+namespace musclesim {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+std::string contentOf(const fs::path& file) {
+  std::ifstream stream(file);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+Image readPng(const fs::path& file) {
+  png_image description = {};
+  description.version = PNG_IMAGE_VERSION;
+  if (!png_image_begin_read_from_file(&description, file.c_str())) throw std::runtime_error(file.string() + ": " + description.message);
+  description.format = PNG_FORMAT_RGB;
+  Image image{static_cast<int>(description.width), static_cast<int>(description.height),
+              std::vector<std::uint8_t>(PNG_IMAGE_SIZE(description))};
+  png_image_finish_read(&description, nullptr, image.rgb.data(), 0, nullptr);
+  return image;
+}
+
+/// Pixels of the red that selected muscles have; the red cap of muscle 3 is brighter.
+long selectedPixels(const Image& image) {
+  long count = 0;
+  for (std::size_t i = 0; i < image.rgb.size(); i += 3)
+    count += image.rgb[i] > 80 && image.rgb[i] < 190 && 6 * image.rgb[i + 1] < image.rgb[i] && 6 * image.rgb[i + 2] < image.rgb[i] &&
+             image.rgb[i + 1] > 4;
+  return count;
+}
+
+double differingShare(const Image& a, const Image& b) {
+  long differing = 0;
+  for (std::size_t i = 0; i < a.rgb.size(); i += 3) differing += std::abs(a.rgb[i + 1] - b.rgb[i + 1]) > 24;
+  return 3.0 * static_cast<double>(differing) / static_cast<double>(a.rgb.size());
+}
+
+/// One X server for all tests, a fresh folder for each.
+class WindowTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    if (XServer::missing().empty()) server_ = new XServer;
+  }
+  static void TearDownTestSuite() {
+    delete server_;
+    server_ = nullptr;
+  }
+  void SetUp() override {
+    if (!server_) GTEST_SKIP() << XServer::missing();
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  json sidecar() const { return json::parse(contentOf(folder_ / "run" / "run.json")); }
+
+  /// A picture by the key s.
+  Image picture(Session& session) {
+    const fs::path file = folder_ / "run" / ("window-" + std::to_string(++picture_count_) + ".png");
+    session.press("s");
+    for (int i = 0; i < 1000 && !fs::exists(file); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    return readPng(file);
+  }
+
+  static XServer* server_;
+  const fs::path folder_ = fs::temp_directory_path() / ("musclesim_window_test_" + std::to_string(getpid()));
+  int picture_count_ = 0;
+};
+
+XServer* WindowTest::server_ = nullptr;
+
+const std::vector<std::string> small_arm = {"--picture-size", "640x480"};
+
+TEST_F(WindowTest, HandSetsAPressureThatIsRecordedAndTheMuscleTurnsRed) {
+  Session session(*server_, folder_, small_arm);
+  EXPECT_EQ(session.press("i")["manual"], true);
+  EXPECT_EQ(session.press("r")["pressures"], json(std::vector<double>(10, 0.0)));
+  const long before = selectedPixels(picture(session));
+  EXPECT_EQ(session.press("3")["selected"], 3);
+  EXPECT_EQ(session.press("plus", 50)["pressures"][3], 0.5);
+  EXPECT_GT(selectedPixels(picture(session)), before + 300);
+  EXPECT_EQ(session.press("minus")["pressures"][3], 0.49);
+  EXPECT_EQ(session.press("equal")["pressures"][3], 0.5);
+  EXPECT_EQ(session.press("KP_Subtract", 2)["pressures"][3], 0.48);
+  EXPECT_EQ(session.press("KP_Add", 2)["pressures"][3], 0.5);
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  EXPECT_EQ(session.press("i")["manual"], false);
+  session.press("q");
+  ASSERT_EQ(session.exitStatus(), 0);
+
+  const Recording recording = readRecording((folder_ / "run" / "run.csv").string());
+  const auto& command = recording.find("command_3")->values;
+  EXPECT_EQ(*std::max_element(command.begin(), command.end()), 0.5);
+  EXPECT_EQ(sidecar().at("by_hand_s").size(), 1u);
+  EXPECT_TRUE(fs::exists(folder_ / "run" / "run.svg"));
+
+  const ProgramResult replayed = runProgram({"replay", "run/run.csv", "--json"}, folder_);
+  const json verdict = json::parse(replayed.out.substr(replayed.out.rfind('\n', replayed.out.size() - 2) + 1));
+  EXPECT_EQ(verdict["signals"]["length_3_mm"]["largest"], 0) << "a session by hand is a recording like any other";
+}
+
+/// What every other key of the help does.
+TEST_F(WindowTest, EveryKeyDoesWhatTheHelpSays) {
+  Session session(*server_, folder_, small_arm);
+  std::set<int> tried = {'i', 'r', '+', 's', 'q'};  // in the test above
+  const auto press = [&](const std::string& key, int code) {
+    tried.insert(code);
+    return session.press(key);
+  };
+  for (int muscle = 0; muscle <= 9; ++muscle) EXPECT_EQ(press(std::to_string(muscle), '0' + muscle)["selected"], muscle);
+  EXPECT_EQ(press("period", '.')["selected"], 9) << "no wrapping";
+  EXPECT_EQ(press("comma", ',')["selected"], 8);
+
+  json state = press("p", 'p');
+  EXPECT_EQ(state["paused"], true);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  const double paused_at_s = session.press("0")["time_s"];
+  EXPECT_NEAR(paused_at_s, state["time_s"], 0.0101);
+  press("Right", key::right);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  state = session.press("0");
+  EXPECT_NEAR(state["time_s"], paused_at_s + 0.01, 1e-9);
+  EXPECT_EQ(state["paused"], true);
+  EXPECT_EQ(press("space", ' ')["paused"], false);
+
+  EXPECT_EQ(press("bracketright", ']')["speed"], 2);
+  EXPECT_EQ(press("bracketleft", '[')["speed"], 1);
+  const double distance = state["camera"]["distance_mm"];
+  EXPECT_LT(press("Up", key::up)["camera"]["distance_mm"], 0.95 * distance);
+  EXPECT_NEAR(press("Down", key::down)["camera"]["distance_mm"], distance, 1e-2);
+  session.press("Down");
+  EXPECT_EQ(press("c", 'c')["camera"], state["camera"]);
+  for (const auto& [name, code, member] : std::vector<std::tuple<std::string, int, std::string>>{
+           {"t", 't', "transparent"}, {"m", 'm', "color_tension"}, {"f", 'f', "frames"}, {"h", 'h', "help"}, {"F1", key::f1, "help"}}) {
+    const bool before = session.press("0")[member];
+    EXPECT_EQ(press(name, code)[member], !before) << name;
+    EXPECT_EQ(press(name, code)[member], before) << name;
+  }
+  const bool has_panel = state["panel"];
+  if (has_panel) {
+    EXPECT_EQ(press("Tab", key::tab)["panel"], false);
+    EXPECT_EQ(press("Tab", key::tab)["panel"], true);
+  }
+  tried.insert(key::tab);
+  EXPECT_EQ(press("v", 'v')["video"], true);
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  EXPECT_EQ(session.press("v")["video"], false);
+  EXPECT_EQ(press("Escape", key::escape)["closed"], true);
+  EXPECT_EQ(session.exitStatus(), 0);
+  EXPECT_TRUE(fs::exists(folder_ / "run" / "window-1.mp4") || fs::exists(folder_ / "run" / "window-1-frames"));
+  EXPECT_EQ(sidecar().at("complete"), true);
+
+  for (const auto& binding : Console::bindings())
+    EXPECT_TRUE(std::any_of(binding.codes.begin(), binding.codes.end(), [&](int code) { return tried.count(code) > 0; })) << binding.keys;
+}
+
+TEST_F(WindowTest, MouseRotatesZoomsAndSelects) {
+  Session session(*server_, folder_, {"--robot", "elbow", "--controller", "hold", "--picture-size", "640x480"});
+  const json first = session.press("p");
+  const Image straight = picture(session);
+  session.xdotool("mousemove 100 100 mousedown 1 mousemove 150 110 mousemove 200 120 mouseup 1");
+  json state = session.press("t");
+  EXPECT_NEAR(std::abs(double(state["camera"]["azimuth_deg"]) - double(first["camera"]["azimuth_deg"])), 40, 1.5);
+  EXPECT_GT(state["camera"]["elevation_deg"], double(first["camera"]["elevation_deg"]) + 5);
+  session.press("t");
+  EXPECT_GT(differingShare(straight, picture(session)), 0.005) << "rotation";
+  const Image rotated_picture = picture(session);
+  session.xdotool("click 4 click 4 click 4");
+  state = session.press("0");
+  EXPECT_LT(state["camera"]["distance_mm"], 0.8 * double(first["camera"]["distance_mm"]));
+  EXPECT_GT(differingShare(rotated_picture, picture(session)), 0.01) << "zoom";
+
+  // Muscle 1 stands left of the middle of the scene in the first view, muscle 0 right of it.
+  state = session.press("c");
+  const int scene_px = straight.width;
+  session.press("5");
+  const Camera camera{Eigen::Vector3f(state["camera"]["center_mm"][0], state["camera"]["center_mm"][1], state["camera"]["center_mm"][2]),
+                      state["camera"]["azimuth_deg"], state["camera"]["elevation_deg"], state["camera"]["distance_mm"]};
+  const auto muscle = camera.pixelOf({-35, 120, 0}, static_cast<float>(scene_px), 480);
+  ASSERT_TRUE(muscle);
+  session.xdotool("mousemove " + std::to_string(std::lround(muscle->x())) + " " + std::to_string(std::lround(muscle->y())) + " click 1");
+  EXPECT_EQ(session.press("t")["selected"], 1);
+
+  if (first["panel"]) {  // the first slider, at its middle: right of the scene, in the row below the lines of the run
+    session.xdotool("mousemove " + std::to_string(scene_px + 181) + " 96 click 1");
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    state = session.press("t");
+    EXPECT_EQ(state["manual"], true);
+    EXPECT_NEAR(state["pressures"][0], 0.5, 0.06);
+  }
+  session.press("q");
+  EXPECT_EQ(session.exitStatus(), 0);
+}
+
+TEST_F(WindowTest, ClosingTheWindowEndsTheRunWithCompleteFiles) {
+  Session session(*server_, folder_, small_arm);
+  session.press("1");
+  session.requestClose();
+  ASSERT_EQ(session.exitStatus(), 0);
+  EXPECT_EQ(sidecar().at("complete"), true);
+  EXPECT_EQ(sidecar().at("verdict").at("status"), "done");
+  EXPECT_GT(readRecording((folder_ / "run" / "run.csv").string()).time_s.size(), 2u);
+}
+
+TEST_F(WindowTest, LossOfTheDisplayEndsTheRunWithCompleteFiles) {
+  XServer own;
+  Session session(own, folder_, small_arm);
+  own.kill();
+  ASSERT_EQ(session.exitStatus(), 0);
+  EXPECT_EQ(sidecar().at("complete"), true);
+}
+
+TEST_F(WindowTest, InterruptEndsAPausedRun) {
+  Session session(*server_, folder_, small_arm);
+  session.press("p");
+  session.signal(SIGINT);
+  EXPECT_EQ(session.exitStatus(), 130);
+  EXPECT_EQ(sidecar().at("complete"), false);
+}
+
+TEST_F(WindowTest, SameBitsAsWithoutAWindow) {
+  Session session(*server_, folder_, {"--seed", "5", "--duration", "1.5", "--speed", "3", "--picture-size", "320x240"});
+  ASSERT_EQ(session.exitStatus(), 0);
+  ASSERT_EQ(runProgram({"--simple", "--seed", "5", "--duration", "1.5", "--out", "plain"}, folder_).status, 0);
+  EXPECT_GT(contentOf(folder_ / "plain" / "run.csv").size(), 10000u);
+  EXPECT_EQ(contentOf(folder_ / "plain" / "run.csv"), contentOf(folder_ / "run" / "run.csv"));
+}
+
+TEST_F(WindowTest, DivergenceStandsStillUntilTheUserEndsIt) {
+  Session session(*server_, folder_,
+                  {"--robot", "elbow", "--controller", "random", "--decision-interval", "0.05", "--substeps", "1", "--step", "0.05",
+                   "--speed", "100", "--picture-size", "640x480"});
+  for (int i = 0; i < 3000 && !(fs::exists(folder_ / "run" / "run.json") && sidecar().contains("verdict")); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_EQ(sidecar().at("verdict").at("status"), "diverged");
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_TRUE(session.isAlive());
+  const json state = session.press("h");
+  EXPECT_EQ(state["paused"], true);
+  EXPECT_NE(std::string(state["divergence"]).find("diverged at"), std::string::npos);
+  session.press("q");
+  EXPECT_EQ(session.exitStatus(), 4);
+}
+
+}  // namespace
+}  // namespace musclesim
