@@ -58,7 +58,7 @@ close_window
 for robot in rig elbow; do
   "$program" --robot "$robot" --controller hold --duration 1 --plane --picture-size 800x600 --screenshot "$robot.png" --out "$robot" --quiet >/dev/null
 done
-montage rig.png elbow.png -tile 2x1 -geometry 640x480+2+0 "$figures/window_rig_elbow.png"
+montage rig.png elbow.png -tile 2x1 -geometry 512x384+2+0 -depth 8 png24:"$figures/window_rig_elbow.png"
 
 begin=$(date +%s.%N)
 "$program" --video arm.mp4 --duration 20 --out video --quiet >/dev/null
@@ -66,10 +66,10 @@ video_s=$(echo "$(date +%s.%N) - $begin" | bc)
 frames=$(ffprobe -v error -show_entries stream=nb_frames -of csv=p=0 arm.mp4)
 ffmpeg -v error -y -i arm.mp4 -vf "select='eq(mod(n-30,100),0)',crop=700:768:150:0,scale=350:-1,tile=6x1" -frames:v 1 "$figures/window_video.png"
 
-# Rate of pictures and pace over 20 s, in a window of 1024 x 768 with software rendering.
+# measure SECONDS ARGUMENT...: rate of pictures and pace in a window of 1024 x 768 with software rendering.
 measure() {
   rm -f log.jsonl
-  "$program" --duration 20 --window-log log.jsonl --out measured --quiet --json "$@" | tail -1 >verdict.json
+  "$program" --duration "$1" "${@:2}" --window-log log.jsonl --out measured --quiet --json | tail -1 >verdict.json
   python3 - <<'PYTHON'
 import json
 last = json.loads(open("log.jsonl").read().splitlines()[-1])
@@ -82,9 +82,9 @@ PYTHON
   echo
   echo "| run | pictures per second | wall time / simulated time | samples per pixel |"
   echo "|---|---|---|---|"
-  echo "| arm, si, at real time | $(measure) |"
-  echo "| arm, si, without panel, so that the scene fills the window | $(xdotool mousemove 100 100; (until [[ -s log.jsonl ]]; do sleep 0.1; done; xdotool key Tab) & sleep 0.2; measure) |"
-  echo "| arm, original, at speed 10 | $(measure --physics original --duration 100) |"
+  echo "| arm, si, at real time | $(measure 20) |"
+  echo "| arm, si, without panel, so that the scene fills the window | $(xdotool mousemove 100 100; (until [[ -s log.jsonl ]]; do sleep 0.1; done; xdotool key Tab) & sleep 0.2; measure 20) |"
+  echo "| arm, original, at speed 10 | $(measure 100 --physics original) |"
   echo
   echo "The 20 s video of the height task without a display, 1024 x 768, $frames frames: $(printf '%.0f' "$video_s") s, ffmpeg included."
 } >measured.txt

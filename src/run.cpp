@@ -253,7 +253,7 @@ class Run {
   Simulation simulation_;
   Controller* controller_ = nullptr;
   double duration_s_;
-  ManualController* hands_ = nullptr;      ///< null without a window
+  ManualController* hands_ = nullptr;     ///< null without a window
   std::unique_ptr<Spectator> spectator_;  ///< may be null
   Score score_;
   bool gap_warned_ = false, goes_on_ = true;
@@ -286,7 +286,10 @@ void addOptions(CLI::App& command, RunOptions& options) {
       .add_option("--decision-interval", options.decision_interval_s,
                   "Time between decisions in s (default: 6 in original physics, 3 in si)")
       ->group(group);
-  command.add_option("--duration", options.duration_s, "Simulated time in s (default: until the window is closed; 300 with --simple; 20 with --screenshot or --video)")->group(group);
+  command
+      .add_option("--duration", options.duration_s,
+                  "Simulated time in s (default: until the window is closed; 300 with --simple; 20 with --screenshot or --video)")
+      ->group(group);
   command.add_option("--record", options.record, "Recording to write, FILE.csv (default: run.csv in the run's folder)")->group(group);
   command
       .add_option("--record-interval", options.record_interval_s,

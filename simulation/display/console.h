@@ -22,7 +22,7 @@ inline constexpr int escape = 27, f1 = 1001, up = 1002, down = 1003, left = 1004
 class Console {
  public:
   /// Muscles, pressures and pace are those of a run, which may be in another thread.
-  Console(ManualController& hands, Pace& pace, const Camera& camera);
+  Console(ManualController& hands, Pace& pace, const Camera& first);
 
   /// A key and what it does, for the help overlay and the documentation.
   struct Binding {

@@ -43,19 +43,40 @@ std::vector<std::string> statusLines(const Console& console, const Snapshot& sna
   return lines;
 }
 
-void drawLabels(Painter& painter, const Console& console, const Snapshot& snapshot, float width, float height) {
-  const auto label = [&](const Eigen::Vector3f& point, const std::string& text, const Color& color) {
-    const auto at = console.camera.pixelOf(point, width, height);
+/// Names beside points; a name that would cover another moves down.
+class Labels {
+ public:
+  Labels(Painter& painter, const Camera& camera, float width, float height)
+      : painter_(painter), camera_(camera), width_(width), height_(height) {}
+
+  void add(const Eigen::Vector3f& point, const std::string& text, const Color& color) {
+    const auto at = camera_.pixelOf(point, width_, height_);
     if (!at) return;
-    const float w = painter.widthOf(text) + 8, h = painter.lineHeight();
-    painter.rectangle(at->x() + 6, at->y() - h / 2, w, h, paper, 0.75F);
-    painter.text(at->x() + 10, at->y() - h / 2, text, color);
-  };
-  for (const DrawnFrame& frame : snapshot.frames) label(frame.pose.topRightCorner<3, 1>(), frame.name, ink);
+    const float w = painter_.widthOf(text) + 8, h = painter_.lineHeight();
+    Eigen::Vector2f corner(at->x() + 6, at->y() - h / 2);
+    while (std::any_of(taken_.begin(), taken_.end(), [&](const Eigen::AlignedBox2f& box) {
+      return box.intersects({corner, Eigen::Vector2f(corner.x() + w, corner.y() + h)});
+    }))
+      corner.y() += h / 2;
+    taken_.emplace_back(corner, Eigen::Vector2f(corner.x() + w - 1, corner.y() + h - 1));
+    painter_.rectangle(corner.x(), corner.y(), w, h, paper, 0.75F);
+    painter_.text(corner.x() + 4, corner.y(), text, color);
+  }
+
+ private:
+  Painter& painter_;
+  const Camera& camera_;
+  float width_, height_;
+  std::vector<Eigen::AlignedBox2f> taken_;
+};
+
+void drawLabels(Painter& painter, const Console& console, const Snapshot& snapshot, float width, float height) {
+  Labels labels(painter, console.camera, width, height);
+  for (const DrawnFrame& frame : snapshot.frames) labels.add(frame.pose.topRightCorner<3, 1>(), frame.name, ink);
   for (std::size_t i = 0; i < snapshot.hoses.size(); ++i) {
     const auto& points = snapshot.hoses[i].points_mm;
-    label((points[(points.size() - 1) / 2] + points[points.size() / 2]) / 2, std::to_string(i),
-          static_cast<int>(i) == console.selected() ? alarm : ink);
+    labels.add((points[(points.size() - 1) / 2] + points[points.size() / 2]) / 2, std::to_string(i),
+               static_cast<int>(i) == console.selected() ? alarm : ink);
   }
 }
 

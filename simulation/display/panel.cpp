@@ -215,6 +215,7 @@ class ImGuiPanel final : public Panel {
     const bool has_height = snapshot.state.hand_mm.has_value();
     const float plot_count = has_height ? (snapshot.activity ? 5 : 4) : 3;
     const float height = std::max(smallest_px, (ImGui::GetContentRegionAvail().y - switches_px) / plot_count - title_px - 5);
+    drawReach();
     if (has_height) drawTask(snapshot, history, height);
     const auto muscle = static_cast<std::size_t>(std::max(0, console.selected()));
     const auto of = [muscle](std::vector<double> State::*signal) {
@@ -228,9 +229,15 @@ class ImGuiPanel final : public Panel {
              std::pair(0.0, 1.0));
     drawPlot("", {{"length/mm", length_color, of(&State::length_mm)}}, history, height, std::nullopt);
     drawPlot("", {{"force/N", force_color, of(&State::force_N)}}, history, height, std::nullopt);
+  }
+
+  /// At the right end of the first plot's title.
+  static void drawReach() {
     const std::string reach = fmt::format("last {:g} s", History::duration_s);
-    const ImVec2 corner = ImGui::GetItemRectMax(), size = ImGui::CalcTextSize(reach.c_str());
-    ImGui::GetWindowDrawList()->AddText({corner.x - size.x - 5, corner.y - size.y - 1}, IM_COL32(130, 135, 142, 255), reach.c_str());
+    const ImVec2 line = ImGui::GetCursorScreenPos();
+    const float right = line.x + ImGui::GetContentRegionAvail().x;
+    ImGui::GetWindowDrawList()->AddText({right - ImGui::CalcTextSize(reach.c_str()).x, line.y}, IM_COL32(130, 135, 142, 255),
+                                        reach.c_str());
   }
 
   static void drawTask(const Snapshot& snapshot, const History& history, float height) {

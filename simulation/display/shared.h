@@ -18,7 +18,7 @@ struct Display::Shared {
       : options(std::move(given)),
         hands(controller),
         pace(options.speed_ratio),
-        latest(std::make_shared<const Snapshot>(std::move(first))) {}
+        latest_(std::make_shared<const Snapshot>(std::move(first))) {}
 
   const DisplayOptions options;
   ManualController& hands;
@@ -30,26 +30,26 @@ struct Display::Shared {
 
   void publish(Snapshot snapshot) {
     auto next = std::make_shared<const Snapshot>(std::move(snapshot));
-    const std::lock_guard lock(access);
-    latest = std::move(next);
+    const std::lock_guard lock(access_);
+    latest_ = std::move(next);
   }
   std::shared_ptr<const Snapshot> current() {
-    const std::lock_guard lock(access);
-    return latest;
+    const std::lock_guard lock(access_);
+    return latest_;
   }
   void setDivergence(const std::string& message) {
-    const std::lock_guard lock(access);
-    divergence = message;
+    const std::lock_guard lock(access_);
+    divergence_ = message;
   }
   std::optional<std::string> currentDivergence() {
-    const std::lock_guard lock(access);
-    return divergence;
+    const std::lock_guard lock(access_);
+    return divergence_;
   }
 
  private:
-  std::mutex access;
-  std::shared_ptr<const Snapshot> latest;
-  std::optional<std::string> divergence;
+  std::mutex access_;
+  std::shared_ptr<const Snapshot> latest_;
+  std::optional<std::string> divergence_;
 };
 
 }  // namespace musclesim

@@ -26,7 +26,7 @@ namespace musclesim {
 
 /// gl.Clear(...) is glClear(...) of the context that the table was filled for.
 struct Gl {
-#define MUSCLESIM_GL_MEMBER(name) decltype(&::gl##name) name = nullptr;
+#define MUSCLESIM_GL_MEMBER(name) decltype(&::gl##name) name = nullptr;  // NOLINT(bugprone-macro-parentheses)
   MUSCLESIM_GL_FUNCTIONS(MUSCLESIM_GL_MEMBER)
 #undef MUSCLESIM_GL_MEMBER
 

@@ -119,7 +119,8 @@ void Scene::addPart(std::vector<Item>& items, const DrawnPart& part, float alpha
 
 /// A coloured sleeve over the hose's end, tapering to the attachment.
 void Scene::addCap(std::vector<Item>& items, const std::vector<V>& curve, const DrawnHose& hose) const {
-  const V tip = curve.front(), end = pointAt(curve, cap_length_in_radii * hose.radius_mm);
+  const V& tip = curve.front();
+  const V end = pointAt(curve, cap_length_in_radii * hose.radius_mm);
   if ((end - tip).norm() < 1e-3F) return;
   items.push_back({&cap_, between(tip, end, cap_width_ratio * hose.radius_mm), rgb(hose.color)});
 }
