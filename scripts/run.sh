@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds musclesim and runs it.
 #
-#     scripts/run.sh                    the arm looks for its height for 20 s; writes a recording and a figure
+#     scripts/run.sh                    the arm looks for its height: in a window or, without a display, for 20 s; writes a recording
+#                                       and a figure
 #     scripts/run.sh ARGUMENT...        runs musclesim with these arguments; scripts/run.sh --help lists them
 #
 # The program is build/release/musclesim. The first call builds it, later ones only what has changed.
@@ -17,7 +18,9 @@ source "$root/scripts/common.sh"
 build_preset release musclesim -DMUSCLESIM_TESTS=OFF -DMUSCLESIM_WARNINGS_AS_ERRORS=OFF
 
 if (($# == 0)); then
-  set -- --simple --physics original --duration 20
+  if [[ -z ${DISPLAY-} ]]; then
+    set -- --simple --physics original --duration 20
+  fi
   say "Running musclesim $* ..."
   # Runs go to log/runs of the current folder; nobody expects that of a call without arguments from anywhere else.
   [[ $PWD -ef $root ]] || set -- "$@" --out "$root/log/runs/$(date +%Y-%m-%d-%H%M%S)-height-1"
