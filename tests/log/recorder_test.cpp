@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "log_fixture.h"
+#include "support/support.h"
 
 namespace musclesim {
 namespace {
@@ -184,7 +185,8 @@ TEST(Recorder, ADiskThatFillsUpDuringTheRunLosesOnlyWhatDoesNotFit) {
 TEST(Recorder, KilledAtAnyMomentItLeavesAReadableIncompleteRecording) {
   const TemporaryFolder folder;
   std::mt19937 random(4);
-  for (int trial = 0; trial < 25; ++trial) {
+  const int trial_count = longTests() ? 200 : 25;
+  for (int trial = 0; trial < trial_count; ++trial) {
     const std::string file = folder.file("run" + std::to_string(trial) + ".csv");
     FILE* counter = std::tmpfile();
     ASSERT_TRUE(counter);

@@ -1,0 +1,30 @@
+#!/usr/bin/env bash
+# Fuzzes every reader of text with libFuzzer, address and undefined-behaviour sanitizers, starting from tests/fuzz/corpus.
+#
+#     scripts/fuzz.sh [SECONDS per target = 60] [TARGET ...]
+#
+# Prints executions per target. What breaks a target is kept in build/fuzz/found; put it into tests/fuzz/corpus/TARGET, where the normal tests
+# feed it to the target from then on. Needs clang. Exit status 1 if anything was found.
+set -euo pipefail
+root=$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")
+# shellcheck source=scripts/common.sh
+source "$root/scripts/common.sh"
+seconds=${1:-60}
+shift || true
+command -v clang++ >/dev/null || { say "fuzz: needs clang (apt-get install clang)"; exit 2; }
+build_preset fuzz fuzz
+targets=("$@")
+((${#targets[@]})) || mapfile -t targets < <(ls "$root/tests/fuzz/corpus")
+found=$root/build/fuzz/found
+mkdir -p "$found"
+status=0
+for target in "${targets[@]}"; do
+  grown=$root/build/fuzz/corpus/$target log=$root/build/fuzz/$target.log
+  mkdir -p "$grown"
+  result="nothing found"
+  FUZZ_TARGET=$target "$root/build/fuzz/tests/fuzz/fuzz" "$grown" "$root/tests/fuzz/corpus/$target" -max_total_time="$seconds" -timeout=10 \
+    -report_slow_units=1 -rss_limit_mb=4096 -max_len=4096 -artifact_prefix="$found/$target-" -print_final_stats=1 -close_fd_mask=1 \
+    >/dev/null 2>"$log" || { result="FOUND, see $log" status=1; }
+  printf '%-20s %10s executions  %s\n' "$target" "$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")" "$result"
+done
+exit "$status"

@@ -1,0 +1,94 @@
+#!/usr/bin/env bash
+# Runs the checks behind docs/reliability.md and writes it.
+#
+#     scripts/make_reliability_docs.sh [ROW ...]       default: all that need no fresh machine; DATE of the last run stands in each row
+#
+# The last result of every row is kept in docs/reliability/ROW.txt: how it ended, when, and what its command printed. Rows that are not named
+# keep theirs. Uses build/dev and, for the parsers, build/fuzz. BUILD=folder chooses another build.
+set -euo pipefail
+root=$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")
+cd "$root"
+build=${BUILD:-build/dev}
+
+# name|what is promised|command
+rows=(
+  "parsers|every reader of text (recording CSV, sidecar, TOML, effects, sweep plan and manifest, command line) under libFuzzer with both sanitizers: no crash, no hang, errors name their place|scripts/fuzz.sh 60"
+  "corpus|the kept corpus, and altered and cut variants of it, through the same targets|$build/tests/fuzz/fuzz_tests"
+  "numbers|NaN, infinities, 1e308, -0 and denormals at every muscle's pressure, in forces, in every parameter of effects and robots, in every column of a recording: refused or Diverged within a step|$build/tests/reliability/reliability_tests --gtest_filter=NonFinite.*"
+  "divergence|non-finite, far, fast and torn bodies end the run with time, place and cause; the next simulation is as if nothing had been|$build/tests/robot/robot_tests --gtest_filter=*AFault*"
+  "random_robots|2,000 robots of random calls x 200 steps and 500 with an impossible number: done, diverged or refused, no signal|env MUSCLESIM_LONG_TESTS=1 $build/tests/reliability/reliability_tests --gtest_filter=RandomRobots.*"
+  "kill|SIGKILL while logging at 200 random instants: readable, at most 256 rows or 1 s lost, never complete|env MUSCLESIM_LONG_TESTS=1 $build/tests/log/log_tests --gtest_filter=Recorder.Killed*"
+  "disk|full and read-only disks, full standard output, failing system calls: exit status 5, never complete|tests/faults/disk_check.sh $build/musclesim"
+  "signals|SIGINT and SIGTERM: ends within a step + 0.5 s, files complete, 130/143|tests/faults/signal_check.sh $build/musclesim"
+  "determinism|100 repeats, on one thread and beside another: the same state hashes every 100 steps|env MUSCLESIM_LONG_TESTS=1 $build/tests/reliability/reliability_tests --gtest_filter=*Determinism*"
+  "physics|momentum, energy, periods and static pulls against closed forms|$build/tests/analytic/analytic_tests"
+  "soak|1e6 steps: memory grows by less than 1 MB, open files not at all|$build/tests/bench/soak_study"
+  "security|no network, no shell: what the program imports; the reader's limits|scripts/security_check.sh $build/musclesim"
+  "sweep|500 runs on two workers, a tenth of the runs and one worker killed: the table of the undisturbed sweep|$build/tests/bench/sweep_study $build/musclesim 500"
+  "parallel|a disturbed sweep under GNU parallel|tests/cluster/cluster_check.sh parallel $build/musclesim"
+  "slurm|a disturbed sweep under Slurm, batch file of the documentation|tests/cluster/cluster_check.sh slurm $build/musclesim"
+)
+
+[[ -e $build/build.ninja ]] || { echo "make_reliability_docs: there is no build in $build; cmake --preset dev makes one" >&2; exit 2; }
+cmake --build "$build" --target musclesim fuzz_tests reliability_tests robot_tests log_tests analytic_tests soak_study sweep_study >&2
+mkdir -p docs/reliability
+wanted=("$@")
+status=0
+for row in "${rows[@]}"; do
+  IFS='|' read -r name _ command <<<"$row"
+  if ((${#wanted[@]})) && [[ " ${wanted[*]} " != *" $name "* ]]; then continue; fi
+  echo "$name: $command" >&2
+  result=passed start=$SECONDS
+  # Words of a command are separated by spaces; none has any within.
+  # shellcheck disable=SC2086
+  output=$($command 2>&1) || result=FAILED
+  [[ $result == passed ]] || status=1
+  {
+    echo "$result"
+    date -u +%Y-%m-%d
+    echo "$((SECONDS - start)) s"
+    # Of a test program the totals, failures and figures; of a script everything.
+    if [[ $command == *_tests* ]]; then
+      grep -aE '^\[ +(PASSED|FAILED)|tests? from .* ran|Failure$|^(valid|places): ' <<<"$output"
+    else
+      tail -n 25 <<<"$output"
+    fi | cut -c1-300 | sed -e "s|$root/||g" || true
+  } >"docs/reliability/$name.txt"
+  echo "  $result" >&2
+done
+
+{
+  cat <<'TEXT'
+# Reliability
+
+<!-- Made by scripts/make_reliability_docs.sh; do not edit. -->
+
+The same binary, ODE build, input and seed give the same bits, whatever the number of threads. A failed run never looks like a good one. Each row below is a promise, the command that tries it, and its last result. `scripts/make_reliability_docs.sh ROW` tries a row again.
+
+| row | promise | last result |
+|---|---|---|
+TEXT
+  for row in "${rows[@]}"; do
+    IFS='|' read -r name promise _ <<<"$row"
+    file=docs/reliability/$name.txt
+    if [[ -e $file ]]; then result="$(sed -n 1p "$file"), $(sed -n 2p "$file"), $(sed -n 3p "$file")"; else result="never run"; fi
+    printf '| [%s](#%s) | %s | %s |\n' "$name" "$name" "$promise" "$result"
+  done
+  for row in "${rows[@]}"; do
+    IFS='|' read -r name _ command <<<"$row"
+    printf '\n## %s\n\n`%s`\n' "$name" "$command"
+    if [[ -e docs/reliability/$name.txt ]]; then printf '\n```\n%s\n```\n' "$(tail -n +4 "docs/reliability/$name.txt")"; fi
+  done
+  cat <<'TEXT'
+
+## Not covered by a row above
+
+- Sanitizers: `scripts/test.sh` runs the whole suite under the address and undefined-behaviour sanitizers; continuous integration leaves it out. There is no run under the thread sanitizer: ODE and its threading are not instrumented.
+- The window against a headless run: `tests/src` compares the recordings of runs with and without pictures.
+- Hinges and sliders are compared with closed forms and between two steppers, not with Simbody.
+- Fuzzing lasts 60 s per target; 1e6 executions per target are what a release needs (`scripts/fuzz.sh SECONDS`).
+- The Debian packages: `scripts/debian_package_check.sh DIR` installs them on a fresh Debian 12.
+TEXT
+} >docs/reliability.md
+echo "docs/reliability.md" >&2
+exit "$status"

@@ -1,0 +1,132 @@
+#include "fuzz/targets.h"
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+
+#include "musclesim/effect/effects_file.h"
+#include "musclesim/error.h"
+#include "musclesim/log/recording.h"
+#include "musclesim/parameters.h"
+#include "src/command_line.h"
+#include "sweep/plan.h"
+#include "sweep/sweep.h"
+
+namespace musclesim {
+
+namespace {
+
+const std::string plain_csv = "time_s,command_0,pressure_0,length_0_mm\n0,0,0,200\n0.01,0.5,0.5,199\n";
+const std::string plain_sidecar = R"({"format": "musclesim-recording-1", "robot": "rig"})";
+
+[[noreturn]] void wrong(const std::string& what) {
+  std::fprintf(stderr, "fuzz target: %s\n", what.c_str());
+  std::abort();
+}
+
+/// Runs a reader; a BadFile must name its file, and its line wherever one byte is at fault.
+void read(const std::function<void()>& reader) {
+  try {
+    reader();
+  } catch (const BadFile& error) {
+    if (error.file().empty() || std::string(error.what()).find(error.file()) != 0) wrong(std::string("no file in: ") + error.what());
+    if (error.line() < 0 || error.column() < 0 || (error.column() > 0 && error.line() == 0))
+      wrong(std::string("no place in: ") + error.what());
+  } catch (const Error&) {
+  }
+}
+
+/// What was read is written and read again: the same.
+void requireSame(const std::string& first, const std::string& again) {
+  if (first != again) wrong("reading what was written gives something else:\n" + first + "\n" + again);
+}
+
+void recordingCsv(const std::string& bytes) {
+  read([&] { parseRecording(bytes, "r.csv", plain_sidecar, "r.json"); });
+}
+
+void sidecarJson(const std::string& bytes) {
+  read([&] {
+    const Recording recording = parseRecording(plain_csv, "r.csv", bytes, "r.json");
+    const std::string text = sidecarText(recording.info);
+    requireSame(text, sidecarText(parseRecording(plain_csv, "r.csv", text, "r.json").info));
+  });
+}
+
+/// A file without a name in a folder: the reader of configurations takes a path.
+class MemoryFile {
+ public:
+  explicit MemoryFile(const std::string& bytes) : descriptor_(memfd_create("fuzz", 0)) {
+    if (descriptor_ < 0 || write(descriptor_, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size())) wrong("no memory file");
+  }
+  ~MemoryFile() { close(descriptor_); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+
+ private:
+  int descriptor_;
+};
+
+void configurationToml(const std::string& bytes) {
+  read([&] {
+    Parameters parameters;
+    parameters.readToml(MemoryFile(bytes).path());
+    parameters.number("rig.load_kg", 2, "kg", 0, 1000, "load");
+    parameters.integer("arm.muscle_count", 10, 1, 30, "muscles");
+    parameters.choice("muscle.model", "chain", {"chain", "line"}, "model");
+    const std::string text = parameters.toToml();
+    parameters.requireAllKnown();
+    Parameters again;
+    again.readToml(MemoryFile(text).path());
+    again.number("rig.load_kg", 2, "kg", 0, 1000, "load");
+    again.integer("arm.muscle_count", 10, 1, 30, "muscles");
+    again.choice("muscle.model", "chain", {"chain", "line"}, "model");
+    requireSame(text, again.toToml());
+  });
+}
+
+void effectsJson(const std::string& bytes) {
+  read([&] {
+    const auto effects = parseEffects(bytes, "effects.json");
+    requireSame(effectsText(effects), effectsText(parseEffects(effectsText(effects), "effects.json")));
+  });
+}
+
+void sweepManifest(const std::string& bytes) {
+  read([&] { parseSweep(bytes, "manifest.json"); });
+}
+
+void sweepPlan(const std::string& bytes) {
+  read([&] { parsePlan(bytes, "plan.toml"); });
+}
+
+/// Arguments separated by line ends.
+void commandLine(const std::string& bytes) {
+  std::vector<std::string> arguments = {"musclesim"};
+  for (std::size_t at = 0; at < bytes.size() && arguments.size() < 100;) {
+    const auto end = std::min(bytes.find('\n', at), bytes.size());
+    arguments.push_back(bytes.substr(at, end - at).c_str());  // an argument ends at its first NUL
+    at = end + 1;
+  }
+  std::vector<const char*> pointers;
+  for (const std::string& argument : arguments) pointers.push_back(argument.c_str());
+  program::CommandLine command_line;
+  read([&] { command_line.parse(static_cast<int>(pointers.size()), pointers.data()); });
+}
+
+}  // namespace
+
+const std::vector<std::pair<std::string, FuzzTarget>>& fuzzTargets() {
+  static const std::vector<std::pair<std::string, FuzzTarget>> targets = {
+      {"recording_csv", recordingCsv}, {"sidecar_json", sidecarJson},     {"configuration_toml", configurationToml},
+      {"effects_json", effectsJson},   {"sweep_manifest", sweepManifest}, {"sweep_plan", sweepPlan},
+      {"command_line", commandLine},
+  };
+  return targets;
+}
+
+}  // namespace musclesim
