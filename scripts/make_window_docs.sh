@@ -78,7 +78,7 @@ print(f'{last["frames_per_s"]:.1f} | {verdict["wall_per_simulated_s"]:.3f} | {"4
 PYTHON
 }
 {
-  echo "A window of 1024 x 768 pixels with panel, 20 s of the height task, $(nproc) cores, drawn in software (llvmpipe under Xvfb, which needs processor time, too); load of the machine at the beginning: $(cut -d' ' -f1 /proc/loadavg)."
+  echo "A window of 1024 x 768 pixels with panel, 20 s of the height task, $(nproc) cores, drawn in software (llvmpipe under Xvfb, which needs processor time, too); load of the machine at the beginning: $(cut -d' ' -f1 /proc/loadavg), priority of these programs: nice $(nice)."
   echo
   echo "| run | pictures per second | wall time / simulated time | samples per pixel |"
   echo "|---|---|---|---|"

@@ -129,11 +129,14 @@ void drawBanner(Painter& painter, const std::string& divergence, float width, fl
 void drawOverlay(Painter& painter, const Console& console, const Snapshot& snapshot, float width, float height, bool with_status) {
   const float line = painter.lineHeight();
   if (console.style.frames) drawLabels(painter, console, snapshot, width, height);
-  if (with_status) drawBox(painter, margin, margin, statusLines(console, snapshot), ink, paper, 0.78F);
+  if (with_status) {
+    const std::vector<std::string> lines = statusLines(console, snapshot);
+    drawBox(painter, margin, height - line * static_cast<float>(lines.size() + 4), lines, ink, paper, 0.78F);
+  }
   if (const std::string notice = console.notice(); !notice.empty())
     drawBox(painter, (width - painter.widthOf(notice)) / 2 - margin, height - 3 * line - margin, {notice}, paper, night, 0.80F);
   painter.text(margin, height - line - margin / 2, "h: keys", ink);
-  if (console.divergence) drawBanner(painter, *console.divergence, width, with_status ? 9 * line : 2 * margin);
+  if (console.divergence) drawBanner(painter, *console.divergence, width, 2 * margin);
   if (console.show_help) drawHelp(painter, width, height);
 }
 

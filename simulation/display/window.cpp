@@ -22,7 +22,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto shortest_frame = std::chrono::microseconds(16666), longest_frame = std::chrono::microseconds(31000);
+constexpr auto shortest_frame = std::chrono::microseconds(16666), longest_frame = std::chrono::microseconds(28000);
 constexpr double video_frames_per_s = 30;
 constexpr int wheel_up = 3, wheel_down = 4, drag_threshold_px = 3;
 constexpr float wheel_zoom = 1.1F;
@@ -203,8 +203,8 @@ void Window::fitTarget() {
 
 /// The rate of pictures matters more than smooth edges: where drawing is too slow, there is one sample per pixel from then on.
 void Window::watchCost(Clock::duration cost) {
-  constexpr auto affordable = 27ms;
-  constexpr int weight = 10, warm_up_frames = 30;
+  constexpr auto affordable = 25ms;
+  constexpr int weight = 8, warm_up_frames = 12;
   mean_cost_ += (cost - mean_cost_) / weight;
   if (is_smooth_ && shared_.frame_count > warm_up_frames && mean_cost_ > affordable) is_smooth_ = false;
 }
