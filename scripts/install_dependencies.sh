@@ -22,6 +22,7 @@ build_packages=(
   "libtomlplusplus-dev    configuration files"
   "libcli11-dev           command line"
   "libceres-dev           fits of force laws"
+  "nettle-dev             fingerprints of sealed files"
   "libgl-dev              drawing"
   "libosmesa6-dev         pictures without a display"
   "libpng-dev             pictures as files"

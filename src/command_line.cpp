@@ -43,6 +43,7 @@ CommandLine::CommandLine()
       [&](CLI::App& command) { return addBench(command, model_); });
   add("diagnose", "Says where recordings differ from the model, why, and how far that can be closed",
       [&](CLI::App& command) { return addDiagnose(command, model_); });
+  add("blind", "Checks the diagnosis on recordings whose cause is withheld", addBlind);
   add("plan", "Writes down the runs of a parameter sweep", addPlan);
   add("work", "Runs rows of a sweep that no other worker has taken, until none is left", addWork);
   add("collect", "Puts the results of a sweep into one table", addCollect);

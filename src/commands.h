@@ -37,6 +37,8 @@ Action addFit(CLI::App& command);
 Action addPlan(CLI::App& command);
 Action addWork(CLI::App& command);
 Action addCollect(CLI::App& command);
+/// `blind make|run|score`: the check of the diagnosis on withheld causes.
+Action addBlind(CLI::App& command);
 /// `bench`: real-time ratio over the number of muscles.
 Action addBench(CLI::App& command, ModelOptions& model);
 

@@ -1,0 +1,100 @@
+#include "truth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "chance.h"
+#include "musclesim/simulation/replay.h"
+
+namespace musclesim::blind {
+
+namespace {
+
+/// The simulator's parameter that holds the noise of a signal.
+std::string noiseParameter(const std::string& signal) {
+  if (signal.starts_with("pressure_")) return "sensor.pressure_noise_ratio";
+  if (signal.starts_with("force_")) return "sensor.force_noise_N";
+  if (signal.starts_with("length_")) return "sensor.length_noise_mm";
+  if (signal.starts_with("angle_")) return "sensor.angle_noise_deg";
+  return "sensor.hand_noise_mm";
+}
+
+/// How many last digits of a sensor make one unit: far finer than its noise.
+double stepsPerUnit(const std::string& signal) {
+  return signal.starts_with("pressure_") ? 1e5 : 1e4;
+}
+
+}  // namespace
+
+Truth::Truth(std::vector<Recording> plans, std::vector<std::string> signals, std::map<std::string, double> noise_std, std::uint64_t seed)
+    : plans_(std::move(plans)), signals_(std::move(signals)), noise_std_(std::move(noise_std)), seed_(seed) {
+  for (const Recording& plan : plans_) {
+    ReplayResult result = replayRecording(plan);
+    substeps_.push_back(result.substeps);
+    model_.push_back(std::move(result.simulated));
+  }
+}
+
+/// The arm is sensitive: a finer step alone moves its hand by millimetres, many times the noise. There only laws and seeds differ.
+int Truth::stepRatio() const {
+  return plans_.front().info.robot == "arm" ? 1 : 2;
+}
+
+Recording Truth::simulated(std::size_t recording, const std::vector<ActiveEffect>& effects, bool noisy) const {
+  ReplayOptions options;
+  options.effects = effects;
+  options.seed = seed_ + recording;
+  options.substeps = substeps_[recording] * stepRatio();
+  if (noisy)
+    for (const auto& [signal, deviation] : noise_std_) options.parameters.set(noiseParameter(signal), deviation, "blind");
+  return replayRecording(plans_[recording], options).simulated;
+}
+
+std::map<std::string, double> Truth::rmse(const std::vector<ActiveEffect>& effects) const {
+  std::map<std::string, double> squares;
+  double row_count = 0;
+  for (std::size_t i = 0; i < plans_.size(); ++i) {
+    const Recording plant = simulated(i, effects, false);
+    const bool whole = plant.time_s.size() == plans_[i].time_s.size();
+    row_count += static_cast<double>(plans_[i].time_s.size());
+    for (const SignalError& error : compareSignals(model_[i], plant))
+      squares[error.name] +=
+          whole ? error.rmse * error.rmse * static_cast<double>(error.sample_count) : std::numeric_limits<double>::quiet_NaN();
+  }
+  std::map<std::string, double> result;
+  for (const std::string& signal : signals_) result[signal] = std::sqrt(squares[signal] / row_count);
+  return result;
+}
+
+double Truth::gapOverNoise(const std::map<std::string, double>& rmse) const {
+  double largest = 0;
+  for (const auto& [signal, value] : rmse) {
+    if (!std::isfinite(value)) return value;
+    largest = std::max(largest, value / noise_std_.at(signal));
+  }
+  return largest;
+}
+
+double Truth::normalisedGap(const std::map<std::string, double>& rmse) const {
+  double sum = 0;
+  for (const auto& [signal, value] : rmse) sum += std::pow(value / noise_std_.at(signal), 2);
+  return sum / static_cast<double>(rmse.size());
+}
+
+std::vector<Recording> Truth::measured(const std::vector<ActiveEffect>& effects) const {
+  std::vector<Recording> recordings;
+  for (std::size_t i = 0; i < plans_.size(); ++i) {
+    const Recording plant = simulated(i, effects, true);
+    Recording recording = plans_[i];
+    recording.info.noise_std = noise_std_;
+    for (const std::string& name : signals_) {
+      recording.signals.push_back(*plant.find(name));
+      for (double& value : recording.signals.back().values) value = rounded(value, stepsPerUnit(name));
+    }
+    recordings.push_back(std::move(recording));
+  }
+  return recordings;
+}
+
+}  // namespace musclesim::blind
