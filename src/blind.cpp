@@ -1,8 +1,15 @@
-/// `musclesim blind make`: the check of the diagnosis on withheld causes.
+/// `musclesim blind make`, `run` and `score`: the check of the diagnosis on withheld causes.
 #include <fmt/format.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "commands.h"
 #include "diagnosis/blind/make.h"
+#include "diagnosis/blind/page.h"
+#include "diagnosis/blind/run.h"
+#include "diagnosis/blind/score.h"
+#include "diagnosis/blind/seal.h"
 #include "interrupt.h"
 #include "progress.h"
 
@@ -10,17 +17,16 @@ namespace musclesim::program {
 
 namespace {
 
-struct BlindArguments {
-  std::string folder, keys, commit;
+struct MakeArguments {
+  std::string folder, keys;
   blind::MakeOptions make;
   bool quiet = false;
 };
 
-int makeCases(BlindArguments& arguments) {
-  PhaseProgress progress(arguments.quiet);
-  arguments.make.commit = arguments.commit;
+int makeCases(MakeArguments& arguments) {
+  CaseProgress progress(arguments.quiet);
   arguments.make.interrupted = [] { return interruptSignal() != 0; };
-  arguments.make.progress = [&](int done, int count) { progress.show("cases made", done, count); };
+  arguments.make.progress = [&](int done, int count) { progress.show(done, count); };
   const auto key = blind::make(arguments.folder, arguments.keys, arguments.make);
   if (interruptSignal() != 0) return interrupted_base + interruptSignal();
   fmt::print("cases   {}\nkey     {}\nseal    {}/seal.json\n", arguments.make.count + arguments.make.arm_count, key.string(),
@@ -29,7 +35,7 @@ int makeCases(BlindArguments& arguments) {
 }
 
 Action addMake(CLI::App& command) {
-  auto arguments = std::make_shared<BlindArguments>();
+  auto arguments = std::make_shared<MakeArguments>();
   command.add_option("folder", arguments->folder, "New folder for the cases and the seal")->required();
   command.add_option("--keys", arguments->keys, "Folder for the key, out of reach of `blind run`")->required();
   command.add_option("--count", arguments->make.count, "Cases on rig and elbow in turn (default 120)");
@@ -39,9 +45,75 @@ Action addMake(CLI::App& command) {
   command.add_option("--kinds", arguments->make.kinds, "Only these: single, double, open, null")->delimiter(',');
   command.add_option("--jobs", arguments->make.job_count, "Threads (default: one per core); the cases do not depend on it")
       ->check(CLI::Range(1, 1024));
-  command.add_option("--commit", arguments->commit, "Version of the sources, noted in the seal");
+  command.add_option("--commit", arguments->make.commit, "Version of the sources, noted in the seal");
   command.add_flag("--quiet", arguments->quiet, "No progress line");
   return [arguments] { return makeCases(*arguments); };
+}
+
+struct RunArguments {
+  std::string folder;
+  blind::RunOptions run;
+  bool quiet = false;
+};
+
+int runCases(RunArguments& arguments) {
+  CaseProgress progress(arguments.quiet);
+  arguments.run.interrupted = [] { return interruptSignal() != 0; };
+  arguments.run.progress = [&](int done, int count) { progress.show(done, count); };
+  const blind::RunSummary summary = blind::run(arguments.folder, arguments.run);
+  fmt::print("answers  {} of {}\n", summary.answered, summary.count);
+  return interruptSignal() != 0 ? interrupted_base + interruptSignal() : done;
+}
+
+Action addRunCases(CLI::App& command) {
+  auto arguments = std::make_shared<RunArguments>();
+  command.add_option("folder", arguments->folder, "Folder that `blind make` wrote")->required();
+  command.add_option("--jobs", arguments->run.job_count, "Cases at once (default: one per core); the answers do not depend on it")
+      ->check(CLI::Range(1, 1024));
+  command.add_option("--candidates", arguments->run.candidates, "Only these effects, by id")->delimiter(',');
+  command.add_option("--commit", arguments->run.commit, "Version of the sources, noted with the answers");
+  command.add_flag("--quiet", arguments->quiet, "No progress line");
+  return [arguments] { return runCases(*arguments); };
+}
+
+struct ScoreArguments {
+  std::string folder, key;
+  std::optional<std::string> docs;
+  bool json = false;
+};
+
+void printRate(const nlohmann::json& totals, const char* words, const char* name) {
+  if (!totals.contains(name)) return;
+  const nlohmann::json& rate = totals[name];
+  fmt::print("{:<28} {:>4} of {:<4} {:.2f} .. {:.2f}\n", words, rate["hits"].get<int>(), rate["count"].get<int>(),
+             rate["low"].get<double>(), rate["high"].get<double>());
+}
+
+int scoreCases(const ScoreArguments& arguments) {
+  const blind::Score score = blind::score(arguments.folder, arguments.key);
+  const nlohmann::json object = blind::scoreJson(score);
+  blind::writeObject(object, std::filesystem::path(arguments.folder) / "score.json");
+  if (arguments.docs) blind::writePage(score, *arguments.docs);
+  const nlohmann::json& all = object["all"];
+  if (arguments.json) {
+    fmt::print("{}\n", all.dump());
+    return done;
+  }
+  for (const auto& [words, name] : {std::pair("verdict right", "verdict"), std::pair("acceptable first", "acceptable"),
+                                    std::pair("acceptable among three", "acceptable3"), std::pair("first stage right", "stage"),
+                                    std::pair("truth in the ambiguity set", "covered"), std::pair("open causes detected", "open_detected"),
+                                    std::pair("false alarms", "false_alarm")})
+    printRate(all, words, name);
+  return done;
+}
+
+Action addScore(CLI::App& command) {
+  auto arguments = std::make_shared<ScoreArguments>();
+  command.add_option("folder", arguments->folder, "Folder with cases and answers")->required();
+  command.add_option("--keys", arguments->key, "The key's file")->required();
+  command.add_option("--docs", arguments->docs, "Also write FOLDER/blind.md and its figures");
+  command.add_flag("--json", arguments->json, "Print the totals as one JSON object");
+  return [arguments] { return scoreCases(*arguments); };
 }
 
 }  // namespace
@@ -50,7 +122,11 @@ Action addBlind(CLI::App& command) {
   command.require_subcommand(1);
   CLI::App* make = command.add_subcommand("make", "Draws plants with withheld causes, records them and seals the key");
   const Action make_action = addMake(*make);
-  return [=] { return make_action(); };
+  CLI::App* run = command.add_subcommand("run", "Diagnoses every case that has no answer yet, without the key");
+  const Action run_action = addRunCases(*run);
+  CLI::App* score = command.add_subcommand("score", "Checks the fingerprints, opens the key and counts");
+  const Action score_action = addScore(*score);
+  return [=] { return make->parsed() ? make_action() : run->parsed() ? run_action() : score_action(); };
 }
 
 }  // namespace musclesim::program

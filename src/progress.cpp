@@ -58,4 +58,9 @@ void PhaseProgress::show(const std::string& phase, long done, long expected) {
   line_.show(fmt::format("{}: {} of about {} simulations, about {} left", phase, done, expected, duration(left_s)));
 }
 
+void CaseProgress::show(int done, int count) {
+  if (!line_.isDue(done == count)) return;
+  line_.show(fmt::format("{} of {} cases, about {} left", done, count, duration(line_.wallS() / done * (count - done))));
+}
+
 }  // namespace musclesim::program

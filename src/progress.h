@@ -48,4 +48,14 @@ class PhaseProgress {
   ProgressLine line_;
 };
 
+/// Progress of a list of like cases.
+class CaseProgress {
+ public:
+  explicit CaseProgress(bool quiet) : line_(quiet) {}
+  void show(int done, int count);
+
+ private:
+  ProgressLine line_;
+};
+
 }  // namespace musclesim::program

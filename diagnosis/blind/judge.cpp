@@ -1,0 +1,154 @@
+#include "judge.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "look_alikes.h"
+
+namespace musclesim::blind {
+
+using nlohmann::json;
+
+namespace {
+
+/// A candidate of an answer.
+struct Answer {
+  std::string label;
+  double probability = 0, shrink_percent = 0;
+};
+
+std::vector<Answer> candidatesOf(const json& answer) {
+  std::vector<Answer> candidates;
+  for (const json& effect : answer.value("effects", json::array()))
+    candidates.push_back({effect.value("id", "") + "@" + effect.value("component", "all"), effect.value("probability", 0.0),
+                          effect.value("shrink_percent", 0.0)});
+  std::ranges::stable_sort(candidates, std::greater<>(), &Answer::probability);
+  return candidates;
+}
+
+using Patterns = std::vector<std::vector<std::string>>;
+
+std::vector<std::string> flat(const Patterns& sets) {
+  std::vector<std::string> all;
+  for (const auto& set : sets) all.insert(all.end(), set.begin(), set.end());
+  return all;
+}
+
+double probabilityOf(const std::vector<Answer>& candidates, const std::vector<std::string>& patterns) {
+  double sum = 0;
+  for (const Answer& candidate : candidates)
+    if (fitsAny(candidate.label, patterns)) sum += candidate.probability;
+  return std::min(sum, 1.0);
+}
+
+bool allNamed(const Patterns& sets, const std::vector<std::string>& labels) {
+  return std::ranges::all_of(sets, [&](const std::vector<std::string>& set) {
+    return std::ranges::any_of(labels, [&](const std::string& label) { return fitsAny(label, set); });
+  });
+}
+
+void judgeRanking(Judgement& j, const std::vector<Answer>& candidates, const Patterns& acceptable, const std::vector<std::string>& truth) {
+  constexpr std::size_t listed = 3;
+  const std::vector<std::string> accepted = flat(acceptable);
+  auto names = [&](const Answer& a) { return std::ranges::find(j.true_ids, idOf(a.label)) != j.true_ids.end(); };
+  auto fitsAccepted = [&](const Answer& a) { return fitsAny(a.label, accepted); };
+  const std::vector<Answer> first(candidates.begin(),
+                                  candidates.begin() + static_cast<std::ptrdiff_t>(std::min(listed, candidates.size())));
+  j.top1 = !first.empty() && names(first.front());
+  j.top3 = std::ranges::any_of(first, names);
+  j.acceptable = !first.empty() && fitsAccepted(first.front());
+  j.acceptable3 = std::ranges::any_of(first, fitsAccepted);
+  if (*j.top1) j.component = fitsAny(first.front().label, truth);
+  j.probability_of_truth = probabilityOf(candidates, truth);
+  j.probability_of_acceptable = probabilityOf(candidates, accepted);
+}
+
+void judgeShrink(Judgement& j, const json& answer, const std::vector<Answer>& candidates, const std::vector<std::string>& truth) {
+  const json gap = answer.value("gap", json::object());
+  j.shrink_percent = gap.value("shrink_percent", 0.0);
+  j.nominal_refit_percent = gap.value("nominal_refit_shrink_percent", 0.0);
+  if (j.kind != "single") return;
+  for (const Answer& candidate : candidates)
+    if (fitsAny(candidate.label, truth) && candidate.shrink_percent > 0) {
+      j.oracle_share = *j.shrink_percent / candidate.shrink_percent;
+      return;
+    }
+}
+
+void judgeSets(Judgement& j, const json& answer, const Patterns& acceptable, const Patterns& truths) {
+  std::vector<std::string> set = answer.value("ambiguity_set", std::vector<std::string>());
+  const std::vector<std::string> chosen = answer.value("chosen", std::vector<std::string>());
+  j.set_size = std::max<double>(1, static_cast<double>(set.size()));
+  if (j.kind == "double") j.pair = allNamed(acceptable, chosen);
+  set.insert(set.end(), chosen.begin(), chosen.end());
+  j.covered = allNamed(truths, set);
+}
+
+/// The truth itself, under all names of its component: the acceptable answers with the same id.
+Patterns truthsOf(const std::vector<std::string>& ids, const Patterns& acceptable) {
+  Patterns truths;
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    truths.emplace_back();
+    std::ranges::copy_if(acceptable[i], std::back_inserter(truths.back()), [&](const std::string& p) { return idOf(p) == ids[i]; });
+  }
+  return truths;
+}
+
+void judgeFound(Judgement& j, const json& key, const json& answer, const std::vector<Answer>& candidates) {
+  const auto acceptable = key.at("acceptable").get<Patterns>();
+  const Patterns truths = truthsOf(j.true_ids, acceptable);
+  judgeRanking(j, candidates, acceptable, flat(truths));
+  judgeShrink(j, answer, candidates, flat(truths));
+  judgeSets(j, answer, acceptable, truths);
+  if (j.kind == "single")
+    j.claim = Claim{std::max(j.top_probability, j.none_of_these), *j.acceptable && j.top_probability >= j.none_of_these};
+}
+
+void judgeOpen(Judgement& j) {
+  constexpr double confident = 0.5;
+  j.open_detected = j.verdict == "unexplained" || (!j.verdict.empty() && j.verdict != "failed" && j.top_probability <= confident);
+  j.claim = Claim{std::max(j.top_probability, j.none_of_these), j.none_of_these >= j.top_probability};
+}
+
+Judgement head(const std::string& name, const json& key) {
+  Judgement j;
+  j.name = name;
+  j.robot = key.at("robot");
+  j.kind = key.at("kind");
+  j.size = key.at("size");
+  j.gap_over_noise = key.at("gap_over_noise");
+  j.true_stages = key.at("stages").get<std::vector<std::string>>();
+  for (const json& effect : key.at("effects")) {
+    j.true_ids.push_back(effect.at("id"));
+    j.truth += (j.truth.empty() ? "" : " + ") + j.true_ids.back() + "@" + effect.at("component").get<std::string>();
+  }
+  return j;
+}
+
+}  // namespace
+
+Judgement judge(const std::string& name, const json& key, const json& answer) {
+  Judgement j = head(name, key);
+  j.verdict = answer.value("verdict", "");
+  j.verdict_right = j.verdict == key.at("verdict");
+  const std::vector<Answer> candidates = candidatesOf(answer);
+  if (!candidates.empty()) {
+    j.top = candidates.front().label;
+    j.top_probability = candidates.front().probability;
+  }
+  j.none_of_these = answer.value("none_of_these", 0.0);
+  if (j.kind == "null") {
+    j.false_alarm = j.verdict != "no_gap" && j.verdict != "not_excited";
+    return j;
+  }
+  const json where = answer.value("where", json::array());
+  const std::string stage = where.empty() ? "" : where.front().value("stage", "");
+  j.stage = std::ranges::find(j.true_stages, stage) != j.true_stages.end();
+  if (j.kind == "open")
+    judgeOpen(j);
+  else
+    judgeFound(j, key, answer, candidates);
+  return j;
+}
+
+}  // namespace musclesim::blind

@@ -1,0 +1,17 @@
+/// The page about a blind check.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "score.h"
+
+namespace musclesim::blind {
+
+/// Markdown: method, rates beside what is aimed at, tables by kind, robot, size and effect, every failure.
+std::string pageText(const Score& score);
+
+/// FOLDER/blind.md and FOLDER/figures/blind_*.svg.
+void writePage(const Score& score, const std::filesystem::path& folder);
+
+}  // namespace musclesim::blind

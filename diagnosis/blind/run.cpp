@@ -1,0 +1,138 @@
+#include "run.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <mutex>
+#include <nlohmann/json.hpp>
+
+#include "../parallel.h"
+#include "musclesim/diagnosis/diagnosis.h"
+#include "musclesim/error.h"
+#include "musclesim/log/recording.h"
+#include "seal.h"
+#include "sha256.h"
+
+namespace musclesim::blind {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+fs::path answerOf(const fs::path& folder, const std::string& name) {
+  return folder / "answers" / (name + ".json");
+}
+
+fs::path costOf(const fs::path& folder, const std::string& name) {
+  return folder / "answers" / (name + ".cost.json");
+}
+
+/// Named relative to DIR, so that the answer does not depend on where DIR lies.
+std::vector<Recording> recordingsOf(const fs::path& folder, const std::string& name) {
+  std::vector<Recording> recordings;
+  for (const std::string& file : recordingFiles(folder)) {
+    if (!file.starts_with(name + "/") || !file.ends_with(".csv")) continue;
+    recordings.push_back(readRecording((folder / file).string()));
+    recordings.back().file = file;
+  }
+  return recordings;
+}
+
+/// The answer; nothing if it was interrupted.
+std::optional<json> answered(const fs::path& folder, const std::string& name, const RunOptions& options) {
+  DiagnosisOptions how;
+  how.candidates = options.candidates;
+  how.job_count = 1;
+  how.interrupted = options.interrupted;
+  try {
+    const Diagnosis diagnosis = diagnose(recordingsOf(folder, name), how);
+    if (diagnosis.partial) return std::nullopt;
+    json answer = json::parse(diagnosisJson(diagnosis));
+    answer["cost"].erase("wall_s");  // not the same twice
+    return answer;
+  } catch (const BadParameter& error) {
+    return json{{"verdict", "failed"}, {"message", error.what()}};
+  } catch (const Diverged& error) {
+    return json{{"verdict", "failed"}, {"message", error.what()}};
+  }
+}
+
+json costMembers(const RunOptions& options) {
+  json members = programMembers(options.commit);
+  members["candidates"] = options.candidates;
+  return members;
+}
+
+/// Answers of one check come from one program under one set of options.
+void requireSameProgram(const fs::path& folder, const std::string& name, const json& members) {
+  const json cost = readObject(costOf(folder, name));
+  for (const char* member : {"program_sha256", "candidates"})
+    if (cost.value(member, json()) != members[member])
+      throw BadParameter(
+          fmt::format("{}: was answered with another {}; remove {} to begin again", name, member, (folder / "answers").string()));
+}
+
+bool isAnswered(const fs::path& folder, const std::string& name) {
+  return fs::exists(answerOf(folder, name)) && fs::exists(costOf(folder, name));
+}
+
+/// Returns whether there is an answer now.
+bool answer(const fs::path& folder, const std::string& name, const RunOptions& options, json members) {
+  if (isAnswered(folder, name)) return true;
+  if (options.interrupted()) return false;
+  const auto start = std::chrono::steady_clock::now();
+  const auto found = answered(folder, name, options);
+  if (!found) return false;
+  members["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  writeObject(*found, answerOf(folder, name));
+  writeObject(members, costOf(folder, name));
+  return true;
+}
+
+void writeSummary(const fs::path& folder, const std::vector<std::string>& names, json members) {
+  members["format"] = "musclesim-blind-answers-1";
+  members["answers_sha256"] = sha256OfFiles(folder, answerFiles(folder));
+  for (const std::string& name : names) members["seconds"][name] = readObject(costOf(folder, name)).at("seconds");
+  writeObject(members, folder / "answers.json");
+}
+
+}  // namespace
+
+std::vector<std::string> answerFiles(const fs::path& folder) {
+  std::vector<std::string> files;
+  for (const std::string& name : caseNames(folder)) files.push_back("answers/" + name + ".json");
+  return files;
+}
+
+RunSummary run(const fs::path& folder, const RunOptions& options) {
+  const json seal = readSeal(folder);
+  const std::string key_file = seal["key_file"];
+  if (const auto key = keyInReach(key_file, folder))
+    throw BadParameter(fmt::format("{}: the key can be read; move it away before the cases are diagnosed", key->string()));
+  const std::vector<std::string> names = caseNames(folder);
+  const json members = costMembers(options);
+  fs::create_directories(folder / "answers");
+  RunSummary summary{0, static_cast<int>(names.size())};
+  std::vector<std::string> open;
+  for (const std::string& name : names) {
+    if (isAnswered(folder, name)) {
+      requireSameProgram(folder, name, members);
+      ++summary.answered;
+    } else {
+      open.push_back(name);
+    }
+  }
+  std::mutex one_at_a_time;
+  int done_now = 0;
+  parallelFor(static_cast<int>(open.size()), options.job_count, [&](int i) {
+    if (!answer(folder, open[static_cast<std::size_t>(i)], options, members)) return;
+    const std::lock_guard lock(one_at_a_time);
+    ++summary.answered;
+    options.progress(++done_now, static_cast<int>(open.size()));
+  });
+  if (summary.complete()) writeSummary(folder, names, members);
+  return summary;
+}
+
+}  // namespace musclesim::blind

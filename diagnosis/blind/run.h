@@ -1,0 +1,33 @@
+/// `musclesim blind run`: diagnoses the cases without their key.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace musclesim::blind {
+
+struct RunOptions {
+  int job_count = 0;  ///< cases at once; 0: one per core. Each is diagnosed by one thread, so that the answers are the same
+  std::vector<std::string> candidates;  ///< ids of effects to consider; empty: the whole catalogue
+  std::string commit;                   ///< of the sources, noted with the answers; may be empty
+  std::function<void(int done, int count)> progress = [](int, int) {};
+  std::function<bool()> interrupted = [] { return false; };
+};
+
+struct RunSummary {
+  int answered = 0;  ///< by now, earlier runs included
+  int count = 0;
+  bool complete() const { return answered == count; }
+};
+
+/// Writes DIR/answers/caseNNN.json for every case without an answer, and DIR/answers.json when there are all: program, SHA-256 of the
+/// answers, seconds per case. A case that cannot be diagnosed gets the verdict "failed" with its reason.
+/// Throws BadParameter if the key is within reach, and if other answers were made by another program or with other candidates.
+RunSummary run(const std::filesystem::path& folder, const RunOptions& options);
+
+/// The answers relative to DIR, in the order of the cases.
+std::vector<std::string> answerFiles(const std::filesystem::path& folder);
+
+}  // namespace musclesim::blind

@@ -1,0 +1,29 @@
+/// `musclesim blind score`: opens the key and counts.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "judge.h"
+
+namespace musclesim::blind {
+
+/// All judgements and what they add up to.
+struct Score {
+  nlohmann::json seal, answers;  ///< as in DIR
+  std::vector<Judgement> cases;
+  nlohmann::json totals;  ///< see totalsOf, of all and by kind, robot, size, effect
+};
+
+/// Rates as {"hits", "count", "value", "low", "high"}, means and medians as numbers; what no case has is absent.
+nlohmann::json totalsOf(const std::vector<Judgement>& cases);
+
+/// Checks key, recordings and answers against their SHA-256, then judges every case. Throws BadFile if one differs or an answer is missing.
+Score score(const std::filesystem::path& folder, const std::filesystem::path& key_file);
+
+/// DIR/score.json.
+nlohmann::json scoreJson(const Score& score);
+
+}  // namespace musclesim::blind
