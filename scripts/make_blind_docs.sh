@@ -1,0 +1,25 @@
+#!/usr/bin/env bash
+# Writes docs/blind.md and three figures: makes cases with withheld causes from a seed, diagnoses them without the key, scores.
+# Resumable: the same call goes on where it was stopped. Expect 1 to 3 CPU minutes per case on rig and elbow and more on the arm: 132 cases
+# take 3 to 5 hours on two free cores.
+# Usage: scripts/make_blind_docs.sh SEED CASES KEYS [build folder] [options of `blind make`]
+#     SEED           of all draws; one that has not been used since the diagnosis was changed last
+#     CASES          folder for the cases; new, or of a call that was stopped
+#     KEYS           folder for the key, out of reach of the diagnosis: not in CASES, beside it or in the project
+#     build folder   default: build/release; holds musclesim
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+usage='usage: scripts/make_blind_docs.sh SEED CASES KEYS [build folder] [options of `blind make`]'
+seed="${1:?$usage}" cases="${2:?$usage}" keys="${3:?$usage}" build="${4:-build/release}"
+program="$build/musclesim"
+[[ -x "$program" ]] || { echo "make_blind_docs.sh: there is no program $program; build it first" >&2; exit 1; }
+commit="$(git describe --always --dirty --abbrev=40 2>/dev/null || true)"
+noted=()
+[[ -z "$commit" ]] || noted=(--commit "$commit")
+
+if [[ ! -e "$cases/seal.json" ]]; then
+  "$program" blind make "$cases" --keys "$keys" --seed "$seed" "${noted[@]}" "${@:5}"
+fi
+key_file="$(sed -n 's/.*"key_file": "\([0-9a-f]*\.json\)".*/\1/p' "$cases/seal.json")"
+"$program" blind run "$cases" "${noted[@]}"
+"$program" blind score "$cases" --keys "$keys/$key_file" --docs docs

@@ -1,0 +1,181 @@
+// Making, running and scoring small blind checks: no larger than their rules need.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "diagnosis/blind/cause.h"
+#include "diagnosis/blind/excitation.h"
+#include "diagnosis/blind/make.h"
+#include "diagnosis/blind/run.h"
+#include "diagnosis/blind/score.h"
+#include "diagnosis/blind/seal.h"
+#include "diagnosis/blind/sha256.h"
+#include "musclesim/error.h"
+#include "support/support.h"
+
+namespace musclesim::blind {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A fresh folder with room for cases and, elsewhere, for keys; removed at the end.
+class Blind : public ::testing::Test {
+ protected:
+  Blind() : root_(fs::temp_directory_path() / ("musclesim_blind_" + std::to_string(::getpid()) + "_" + testName())) {
+    fs::remove_all(root_);
+    fs::create_directories(root_ / "work");
+  }
+  ~Blind() override { fs::remove_all(root_); }
+
+  static std::string testName() { return ::testing::UnitTest::GetInstance()->current_test_info()->name(); }
+  fs::path cases(const std::string& name = "cases") const { return root_ / "work" / name; }
+  fs::path keys(const std::string& name = "a") const { return root_ / "far" / "away" / name; }
+
+  static MakeOptions tiny(const std::vector<std::string>& kinds, std::uint64_t seed = 3) {
+    MakeOptions options;
+    options.count = 1;
+    options.arm_count = 0;
+    options.seed = seed;
+    options.duration_s = 1;
+    options.kinds = kinds;
+    options.job_count = 2;
+    return options;
+  }
+  static RunOptions few() {
+    RunOptions options;
+    options.candidates = {"payload"};
+    options.job_count = 2;
+    return options;
+  }
+
+  fs::path root_;
+};
+
+void append(const fs::path& file, const std::string& text) {
+  std::ofstream(file, std::ios::app) << text;
+}
+
+TEST(BlindSha256, IsThatOfTheStandard) {
+  EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+}
+
+TEST_F(Blind, MakesTheSameCasesFromTheSameSeed) {
+  const fs::path one = make(cases("one"), keys("one"), tiny({"single"})), two = make(cases("two"), keys("two"), tiny({"single"}));
+  EXPECT_EQ(sha256OfFile(one), sha256OfFile(two));
+  EXPECT_EQ(readSeal(cases("one"))["recordings_sha256"], readSeal(cases("two"))["recordings_sha256"]);
+  EXPECT_NE(one.filename(), two.filename());
+  const fs::path other = make(cases("other"), keys("other"), tiny({"null"}, 4));
+  EXPECT_NE(readSeal(cases("one"))["recordings_sha256"], readSeal(cases("other"))["recordings_sha256"]);
+}
+
+TEST_F(Blind, SealsAKeyThatTheRecordingsDoNotTell) {
+  const fs::path key_file = make(cases(), keys(), tiny({"single"}));
+  const nlohmann::json seal = readSeal(cases()), key = readObject(key_file);
+  EXPECT_EQ(seal["key_file"], key_file.filename().string());
+  EXPECT_EQ(seal["key_sha256"], sha256OfFile(key_file));
+  for (const auto& [name, entry] : key["cases"].items()) {
+    const std::string size = entry["size"];
+    const double gap = entry["gap_over_noise"];
+    EXPECT_TRUE(bandOf(size, entry["effects"][0]["id"]).holds(gap)) << name << ": " << size << " " << gap;
+    EXPECT_TRUE(entry["effects"][0]["law"].get<std::string>().starts_with("foreign."));
+    const Recording recording = readRecording((cases() / name / "r1.csv").string());
+    EXPECT_TRUE(recording.info.active_effects.empty());
+    EXPECT_FALSE(recording.info.seed.has_value());
+    EXPECT_EQ(recording.info.extra_json, "{}");
+  }
+}
+
+TEST_F(Blind, RefusesAKeyFolderThatRunWouldFind) {
+  EXPECT_TRUE(contains(messageOf<BadParameter>([&] { make(cases(), cases() / "keys", tiny({"null"})); }), "--keys"));
+  EXPECT_TRUE(contains(messageOf<BadParameter>([&] { make(cases(), cases(), tiny({"null"})); }), "--keys"));
+  EXPECT_TRUE(contains(messageOf<BadParameter>([&] { make(cases(), cases().parent_path() / "keys", tiny({"null"})); }), "--keys"));
+  EXPECT_FALSE(fs::exists(cases()));
+}
+
+TEST_F(Blind, DoesNotRunWhileTheKeyCanBeRead) {
+  const fs::path key = make(cases(), keys(), tiny({"null"}));
+  for (const fs::path& place : {cases() / "case001", cases(), cases().parent_path(), cases().parent_path() / "beside"}) {
+    fs::create_directories(place);
+    fs::copy_file(key, place / key.filename());
+    EXPECT_TRUE(contains(messageOf<BadParameter>([&] { run(cases(), few()); }), "the key can be read")) << place;
+    fs::remove(place / key.filename());
+  }
+  EXPECT_FALSE(fs::exists(cases() / "answers"));
+}
+
+TEST_F(Blind, RunsResumesAndScores) {
+  MakeOptions two = tiny({"null"});
+  two.count = 2;
+  const fs::path key = make(cases(), keys(), two);
+  RunOptions stopped = few();
+  int asked = 0;
+  stopped.job_count = 1;
+  stopped.interrupted = [&] { return ++asked > 1; };
+  EXPECT_FALSE(run(cases(), stopped).complete());
+  EXPECT_FALSE(fs::exists(cases() / "answers.json"));
+  EXPECT_TRUE(run(cases(), few()).complete());
+  const std::string first = sha256OfFiles(cases(), answerFiles(cases()));
+  fs::remove_all(cases() / "answers");
+  RunOptions alone = few();
+  alone.job_count = 1;
+  EXPECT_TRUE(run(cases(), alone).complete());
+  EXPECT_EQ(sha256OfFiles(cases(), answerFiles(cases())), first);
+  const Score found = score(cases(), key);
+  EXPECT_EQ(found.totals["all"]["verdict"]["hits"], 2);
+  EXPECT_EQ(found.totals["all"]["false_alarm"]["hits"], 0);
+
+  RunOptions others = few();
+  others.candidates = {"creep"};
+  EXPECT_TRUE(contains(messageOf<BadParameter>([&] { run(cases(), others); }), "candidates"));
+
+  append(cases() / "answers" / "case001.json", " ");
+  EXPECT_TRUE(contains(messageOf<BadFile>([&] { score(cases(), key); }), "answers were changed"));
+}
+
+TEST_F(Blind, RefusesAKeyAndRecordingsThatWereChanged) {
+  const fs::path key = make(cases(), keys(), tiny({"null"}));
+  run(cases(), few());
+  append(key, " ");
+  EXPECT_TRUE(contains(messageOf<BadFile>([&] { score(cases(), key); }), "the key was changed"));
+  fs::resize_file(key, fs::file_size(key) - 1);
+  EXPECT_NO_THROW(score(cases(), key));
+  append(cases() / "case001" / "r4.csv", "9,0.4\n");
+  EXPECT_TRUE(contains(messageOf<BadFile>([&] { score(cases(), key); }), "recordings were changed"));
+}
+
+TEST(BlindExcitation, StaysBetweenMinusOneAndOneAndRestsAtFirst) {
+  for (const char* kind : {"triangle", "steps", "reversals", "multisine", "holds"})
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      RandomStream random(seed, "test");
+      const std::vector<double> shape = shapeOf(kind, seed % 2 ? 0.6 : 1.6, 6, random);
+      ASSERT_EQ(shape.size(), 600U);
+      double largest = 0;
+      for (std::size_t row = 0; row < shape.size(); ++row) {
+        if (row <= 30) {
+          EXPECT_EQ(shape[row], 0) << kind;
+        }
+        largest = std::max(largest, std::abs(shape[row]));
+      }
+      EXPECT_LE(largest, 1) << kind;
+      EXPECT_GT(largest, 0.2) << kind;
+    }
+}
+
+TEST(BlindSizes, ScaleAwayFromNeutral) {
+  EffectInfo law;
+  law.parameters = {{"gain", "", 1, 0, 10, 0.8, 1.2, ""},
+                    {"rate_per_s", "1/s", INFINITY, 0.01, INFINITY, 0.3, 2, ""},
+                    {"bits", "bit", INFINITY, 1, INFINITY, 4, 7, ""},
+                    {"period_s", "s", 3, 0, 10, 1, 5, "", true}};
+  EXPECT_EQ(scaled(law, {1.1, 1, 6, 2}, 2), (std::vector<double>{1.2000000000000002, 0.5, 5, 2}));
+  EXPECT_FALSE(scaled(law, {1.1, 1, 6, 2}, 20));
+}
+
+}  // namespace
+}  // namespace musclesim::blind
