@@ -9,8 +9,9 @@ namespace musclesim::program {
 
 namespace {
 
-/// An empty value (--step "") would count as "not given".
+/// An empty value (--step "") would count as "not given". Sub-commands included.
 void refuseEmptyValues(CLI::App& command) {
+  for (CLI::App* below : command.get_subcommands({})) refuseEmptyValues(*below);
   for (CLI::Option* option : command.get_options())
     if (option->get_expected_max() > 0) option->check([](const std::string& value) { return value.empty() ? "must not be empty" : ""; });
 }
@@ -48,7 +49,6 @@ CommandLine::CommandLine()
   add("work", "Runs rows of a sweep that no other worker has taken, until none is left", addWork);
   add("collect", "Puts the results of a sweep into one table", addCollect);
   refuseEmptyValues(app_);
-  for (const auto& [command, action] : commands_) refuseEmptyValues(*command);
 }
 
 std::optional<int> CommandLine::parse(int argument_count, const char* const* arguments) {
