@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Writes docs/blind.md and three figures: makes cases with withheld causes from a seed, diagnoses them without the key, scores.
-# Resumable: the same call goes on where it was stopped. Expect 1 to 3 CPU minutes per case on rig and elbow and more on the arm: 132 cases
-# take 3 to 5 hours on two free cores.
+# Resumable: the same call goes on where it was stopped. A case on rig or elbow takes 2 to 3 CPU minutes; one on the arm is expected to take
+# half an hour. 132 cases: 5 to 7 hours on two free cores.
 # Usage: scripts/make_blind_docs.sh SEED CASES KEYS [build folder] [options of `blind make`]
 #     SEED           of all draws; one that has not been used since the diagnosis was changed last
 #     CASES          folder for the cases; new, or of a call that was stopped

@@ -38,8 +38,8 @@ std::vector<Claim> claimsOf(const std::vector<Judgement>& cases) {
   return claims;
 }
 
-/// Edges of the bins over the gap, in units of the noise.
-constexpr double gap_edges[] = {2, 3.5, 6, 11, 20, 40, 90, 200};
+/// Edges of the bins over the gap, in units of the noise. An exchange of channels may lie above all sizes.
+constexpr double gap_edges[] = {0, 3.5, 6, 11, 20, 40, 90, std::numeric_limits<double>::infinity()};
 
 /// One curve of the detectability figure.
 void addDetectability(Diagram& diagram, const std::vector<Judgement>& cases, const std::string& label, const Color& color, double shift,
@@ -47,9 +47,13 @@ void addDetectability(Diagram& diagram, const std::vector<Judgement>& cases, con
   DiagramSeries points{label, color, {}, {}, SvgMark::disc}, bars{"", color, {}, {}, SvgMark::none, 1}, line{"", color, {}, {}};
   for (std::size_t bin = 0; bin + 1 < std::size(gap_edges); ++bin) {
     Rate rate;
-    for (const Judgement& j : cases)
-      if (j.kind == "single" && j.gap_over_noise >= gap_edges[bin] && j.gap_over_noise < gap_edges[bin + 1]) rate.add(hit(j));
-    addPoint(points, bars, std::log10(std::sqrt(gap_edges[bin] * gap_edges[bin + 1])) + shift, rate);
+    double sum = 0;
+    for (const Judgement& j : cases) {
+      if (j.kind != "single" || j.gap_over_noise < gap_edges[bin] || j.gap_over_noise >= gap_edges[bin + 1]) continue;
+      rate.add(hit(j));
+      sum += std::log10(j.gap_over_noise);
+    }
+    addPoint(points, bars, sum / std::max(rate.count, 1) + shift, rate);
   }
   line.x = points.x;
   line.y = points.y;
