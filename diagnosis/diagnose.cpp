@@ -131,6 +131,7 @@ class Run {
     attributor_.decide();
     choose();
     list();
+    listTrials();
     if (!plant_.interrupted()) proposeExperiment();
   }
 
@@ -198,6 +199,33 @@ class Run {
     std::ranges::stable_sort(diagnosis_.effects, [](const auto& a, const auto& b) { return a.probability > b.probability; });
     ambiguity();
     for (FoundEffect& effect : diagnosis_.effects) effect.shrink_percent = singleShrink(effect.label());
+  }
+
+  /// What was looked at and fitted.
+  void listTrials() {
+    const Attribution& attribution = attributor_.result();
+    const double all = attributor_.lookComparison().logMisfit(attributor_.lookResidual());
+    for (std::size_t i = 0; i < attribution.suspects.size(); ++i)
+      diagnosis_.looks.push_back({labelOf(i), all > 0 ? 1 - attribution.signatures[i].log_misfit / all : 0});
+    std::ranges::stable_sort(diagnosis_.looks, [](const auto& a, const auto& b) { return a.removed > b.removed; });
+    const Comparison& fitted = attributor_.fitComparison();
+    auto rmsOf = [&](const Eigen::VectorXd& residual) {
+      std::vector<double> rms;
+      for (const Comparison::Cell& cell : fitted.cells()) rms.push_back(std::sqrt(fitted.meanSquare(cell, residual)));
+      return rms;
+    };
+    const std::vector<double> before = rmsOf(attributor_.nominalResidual());
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      const Comparison::Cell& cell = fitted.cells()[i];
+      const auto recording = static_cast<std::size_t>(fitted.stretches()[cell.stretch].recording);
+      diagnosis_.cells.push_back(
+          {plant_.recordings()[recording].file, plant_.signals()[static_cast<std::size_t>(cell.signal)].name, cell.floor, before[i]});
+    }
+    for (const Explanation& explanation : attribution.explanations) {
+      Trial trial{{}, static_cast<int>(explanation.z.size()), rmsOf(explanation.residual)};
+      for (const std::size_t index : explanation.suspects) trial.effects.push_back(labelOf(index));
+      diagnosis_.trials.push_back(std::move(trial));
+    }
   }
 
   std::map<std::string, Estimate> estimates(const Suspect& suspect, const Explanation& explanation, Eigen::Index first) const {

@@ -59,6 +59,17 @@ Json gapJson(const Diagnosis& d) {
           {"sham_shrink_percent", d.sham_shrink_percent}};
 }
 
+/// What was tried and what it left: enough to weigh the answers in another way without simulating again.
+Json fittedJson(const Diagnosis& d) {
+  Json json = {{"looks", Json::array()}, {"cells", Json::array()}, {"trials", Json::array()}};
+  for (const FirstLook& look : d.looks) json["looks"].push_back({look.effect, look.removed});
+  for (const FittedCell& cell : d.cells)
+    json["cells"].push_back({{"recording", cell.recording}, {"signal", cell.signal}, {"floor", cell.floor}, {"rms_before", cell.rms_before}});
+  for (const Trial& trial : d.trials)
+    json["trials"].push_back({{"effects", trial.effects}, {"parameters", trial.parameter_count}, {"rms", trial.rms}});
+  return json;
+}
+
 }  // namespace
 
 std::string diagnosisJson(const Diagnosis& d, const std::string& schedule_file) {
@@ -76,6 +87,7 @@ std::string diagnosisJson(const Diagnosis& d, const std::string& schedule_file) 
   json["not_excited"] = d.not_excited;
   if (!d.next_experiment.commands.empty())
     json["next_experiment"] = {{"separates", d.next_experiment.separates}, {"why", d.next_experiment.why}, {"schedule", schedule_file}};
+  json["fitted"] = fittedJson(d);
   json["notes"] = d.notes;
   json["where_method"] = d.where_method;
   json["partial"] = d.partial;

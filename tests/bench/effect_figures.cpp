@@ -10,6 +10,7 @@
 #include "log/axis.h"
 #include "log/curve.h"
 #include "log/svg.h"
+#include "musclesim/effect/relevance.h"
 #include "musclesim/log/file.h"
 #include "study.h"
 
@@ -61,9 +62,11 @@ void drawPanel(Svg& svg, const Recording& clean, const Recording& with, const st
 
 std::string settingOf(const ActiveEffect& effect) {
   std::string text;
+  const EffectInfo info = effectInfo(effect.id);
+  const std::vector<std::size_t> relevant = relevantParameters(info, effect.component);
   for (const auto& [name, value] : effect.parameters) {
-    const EffectInfo info = effectInfo(effect.id);
     const auto parameter = std::find_if(info.parameters.begin(), info.parameters.end(), [&](const auto& p) { return p.name == name; });
+    if (std::ranges::find(relevant, static_cast<std::size_t>(parameter - info.parameters.begin())) == relevant.end()) continue;
     if (std::holds_alternative<double>(value) && std::get<double>(value) == parameter->neutral) continue;
     const std::string number =
         std::holds_alternative<double>(value) ? fmt::format("{:g}", std::get<double>(value)) : std::get<std::string>(value);

@@ -133,7 +133,7 @@ std::vector<Pair> pairs() {
   const ActiveEffect viscous_truth{"viscous_loss", "all", {{"damping_Ns_per_m", 40.0}}};
   const Candidate late_angle{{"sensor_delay", "signal_angle_elbow", {}}, {"delay_s"}, {0.03}, {0.02}};
   const Candidate pressure_gain{{"pressure_calibration", "all", {}}, {"gain"}, {1.0}, {0.05}};
-  const Candidate creep{{"creep", "all", {}}, {"amount", "time_constant_s"}, {0.02, 0.05}, {0.02, 0.04}};
+  const Candidate antagonist_creep{{"creep", "muscle_1", {}}, {"amount", "time_constant_s"}, {0.03, 1}, {0.02, 0.5}};
   const Candidate dry{{"joint_coulomb_friction", "all", {}}, {"torque_Nm"}, {0.05}, {0.04}};
   const Candidate start{{"attachment_offset", "muscle_0", {}}, {"offset_mm"}, {5}, {10}};
   const Candidate weak{{"force_gain", "all", {}}, {"gain"}, {0.9}, {0.1}};
@@ -147,7 +147,7 @@ std::vector<Pair> pairs() {
       {viscous_truth, thick_oil, smooth_wave, rich},
       {{"transport_delay", "all", {{"delay_s", 0.05}}}, late_angle, rich_angle, rich_pressure},
       {{"force_gain", "all", {{"gain", 0.9}}}, pressure_gain, small_wave, rich_pressure},
-      {{"leak", "all", {{"leak_per_s", 0.05}}}, creep, smooth_wave, rich_pressure},
+      {{"leak", "muscle_0", {{"leak_per_s", 0.3}}}, antagonist_creep, still, rich_pressure},
       {{"braid_hysteresis", "all", {{"relative_width", 0.03}, {"presliding_mm", 0.05}}},
        dry,
        {elbowWave(0.02), pressure_angle, "elbow, wave of 0.02 at 0.2 Hz, pressure and angle"},

@@ -78,6 +78,25 @@ struct Experiment {
   double difference = 0;                      ///< RMS between the predictions, in units of the noise floor
 };
 
+/// One signal of one recording (or part of one) that explanations are fitted to.
+struct FittedCell {
+  std::string recording, signal;
+  double floor = 0, rms_before = 0;
+};
+
+/// An explanation that was fitted: what it leaves of each cell.
+struct Trial {
+  std::vector<std::string> effects;
+  int parameter_count = 0;
+  std::vector<double> rms;
+};
+
+/// How much of the log misfit one effect would remove by the first look, of what there is, 0..1.
+struct FirstLook {
+  std::string effect;
+  double removed = 0;
+};
+
 /// Curves for the report: one recording, one signal.
 struct Trace {
   std::string recording, signal;
@@ -104,6 +123,9 @@ struct Diagnosis {
   std::vector<std::string> not_excited;  ///< effects that these recordings could not have shown
   std::vector<std::string> notes;        ///< what the user should know about data and answer
   Experiment next_experiment;
+  std::vector<FirstLook> looks;  ///< best first
+  std::vector<FittedCell> cells;
+  std::vector<Trial> trials;  ///< best first
   std::vector<Trace> traces;
   bool partial = false;
   double simulated_s = 0, wall_s = 0;
