@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <set>
@@ -12,11 +13,11 @@ namespace musclesim {
 
 namespace {
 
-constexpr int look_rows = 1500;           ///< the look's stretches have that many rows together
-constexpr std::size_t look_count = 3;     ///< recordings that are looked at
-constexpr std::size_t single_count = 9;   ///< suspects that are fitted
-constexpr std::size_t pair_count = 6;     ///< second effects that are fitted beside the best
-constexpr double worth_a_pair = 0.15;     ///< log misfit per affected cell above which a second effect is looked for
+constexpr int look_rows = 1500;          ///< the look's stretches have that many rows together
+constexpr std::size_t look_count = 3;    ///< recordings that are looked at
+constexpr std::size_t single_count = 9;  ///< suspects that are fitted
+constexpr std::size_t pair_count = 6;    ///< second effects that are fitted beside the best
+constexpr double worth_a_pair = 0.15;    ///< log misfit per affected cell above which a second effect is looked for
 constexpr int first_rounds = 2, more_rounds = 6, last_rounds = 2;
 /// A fit goes on while its log misfit per affected cell is within that of the best: on the look, on all recordings.
 struct Reach {
@@ -36,10 +37,12 @@ std::vector<Stretch> lookStretches(const Plant& plant) {
   std::vector<Stretch> result;
   for (const Stretch& stretch : plant.split().fit) {
     auto recordingOf = [&](const Stretch& s) -> const Recording& { return plant.recordings()[static_cast<std::size_t>(s.recording)]; };
-    const bool repeated = std::ranges::any_of(result, [&](const Stretch& other) { return sameCommands(recordingOf(stretch), recordingOf(other)); });
+    const bool repeated =
+        std::ranges::any_of(result, [&](const Stretch& other) { return sameCommands(recordingOf(stretch), recordingOf(other)); });
     if (!repeated && result.size() < look_count) result.push_back(stretch);
   }
-  for (Stretch& stretch : result) stretch.end_row = std::min(stretch.end_row, stretch.first_row + look_rows / static_cast<int>(result.size()));
+  for (Stretch& stretch : result)
+    stretch.end_row = std::min(stretch.end_row, stretch.first_row + look_rows / static_cast<int>(result.size()));
   return result;
 }
 
@@ -98,14 +101,13 @@ void Attributor::refit(Explanation& explanation, const Comparison& comparison, i
   };
   problem.predicted = [&](const Eigen::VectorXd& z) {
     on_simulation_();
-    return comparison.predicted(modelOf({members, z, {}, {}, 0, 0}));
+    return comparison.predicted(modelOf({members, z, {}, {}, 0, 0, 0}));
   };
   const FitResult result = fit(comparison, problem, rounds);
   explanation.z = result.z;
   if (rounds > 0 || explanation.half_width.size() == 0) explanation.half_width = result.half_width;
   explanation.residual = result.residual;
-  explanation.log_misfit =
-      result.log_misfit / comparison.affectedCells(&comparison == &fit_ ? nominal_residual_ : look_residual_);
+  explanation.log_misfit = result.log_misfit / comparison.affectedCells(&comparison == &fit_ ? nominal_residual_ : look_residual_);
 }
 
 /// In three rounds, each for those that the round before left within reach of the best: a few steps on the look, more steps, all
@@ -156,7 +158,7 @@ void Attributor::fitSingles() {
   for (const Signature& signature : result_.signatures) log_misfit.push_back(signature.log_misfit);
   const std::vector<std::size_t> chosen = survivors(log_misfit, single_count, true);
   std::vector<Explanation> candidates;
-  for (const std::size_t index : chosen) candidates.push_back({{index}, startOf(index, result_.signatures[index]), {}, {}, 0, 0});
+  for (const std::size_t index : chosen) candidates.push_back({{index}, startOf(index, result_.signatures[index]), {}, {}, 0, 0, 0});
   fitTogether(std::move(candidates), single_reach.on_look, single_reach.on_all);
 }
 
@@ -180,7 +182,7 @@ void Attributor::fitPairs() {
     const Eigen::VectorXd second = startOf(index, signatures[index]);
     Eigen::VectorXd start(best.z.size() + second.size());
     start << best.z, second;
-    candidates.push_back({{best.suspects.front(), index}, start, {}, {}, 0, 0});
+    candidates.push_back({{best.suspects.front(), index}, start, {}, {}, 0, 0, 0});
   }
   fitTogether(std::move(candidates), pair_reach.on_look, pair_reach.on_all);
 }
@@ -189,24 +191,35 @@ void Attributor::sort() {
   std::ranges::stable_sort(result_.explanations, [](const Explanation& a, const Explanation& b) { return a.probability > b.probability; });
 }
 
-/// odds = exp(-per_misfit * log misfit - costs); "none of these" and "no effect" are explanations like any other.
+/// Mean over affected cells of ln(RMS / floor), where floor^2 = noise floor^2 + (law_mismatch * RMS without any effect)^2.
+double Attributor::weighedMisfit(const std::function<double(const Comparison::Cell&)>& mean_square) const {
+  double sum = 0;
+  for (const Comparison::Cell& cell : fit_.cells()) {
+    const double mismatch = weighing_.law_mismatch * weighing_.law_mismatch * fit_.meanSquare(cell, nominal_residual_);
+    sum += 0.5 * std::log(std::max(1.0, mean_square(cell) / (cell.floor * cell.floor + mismatch)));
+  }
+  return sum / fit_.affectedCells(nominal_residual_);
+}
+
+/// odds = exp(-per_misfit * weighed misfit - costs); "none of these" and "no effect" are explanations like any other.
 void Attributor::weigh() {
-  const double affected = fit_.affectedCells(nominal_residual_);
-  auto logOdds = [&](double log_misfit, Eigen::Index parameters, std::size_t effects) {
-    return -weighing_.per_misfit * log_misfit - weighing_.per_parameter * static_cast<double>(parameters) -
+  auto logOdds = [&](double misfit, Eigen::Index parameters, std::size_t effects) {
+    return -weighing_.per_misfit * misfit - weighing_.per_parameter * static_cast<double>(parameters) -
            weighing_.per_effect * (static_cast<double>(effects) - 1);
   };
-  double none_misfit = 0;
-  for (const Comparison::Cell& cell : fit_.cells()) {
-    const double ratio = std::sqrt(fit_.meanSquare(cell, nominal_residual_)) / cell.floor;
-    if (ratio > weighing_.none_floor_ratio)
-      none_misfit += std::log(std::max(weighing_.none_floor_ratio, weighing_.none_ratio * ratio)) / affected;
-    else
-      none_misfit += std::log(std::max(1.0, ratio)) / affected;
+  auto left = [&](const Eigen::VectorXd& residual) {
+    return weighedMisfit([&](const Comparison::Cell& cell) { return fit_.meanSquare(cell, residual); });
+  };
+  const double none = weighedMisfit([&](const Comparison::Cell& cell) {
+    const double before = std::sqrt(fit_.meanSquare(cell, nominal_residual_)), least = weighing_.none_floor_ratio * cell.floor;
+    const double after = before > least ? std::max(least, weighing_.none_ratio * before) : before;
+    return after * after;
+  });
+  std::vector<double> odds = {logOdds(left(nominal_residual_), 0, 1), logOdds(none, 1, 1)};
+  for (Explanation& explanation : result_.explanations) {
+    explanation.weighed_misfit = left(explanation.residual);
+    odds.push_back(logOdds(explanation.weighed_misfit, explanation.z.size(), explanation.suspects.size()));
   }
-  std::vector<double> odds = {logOdds(fit_.logMisfit(nominal_residual_) / affected, 0, 1), logOdds(none_misfit, 1, 1)};
-  for (const Explanation& explanation : result_.explanations)
-    odds.push_back(logOdds(explanation.log_misfit, explanation.z.size(), explanation.suspects.size()));
   const double largest = *std::ranges::max_element(odds);
   double sum = 0;
   for (double& value : odds) sum += value = std::exp(value - largest);

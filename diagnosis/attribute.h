@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "comparison.h"
@@ -16,16 +17,18 @@ struct Explanation {
   std::vector<std::size_t> suspects;
   Eigen::VectorXd z;  ///< coordinates of all of them, one after the other
   Eigen::VectorXd half_width;
-  Eigen::VectorXd residual;  ///< on the stretches for fitting
-  double log_misfit = 0;     ///< per affected cell
+  Eigen::VectorXd residual;   ///< on the stretches for fitting
+  double log_misfit = 0;      ///< per affected cell
+  double weighed_misfit = 0;  ///< the same with the mismatch of laws taken for noise
   double probability = 0;
 };
 
 /// How answers are weighed. Found on practice cases with odd numbers; docs/diagnosing.md has the numbers.
 struct Weighing {
   double per_misfit = 10;         ///< ln of the odds per unit of log misfit per affected cell
-  double per_parameter = 0.15;    ///< ln of the odds that a further parameter costs
-  double per_effect = 1.5;        ///< ln of the odds that a second effect costs
+  double per_parameter = 0.5;     ///< ln of the odds that a further parameter costs
+  double per_effect = 2;          ///< ln of the odds that a second effect costs
+  double law_mismatch = 0.05;     ///< share of the residual that the right cause may leave since its law is not quite ours
   double none_ratio = 0.15;       ///< "none of these" stands for a cause that would leave this share of the residual,
   double none_floor_ratio = 1.5;  ///< but not less than this multiple of the floor
 };
@@ -60,6 +63,7 @@ class Attributor {
   Eigen::VectorXd startOf(std::size_t index, const Signature& signature) const;
   void fitSingles();
   void fitPairs();
+  double weighedMisfit(const std::function<double(const Comparison::Cell&)>& mean_square) const;
   void weigh();
   void sort();
 

@@ -9,6 +9,7 @@
 #include "musclesim/diagnosis/diagnosis.h"
 #include "next_experiment.h"
 #include "plant.h"
+#include "regimes.h"
 #include "shrink.h"
 
 namespace musclesim {
@@ -245,7 +246,7 @@ class Run {
     if (attribution.explanations.empty()) return;
     const Explanation& best = attribution.explanations.front();
     for (const Explanation& explanation : attribution.explanations) {
-      if (explanation.suspects.size() != best.suspects.size() || explanation.log_misfit > best.log_misfit + as_good) continue;
+      if (explanation.suspects.size() != best.suspects.size() || explanation.weighed_misfit > best.weighed_misfit + as_good) continue;
       for (const std::size_t index : explanation.suspects)
         if (std::ranges::find(diagnosis_.ambiguity_set, labelOf(index)) == diagnosis_.ambiguity_set.end())
           diagnosis_.ambiguity_set.push_back(labelOf(index));
@@ -279,7 +280,18 @@ class Run {
 
   void finish() {
     if (diagnosis_.before.normalised > 0) diagnosis_.unexplained_percent = 100 * diagnosis_.after.normalised / diagnosis_.before.normalised;
+    addRegimes();
     addTraces();
+    diagnosis_.drawing = plant_.drawing();
+  }
+
+  void addRegimes() {
+    if (!before_residual_.size()) return;
+    const RegimeSums before = regimeSums(held_out_, before_residual_),
+                     after = after_residual_.size() ? regimeSums(held_out_, after_residual_) : RegimeSums{};
+    for (const Regime regime : {Regime::filling, Regime::venting, Regime::holding})
+      if (before.rows[static_cast<std::size_t>(regime)] > 0)
+        diagnosis_.regimes.push_back({nameOf(regime), std::sqrt(before.meanSquare(regime)), std::sqrt(after.meanSquare(regime))});
   }
 
   void addTraces() {

@@ -9,6 +9,8 @@
 #include <limits>
 #include <optional>
 
+#include "regimes.h"
+
 namespace musclesim {
 
 namespace {
@@ -149,36 +151,21 @@ std::string componentOf(Stage stage, const std::vector<Suspect>& suspects, const
   return component;
 }
 
-/// Where the residual is largest, by sign of the command's change, in words; empty if it is much the same everywhere.
+/// Where the residual is largest, by what the commands do, in words; empty if it is much the same everywhere.
 std::string regimeOf(const Comparison& comparison, const Eigen::VectorXd& residual) {
-  enum { filling, venting, holding, regime_count };
-  const char* const words[] = {"filling", "venting", "holding"};
-  constexpr int reach = 10;  // rows after a change that still belong to it
-  std::array<double, regime_count> power{}, rows{};
-  for (const Comparison::Cell& cell : comparison.cells()) {
-    const Recording& recording = comparison.plant().recordings()[static_cast<std::size_t>(comparison.stretches()[cell.stretch].recording)];
-    for (std::size_t i = 0; i < cell.rows.size(); ++i) {
-      const auto row = static_cast<std::size_t>(cell.rows[i]);
-      double change = 0;
-      for (int muscle = 0; muscle < comparison.plant().muscleCount(); ++muscle) {
-        const auto& u = recording.find(fmt::format("command_{}", muscle))->values;
-        const double step = u[row] - u[row < reach ? 0 : row - reach];
-        if (std::abs(step) > std::abs(change)) change = step;
-      }
-      const int regime = change > 0.005 ? filling : change < -0.005 ? venting : holding;
-      const double r = residual[cell.first + static_cast<Eigen::Index>(i)] / cell.floor;
-      power[static_cast<std::size_t>(regime)] += r * r;
-      rows[static_cast<std::size_t>(regime)] += 1;
-    }
+  constexpr double fewest_rows = 50, stands_out = 1.5;
+  const RegimeSums sums = regimeSums(comparison, residual);
+  double square = 0, rows = 0, largest = 0;
+  std::string found;
+  for (const Regime regime : {Regime::filling, Regime::venting, Regime::holding}) {
+    const auto i = static_cast<std::size_t>(regime);
+    square += sums.square[i];
+    rows += sums.rows[i];
+    if (sums.rows[i] <= fewest_rows || sums.meanSquare(regime) <= largest) continue;
+    largest = sums.meanSquare(regime);
+    found = nameOf(regime);
   }
-  double all_power = 0, all_rows = 0, largest = 0;
-  int found = -1;
-  for (std::size_t i = 0; i < regime_count; ++i) {
-    all_power += power[i];
-    all_rows += rows[i];
-    if (rows[i] > 50 && power[i] / rows[i] > largest) largest = power[i] / rows[i], found = static_cast<int>(i);
-  }
-  return found >= 0 && largest > 1.5 * all_power / all_rows ? words[found] : "";
+  return rows > 0 && largest > stands_out * square / rows ? found : "";
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "../effect/components.h"
+#include "drawing.h"
 #include "musclesim/error.h"
 
 namespace musclesim {
@@ -121,6 +122,10 @@ Plant::MuscleRange Plant::muscleRange(int muscle) const {
 
 double Plant::tensionN(int muscle, double pressure_ratio, double length_mm) const {
   return reference_->actuators()[static_cast<std::size_t>(muscle)]->calculateForce(pressure_ratio, length_mm);
+}
+
+RobotDrawing Plant::drawing() const {
+  return drawingOf(*reference_);
 }
 
 Prediction Plant::predict(int recording, const Model& model, int end_row) const {

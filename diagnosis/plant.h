@@ -76,6 +76,9 @@ class Plant {
   /// The same for a schedule that was never recorded.
   Prediction predictSchedule(const Recording& schedule, const Model& model) const { return replay(schedule, model, 0); }
 
+  /// The robot as built.
+  RobotDrawing drawing() const;
+
   long simulationCount() const { return simulation_count_; }
   double simulatedS() const { return static_cast<double>(simulated_ms_) * 1e-3; }
   bool interrupted() const { return options_.interrupted && options_.interrupted(); }

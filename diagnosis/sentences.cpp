@@ -17,11 +17,52 @@ std::string effectSentence(const FoundEffect& effect) {
   return text;
 }
 
+std::string componentWords(const std::string& component) {
+  if (component == "all") return "all components";
+  std::string words = component;
+  std::ranges::replace(words, '_', ' ');
+  return words;
+}
+
 std::string whereSentence(const Diagnosis& d) {
   const Place& place = d.where.front();
-  return fmt::format("{:.0f} % in the {} stage, {}{}", 100 * place.share, place.stage, place.component,
-                     place.regime.empty() ? "" : ", while " + place.regime);
+  return fmt::format("{:.0f} % of the gap is in the {} stage, {}{}", 100 * place.share, place.stage, componentWords(place.component),
+                     place.regime.empty() ? "" : ", mostly while " + place.regime);
 }
+
+namespace {
+
+std::string effectWords(const Diagnosis& d, const std::string& label) {
+  const auto found = std::ranges::find_if(d.effects, [&](const FoundEffect& effect) { return effect.label() == label; });
+  std::string words = label.substr(0, label.find('@'));
+  std::ranges::replace(words, '_', ' ');
+  words += " on " + componentWords(label.substr(label.find('@') + 1));
+  if (found == d.effects.end() || d.chosen.size() > 1) return words;
+  std::string parameters;
+  for (const auto& [name, estimate] : found->parameters)
+    parameters +=
+        fmt::format("{}{} = {:.3g} ({:.3g} to {:.3g})", parameters.empty() ? "" : ", ", name, estimate.value, estimate.low, estimate.high);
+  return parameters.empty() ? words : words + " with " + parameters;
+}
+
+std::string listWords(const Diagnosis& d, const std::vector<std::string>& labels, const std::string& link) {
+  std::vector<std::string> words;
+  for (const std::string& label : labels) words.push_back(effectWords(d, label));
+  return fmt::format("{}", fmt::join(words, link));
+}
+
+/// What else would do, and how to find out.
+std::string otherwise(const Diagnosis& d) {
+  std::vector<std::string> others;
+  for (const std::string& label : d.ambiguity_set)
+    if (std::ranges::find(d.chosen, label) == d.chosen.end()) others.push_back(label);
+  if (others.empty()) return "";
+  const std::string place = d.chosen.size() > 1 ? " in place of " + d.chosen.back() : "";
+  return fmt::format(" {} would explain it as well{}{}.", fmt::join(others, " or "), place,
+                     d.next_experiment.commands.empty() ? "" : "; record the schedule in next.csv to tell them apart");
+}
+
+}  // namespace
 
 std::string verdictSentence(const Diagnosis& d) {
   switch (d.verdict) {
@@ -37,15 +78,14 @@ std::string verdictSentence(const Diagnosis& d) {
       return text + ".";
     }
     case Verdict::effects_found: {
-      std::string text = fmt::format("Adding {} removes {:.1f} % of the gap on data it had not seen ({:.1f} to {:.1f})",
-                                     fmt::join(d.chosen, " and "), d.shrink_percent, d.shrink_low_percent, d.shrink_high_percent);
-      std::vector<std::string> others;
-      for (const std::string& label : d.ambiguity_set)
-        if (std::ranges::find(d.chosen, label) == d.chosen.end()) others.push_back(label);
-      if (!others.empty() && d.chosen.size() == 1) text += fmt::format("; {} would explain it as well", fmt::join(others, " or "));
-      if (!others.empty() && d.chosen.size() > 1)
-        text += fmt::format("; in place of {}, {} would do as well", d.chosen.back(), fmt::join(others, " or "));
-      return text + ".";
+      std::string text = d.where.empty() ? "" : whereSentence(d) + ". ";
+      const auto& first = std::ranges::find_if(d.effects, [&](const FoundEffect& effect) { return effect.label() == d.chosen.front(); });
+      text += fmt::format(
+          "The best explanation ({:.0f} % likely) is {}; adding {} removes {:.1f} % of the gap ({:.1f} to {:.1f}) on data that neither "
+          "fitting nor choosing had seen.",
+          first == d.effects.end() ? 0 : 100 * first->probability, listWords(d, d.chosen, " together with "),
+          d.chosen.size() > 1 ? "them" : "it", d.shrink_percent, d.shrink_low_percent, d.shrink_high_percent);
+      return text + otherwise(d);
     }
   }
   return "";

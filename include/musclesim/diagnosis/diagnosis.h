@@ -1,6 +1,7 @@
 /// The sim-to-real gap: how large it is, where it arises, which unmodelled effect causes it and how far that effect closes it.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -97,6 +98,27 @@ struct FirstLook {
   double removed = 0;
 };
 
+/// RMS residual over the floor, pooled over all signals of the held-out data, while commands rise, fall or rest.
+struct RegimeGap {
+  std::string regime;
+  double before = 0, after = 0;  ///< after: 0 if nothing was chosen
+};
+
+/// The robot as built, seen from the front, for a picture that points at a component.
+struct RobotDrawing {
+  struct Line {
+    std::string component;  ///< "muscle_0"; bones have none
+    std::vector<Eigen::Vector2d> points_mm;
+    double width_mm = 0;
+  };
+  struct Point {
+    std::string component;  ///< "joint_elbow", "hand"
+    Eigen::Vector2d point_mm;
+  };
+  std::vector<Line> lines;  ///< from back to front
+  std::vector<Point> points;
+};
+
 /// Curves for the report: one recording, one signal.
 struct Trace {
   std::string recording, signal;
@@ -126,6 +148,8 @@ struct Diagnosis {
   std::vector<FirstLook> looks;  ///< best first
   std::vector<FittedCell> cells;
   std::vector<Trial> trials;  ///< best first
+  std::vector<RegimeGap> regimes;
+  RobotDrawing drawing;
   std::vector<Trace> traces;
   bool partial = false;
   double simulated_s = 0, wall_s = 0;

@@ -1,0 +1,12 @@
+/// What a report needs to draw a robot.
+#pragma once
+
+#include "musclesim/diagnosis/diagnosis.h"
+#include "musclesim/simulation/simulation.h"
+
+namespace musclesim {
+
+/// The simulation's robot as it stands, projected onto the plane of x and y.
+RobotDrawing drawingOf(Simulation& simulation);
+
+}  // namespace musclesim

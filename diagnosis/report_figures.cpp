@@ -1,0 +1,222 @@
+#include "report_figures.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "../log/axis.h"
+#include "../log/curve.h"
+#include "../log/svg.h"
+
+namespace musclesim {
+
+namespace {
+
+constexpr const char* guilty_color = "#b00020";
+
+/// A drawing with further markup before its end.
+std::string with(const Svg& svg, const std::string& markup) {
+  std::string document = svg.document();
+  return document.insert(document.rfind("</svg>"), markup);
+}
+
+std::string pathData(const std::vector<std::vector<SvgPoint>>& pieces) {
+  std::string data;
+  for (const auto& piece : pieces)
+    for (std::size_t i = 0; i < piece.size(); ++i) data += fmt::format("{}{:.1f} {:.1f}", i == 0 ? "M" : "L", piece[i].x, piece[i].y);
+  return data;
+}
+
+}  // namespace
+
+std::string barsFigure(const std::string& title, const std::vector<Bar>& bars, double full) {
+  constexpr double width = 700, row = 26, left = 260, right = 90;
+  Svg svg(width, row * static_cast<double>(bars.size()) + 8, title);
+  for (std::size_t i = 0; i < bars.size(); ++i) {
+    const double y = 4 + row * static_cast<double>(i) + row / 2;
+    const double length = full > 0 ? (width - left - right) * std::clamp(bars[i].value / full, 0.0, 1.0) : 0;
+    svg.text({left - 8, y + 5}, bars[i].label, {14, SvgAnchor::end, "#222222"});
+    svg.line({left, y}, {left + std::max(1.0, length), y}, bars[i].strong ? "#222222" : "#8a8a8a", row * 0.55);
+    svg.text({left + length + 8, y + 5}, bars[i].number, {14, SvgAnchor::start, "#222222"});
+  }
+  return svg.document();
+}
+
+std::string stagesFigure(const std::vector<Place>& where) {
+  constexpr std::array<const char*, 5> stages = {"command", "pressure", "force", "body", "sensor"};
+  constexpr double box = 118, gap = 26, height = 58, top = 6;
+  const double width = static_cast<double>(stages.size()) * (box + gap) - gap + 4;
+  Svg svg(width, height + 34, "The way of a sample and the shares of the gap");
+  std::string markup;
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    const double x = 2 + static_cast<double>(i) * (box + gap);
+    const auto place = std::ranges::find(where, std::string(stages[i]), &Place::stage);
+    const double share = place == where.end() ? 0 : place->share;
+    const bool first = place != where.end() && place == where.begin();
+    const int grey = static_cast<int>(std::lround(245 - 190 * share));
+    const std::string ink = share > 0.5 ? "#ffffff" : "#222222";
+    markup += fmt::format(
+        "<rect x=\"{:.0f}\" y=\"{:.0f}\" width=\"{:.0f}\" height=\"{:.0f}\" rx=\"8\" fill=\"rgb({},{},{})\" stroke=\"{}\" "
+        "stroke-width=\"{}\"/>",
+        x, top, box, height, grey, grey, grey, first ? guilty_color : "#888888", first ? 4 : 1);
+    auto words = [&](double y, const std::string& text, int size, const std::string& color) {
+      markup += fmt::format(
+          "<text x=\"{:.0f}\" y=\"{:.0f}\" font-family=\"sans-serif\" font-size=\"{}\" text-anchor=\"middle\" fill=\"{}\">{}</text>",
+          x + box / 2, y, size, color, escapedXml(text));
+    };
+    words(top + 24, stages[i], 15, ink);
+    words(top + 46, fmt::format("{:.0f} %", 100 * share), 17, ink);
+    if (share >= 0.05) words(top + height + 20, place->component, 13, "#222222");
+    if (i + 1 < stages.size())
+      markup += fmt::format("<path d=\"M{0:.0f} {1:.0f}h{2:.0f}m-7 -5l7 5l-7 5\" fill=\"none\" stroke=\"#555555\" stroke-width=\"1.6\"/>",
+                            x + box + 4, top + height / 2, gap - 8);
+  }
+  return with(svg, markup);
+}
+
+std::string robotFigure(const RobotDrawing& drawing, const Place& place) {
+  if (drawing.lines.empty()) return "";
+  Eigen::AlignedBox2d box;
+  for (const RobotDrawing::Line& line : drawing.lines)
+    for (const Eigen::Vector2d& point : line.points_mm) box.extend(point);
+  constexpr double height = 300, margin = 34, most_width = 640;
+  const Eigen::Vector2d extent = box.sizes().cwiseMax(1.0);
+  const double scale = std::min((height - 2 * margin) / extent.y(), (most_width - 2 * margin) / extent.x());
+  const double width = std::max(220.0, extent.x() * scale + 2 * margin);
+  auto pixel = [&](const Eigen::Vector2d& p) {
+    return SvgPoint{width / 2 + (p.x() - box.center().x()) * scale, height / 2 - (p.y() - box.center().y()) * scale};
+  };
+  const bool all_muscles = place.component == "all" && place.stage != "body" && place.stage != "sensor";
+  Svg svg(width, height, "The robot from the front; marked: " + place.component);
+  std::string markup;
+  for (const RobotDrawing::Line& line : drawing.lines) {
+    const bool muscle = !line.component.empty(), guilty = line.component == place.component || (all_muscles && muscle);
+    std::vector<SvgPoint> points;
+    for (const Eigen::Vector2d& point : line.points_mm) points.push_back(pixel(point));
+    markup += fmt::format(
+        "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{:.1f}\" stroke-linecap=\"round\" "
+        "stroke-linejoin=\"round\"><title>{}</title></path>",
+        pathData({points}),
+        guilty   ? guilty_color
+        : muscle ? "#9a9a9a"
+                 : "#dcdcdc",
+        std::max(2.0, line.width_mm * scale) + (guilty ? 2 : 0), muscle ? line.component : "bone");
+    if (guilty && !all_muscles) {
+      const SvgPoint middle = points[points.size() / 2];
+      svg.text({middle.x + 14, middle.y}, line.component, {13, SvgAnchor::start, guilty_color, true});
+    }
+  }
+  for (const RobotDrawing::Point& point : drawing.points) {
+    if (point.component != place.component) continue;
+    const SvgPoint at = pixel(point.point_mm);
+    markup += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"11\" fill=\"none\" stroke=\"{}\" stroke-width=\"4\"/>", at.x, at.y,
+                          guilty_color);
+    svg.text({at.x + 18, at.y + 5}, point.component, {13, SvgAnchor::start, guilty_color, true});
+  }
+  return with(svg, markup);
+}
+
+std::string traceFigure(const Trace& trace) {
+  constexpr double width = 900, height = 230;
+  const SvgBox box{70, 26, width - 90, height - 66};
+  Extent values, times;
+  for (const auto* one : {&trace.measured, &trace.before, &trace.after}) values.add(*one);
+  times.add(trace.time_s);
+  const Axis time_axis(times, box.left, box.right(), 8, false), value_axis(values, box.bottom(), box.top, 5, true);
+  Svg svg(width, height, trace.signal);
+  for (const double tick : value_axis.ticks()) {
+    svg.line({box.left, value_axis.pixel(tick)}, {box.right(), value_axis.pixel(tick)}, "#e5e5e5", 1);
+    svg.text({box.left - 6, value_axis.pixel(tick) + 4}, value_axis.label(tick), {12, SvgAnchor::end});
+  }
+  svg.text({0.5 * (box.left + box.right()), height - 8}, "time, s", {12, SvgAnchor::middle});
+  svg.frame(box, "#999999");
+  svg.text({box.right(), 18}, trace.signal, {13, SvgAnchor::end, "#222222", true});
+  struct Kind {
+    const std::vector<double>& y;
+    const char *words, *color, *dash;
+    double line_width;
+  };
+  const std::array<Kind, 3> kinds = {Kind{trace.measured, "measured", "#1a1a1a", "", 2.4},
+                                     Kind{trace.before, "simulated before", "#d95f0e", "7 4", 1.5},
+                                     Kind{trace.after, "simulated after", "#1f78d0", "", 1.3}};
+  std::string markup, curves;
+  double x = box.left;
+  for (const Kind& kind : kinds) {
+    if (kind.y.empty()) continue;
+    const std::string stroke = fmt::format("fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-dasharray=\"{}\"", kind.color,
+                                           kind.line_width, *kind.dash ? kind.dash : "none");
+    markup += fmt::format("<path d=\"M{:.0f} 14h26\" {}/>", x, stroke);
+    markup += fmt::format("<text x=\"{:.0f}\" y=\"18\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#333333\">{}</text>", x + 32,
+                          kind.words);
+    x += 160;
+    curves += fmt::format("<path d=\"{}\" {} vector-effect=\"non-scaling-stroke\"/>",
+                          pathData(curvePieces(trace.time_s, kind.y, time_axis, value_axis, Between::straight)), stroke);
+  }
+  // The curves in a window of their own: the script narrows what it shows.
+  markup += fmt::format(
+      "<svg class=\"view\" x=\"{0}\" y=\"{1}\" width=\"{2}\" height=\"{3}\" viewBox=\"{0} {1} {2} {3}\" preserveAspectRatio=\"none\" "
+      "data-start=\"{4}\" data-end=\"{5}\">{6}</svg>",
+      box.left, box.top, box.width, box.height, time_axis.minimum(), time_axis.maximum(), curves);
+  markup +=
+      fmt::format("<g class=\"ticks\" font-family=\"sans-serif\" font-size=\"12\" text-anchor=\"middle\" fill=\"#333333\" data-y=\"{}\">",
+                  box.bottom() + 16);
+  for (const double tick : time_axis.ticks())
+    markup += fmt::format("<text x=\"{:.1f}\" y=\"{}\">{}</text>", time_axis.pixel(tick), box.bottom() + 16, time_axis.label(tick));
+  return "<div class=\"trace\">" + with(svg, markup + "</g>") + "</div>\n";
+}
+
+std::string zoomScript() {
+  return R"js(<script>
+(() => {
+  const views = [...document.querySelectorAll('svg.view')].map(view => {
+    const [x, y, width, height] = view.getAttribute('viewBox').split(' ').map(Number);
+    return {view, x, y, width, height, start: +view.dataset.start, end: +view.dataset.end,
+            ticks: view.parentNode.querySelector('g.ticks')};
+  });
+  if (!views.length) return;
+  const whole = [Math.min(...views.map(v => v.start)), Math.max(...views.map(v => v.end))];
+  const niceStep = span => {
+    const raw = span / 8, power = 10 ** Math.floor(Math.log10(raw));
+    return [1, 2, 5, 10].map(f => f * power).find(step => step >= raw);
+  };
+  const show = ([from, to]) => views.forEach(v => {
+    const perSecond = v.width / (v.end - v.start), a = Math.max(from, v.start), b = Math.min(to, v.end);
+    if (b <= a) return;
+    v.view.setAttribute('viewBox', `${v.x + (a - v.start) * perSecond} ${v.y} ${(b - a) * perSecond} ${v.height}`);
+    v.shown = [a, b];
+    const step = niceStep(b - a), digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+    v.ticks.replaceChildren();
+    for (let t = Math.ceil(a / step - 1e-9) * step; t <= b + 1e-9; t += step) {
+      const text = document.createElementNS('http://www.w3.org/2000/svg', 'text');
+      text.setAttribute('x', v.x + (t - a) / (b - a) * v.width);
+      text.setAttribute('y', v.ticks.dataset.y);
+      text.textContent = t.toFixed(digits);
+      v.ticks.append(text);
+    }
+  });
+  views.forEach(v => {
+    const outer = v.view.parentNode, timeAt = event => {
+      const box = outer.getBoundingClientRect(), x = (event.clientX - box.left) * outer.viewBox.baseVal.width / box.width;
+      const [a, b] = v.shown || [v.start, v.end];
+      return Math.min(b, Math.max(a, a + (x - v.x) / v.width * (b - a)));
+    };
+    let from = null;
+    outer.style.cursor = 'col-resize';
+    outer.addEventListener('pointerdown', event => { from = timeAt(event); event.preventDefault(); });
+    window.addEventListener('pointerup', event => {
+      if (from === null) return;
+      const to = timeAt(event), range = [Math.min(from, to), Math.max(from, to)];
+      from = null;
+      if (range[1] - range[0] > 0.01 * (v.end - v.start)) show(range);
+    });
+    outer.addEventListener('dblclick', () => show(whole));
+  });
+})();
+</script>
+)js";
+}
+
+}  // namespace musclesim
