@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "attribute.h"
+#include "data_checks.h"
 #include "locate.h"
 #include "musclesim/diagnosis/diagnosis.h"
 #include "next_experiment.h"
@@ -57,17 +58,6 @@ bool withinFloor(const Plant& plant, const Gap& gap) {
   });
 }
 
-/// All commands rest and nothing moves.
-bool nothingMoves(const Plant& plant) {
-  for (const Recording& recording : plant.recordings())
-    for (const Signal& signal : recording.signals) {
-      if (!signal.name.starts_with("command_")) continue;
-      const auto [least, largest] = std::ranges::minmax_element(signal.values);
-      if (*largest - *least > 0.02) return false;
-    }
-  return true;
-}
-
 class Run {
  public:
   Run(std::vector<Recording> recordings, const DiagnosisOptions& options)
@@ -97,6 +87,7 @@ class Run {
       diagnosis_.recordings.push_back(recording.file);
       for (const std::string& note : recording.notes) diagnosis_.notes.push_back(note);
     }
+    for (const std::string& note : plant_.notes()) diagnosis_.notes.push_back(note);
     diagnosis_.held_out = plant_.split().held_out_words;
     diagnosis_.is_held_out = true;
     if (std::ranges::any_of(plant_.signals(), [](const auto& s) { return s.floor.source == NoiseFloor::Source::quiet_rows; }))
@@ -107,6 +98,8 @@ class Run {
     monitor_.phase("comparing the model with the recordings", static_cast<long>(plant_.recordings().size()));
     std::vector<Stretch> everything = plant_.split().fit;
     everything.insert(everything.end(), plant_.split().held_out.begin(), plant_.split().held_out.end());
+    for (std::size_t i = 0; i < plant_.recordings().size(); ++i)
+      requireUnits(plant_, static_cast<int>(i), plant_.predict(static_cast<int>(i), Model{}));
     const Comparison all(plant_, everything);
     const Eigen::VectorXd predicted = all.predicted(Model{}), held = held_out_.predicted(Model{});
     if (!predicted.size() || !held.size())
@@ -114,7 +107,7 @@ class Run {
     before_residual_ = held_out_.measured() - held;
     diagnosis_.before = diagnosis_.after = held_out_.gap(before_residual_);
     const bool small = withinFloor(plant_, all.gap(all.measured() - predicted));
-    diagnosis_.verdict = small ? (nothingMoves(plant_) ? Verdict::not_excited : Verdict::no_gap) : Verdict::unexplained;
+    diagnosis_.verdict = small ? (commandsMove(plant_.recordings()) ? Verdict::no_gap : Verdict::not_excited) : Verdict::unexplained;
     if (small) diagnosis_.explanations.push_back({{}, 1});
   }
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "../effect/components.h"
+#include "data_checks.h"
 #include "drawing.h"
 #include "musclesim/error.h"
 
@@ -80,6 +81,8 @@ Plant::Plant(std::vector<Recording> recordings, const DiagnosisOptions& options)
 
 void Plant::compareSignals() {
   measured_.resize(recordings_.size());
+  notes_ = dataNotes(recordings_);
+  const bool moves = commandsMove(recordings_);
   for (const std::string& name : reference_->robot().signalNames()) {
     if (name.starts_with("command_")) continue;
     const bool recorded = std::ranges::any_of(recordings_, [&](const Recording& recording) {
@@ -87,6 +90,10 @@ void Plant::compareSignals() {
       return found && hasNumbers(*found);
     });
     if (!recorded) continue;
+    if (moves && neverChanges(recordings_, name)) {
+      notes_.push_back(name + " has the same value in every row although commands change: a dead sensor, left out");
+      continue;
+    }
     signals_.push_back({name, noiseFloor(recordings_, name)});
     for (std::size_t i = 0; i < recordings_.size(); ++i) {
       const Signal* found = recordings_[i].find(name);
@@ -94,8 +101,8 @@ void Plant::compareSignals() {
     }
   }
   if (signals_.empty())
-    throw BadParameter("signals of " + recordings_.front().file, "only commands",
-                       "include one that the model also has, for example length_0_mm");
+    throw BadParameter("signals of " + recordings_.front().file, "none that can be compared",
+                       "include one that changes and that the model also has, for example length_0_mm");
 }
 
 const std::vector<double>& Plant::measured(int recording, int signal) const {

@@ -49,6 +49,8 @@ class Plant {
 
   const std::vector<Recording>& recordings() const { return recordings_; }
   const std::vector<ComparedSignal>& signals() const { return signals_; }
+  /// What is odd about the recordings and what was done about it.
+  const std::vector<std::string>& notes() const { return notes_; }
   const Split& split() const { return split_; }
   const std::string& robot() const { return recordings_.front().info.robot; }
   int muscleCount() const { return recordings_.front().muscleCount(); }
@@ -92,6 +94,7 @@ class Plant {
   const DiagnosisOptions& options_;
   std::vector<ComparedSignal> signals_;
   std::vector<std::vector<std::vector<double>>> measured_;  ///< [recording][signal][row]
+  std::vector<std::string> notes_;
   Split split_;
   std::unique_ptr<Simulation> reference_;  ///< the model as built; asked about its parts, never stepped
   std::vector<std::pair<std::string, double>> nominal_;

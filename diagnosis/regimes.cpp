@@ -8,7 +8,7 @@ namespace musclesim {
 
 namespace {
 
-constexpr double reach_s = 0.1, least_change = 0.005;
+constexpr double reach_s = 0.1, rounding_s = 1e-9, least_change = 0.005;
 
 Regime regimeAt(const Recording& recording, std::size_t row, std::size_t before) {
   double change = 0;
@@ -37,7 +37,7 @@ RegimeSums regimeSums(const Comparison& comparison, const Eigen::VectorXd& resid
     std::size_t before = 0;
     for (std::size_t i = 0; i < cell.rows.size(); ++i) {
       const auto row = static_cast<std::size_t>(cell.rows[i]);
-      while (recording.time_s[before] < recording.time_s[row] - reach_s) ++before;
+      while (recording.time_s[before] < recording.time_s[row] - reach_s - rounding_s) ++before;
       const auto regime = static_cast<std::size_t>(regimeAt(recording, row, before));
       const double r = residual[cell.first + static_cast<Eigen::Index>(i)] / cell.floor;
       sums.square[regime] += r * r;

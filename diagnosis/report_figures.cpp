@@ -90,8 +90,13 @@ std::string robotFigure(const RobotDrawing& drawing, const Place& place) {
     return SvgPoint{width / 2 + (p.x() - box.center().x()) * scale, height / 2 - (p.y() - box.center().y()) * scale};
   };
   const bool all_muscles = place.component == "all" && place.stage != "body" && place.stage != "sensor";
-  Svg svg(width, height, "The robot from the front; marked: " + place.component);
-  std::string markup;
+  const Svg svg(width, height, "The robot from the front; marked: " + place.component);
+  std::string markup, labels;
+  auto label = [](SvgPoint at, const std::string& component) {
+    return fmt::format(
+        "<text x=\"{:.1f}\" y=\"{:.1f}\" font-family=\"sans-serif\" font-size=\"13\" font-weight=\"bold\" fill=\"{}\">{}</text>", at.x,
+        at.y, guilty_color, escapedXml(component));
+  };
   for (const RobotDrawing::Line& line : drawing.lines) {
     const bool muscle = !line.component.empty(), guilty = line.component == place.component || (all_muscles && muscle);
     std::vector<SvgPoint> points;
@@ -106,7 +111,7 @@ std::string robotFigure(const RobotDrawing& drawing, const Place& place) {
         std::max(2.0, line.width_mm * scale) + (guilty ? 2 : 0), muscle ? line.component : "bone");
     if (guilty && !all_muscles) {
       const SvgPoint middle = points[points.size() / 2];
-      svg.text({middle.x + 14, middle.y}, line.component, {13, SvgAnchor::start, guilty_color, true});
+      labels += label({middle.x + 14, middle.y}, line.component);
     }
   }
   for (const RobotDrawing::Point& point : drawing.points) {
@@ -114,9 +119,9 @@ std::string robotFigure(const RobotDrawing& drawing, const Place& place) {
     const SvgPoint at = pixel(point.point_mm);
     markup += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"11\" fill=\"none\" stroke=\"{}\" stroke-width=\"4\"/>", at.x, at.y,
                           guilty_color);
-    svg.text({at.x + 18, at.y + 5}, point.component, {13, SvgAnchor::start, guilty_color, true});
+    labels += label({at.x + 18, at.y + 5}, point.component);
   }
-  return with(svg, markup);
+  return with(svg, markup + labels);
 }
 
 std::string traceFigure(const Trace& trace) {

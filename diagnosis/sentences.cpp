@@ -17,6 +17,17 @@ std::string effectSentence(const FoundEffect& effect) {
   return text;
 }
 
+std::string percentWords(double percent) {
+  constexpr double nearly_all = 99.95;
+  return percent > nearly_all && percent < 100 ? "more than 99.9 %" : fmt::format("{:.1f} %", percent);
+}
+
+std::string shrinkWords(const Diagnosis& d) {
+  const std::string words = percentWords(d.shrink_percent);
+  if (percentWords(d.shrink_low_percent) == words && percentWords(d.shrink_high_percent) == words) return words;
+  return fmt::format("{} ({:.1f} to {:.1f})", words, d.shrink_low_percent, d.shrink_high_percent);
+}
+
 std::string componentWords(const std::string& component) {
   if (component == "all") return "all components";
   std::string words = component;
@@ -26,7 +37,7 @@ std::string componentWords(const std::string& component) {
 
 std::string whereSentence(const Diagnosis& d) {
   const Place& place = d.where.front();
-  return fmt::format("{:.0f} % of the gap is in the {} stage, {}{}", 100 * place.share, place.stage, componentWords(place.component),
+  return fmt::format("{:.0f} % of the gap is in the {} stage ({}){}", 100 * place.share, place.stage, componentWords(place.component),
                      place.regime.empty() ? "" : ", mostly while " + place.regime);
 }
 
@@ -81,10 +92,10 @@ std::string verdictSentence(const Diagnosis& d) {
       std::string text = d.where.empty() ? "" : whereSentence(d) + ". ";
       const auto& first = std::ranges::find_if(d.effects, [&](const FoundEffect& effect) { return effect.label() == d.chosen.front(); });
       text += fmt::format(
-          "The best explanation ({:.0f} % likely) is {}; adding {} removes {:.1f} % of the gap ({:.1f} to {:.1f}) on data that neither "
+          "The best explanation ({:.0f} % likely) is {}; adding {} removes {} of the gap on data that neither "
           "fitting nor choosing had seen.",
           first == d.effects.end() ? 0 : 100 * first->probability, listWords(d, d.chosen, " together with "),
-          d.chosen.size() > 1 ? "them" : "it", d.shrink_percent, d.shrink_low_percent, d.shrink_high_percent);
+          d.chosen.size() > 1 ? "them" : "it", shrinkWords(d));
       return text + otherwise(d);
     }
   }

@@ -1,54 +1,22 @@
 // Plants with a planted effect, noise added; candidates are few to keep the tests short.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "musclesim/diagnosis/diagnosis.h"
 #include "musclesim/error.h"
-#include "musclesim/random.h"
+#include "planted.h"
 #include "support/support.h"
 
 namespace musclesim {
 namespace {
 
-constexpr double noise_mm = 0.05;
-
-/// What a rig with these effects measures under steps and a wave, 4 s.
-Recording recorded(const std::vector<ActiveEffect>& effects, double amplitude, std::uint64_t seed) {
-  Recording plan;
-  plan.file = "plan_" + std::to_string(seed) + ".csv";
-  plan.info.robot = "rig";
-  plan.signals = {{"command_0", {}}};
-  for (int row = 0; row < 400; ++row) {
-    const double t = 0.01 * row;
-    plan.time_s.push_back(t);
-    const double step = std::fmod(t, 1.0) < 0.5 ? 1 : -1;
-    plan.signals[0].values.push_back(0.45 + amplitude * (t < 2 ? step : std::sin(2 * std::numbers::pi * t)));
-  }
-  ReplayOptions options;
-  options.effects = effects;
-  Recording recording = replayRecording(plan, options).simulated;
-  recording.file = plan.file;
-  recording.info.active_effects.clear();
-  recording.info.noise_std = {{"length_0_mm", noise_mm}};
-  std::erase_if(recording.signals, [](const Signal& s) { return s.name != "command_0" && s.name != "length_0_mm"; });
-  RandomStream random(seed, "diagnose_test");
-  for (double& value : recording.signals[1].values) value += noise_mm * random.normal();
-  return recording;
-}
-
-std::vector<Recording> plant(const std::vector<ActiveEffect>& effects) {
-  return {recorded(effects, 0.15, 1), recorded(effects, 0.2, 2)};
-}
-
-DiagnosisOptions few(const std::vector<std::string>& candidates) {
-  DiagnosisOptions options;
-  options.candidates = candidates;
-  options.job_count = 2;
-  return options;
-}
+using planted::few;
+using planted::plant;
+using planted::recorded;
 
 TEST(Diagnose, FindsAPlantedPayload) {
   const Diagnosis found = diagnose(plant({{"payload", "hand", {{"mass_kg", 0.2}}}}), few({"payload", "valve_lag", "force_gain", "creep"}));
@@ -104,6 +72,9 @@ TEST(Diagnose, ReportIsOneSelfContainedPage) {
   const std::string page = diagnosisReport(diagnose(plant({{"payload", "hand", {{"mass_kg", 0.2}}}}), few({"payload"})));
   EXPECT_NE(page.find("payload@hand"), std::string::npos);
   EXPECT_EQ(page.find("src="), std::string::npos);
+  EXPECT_NE(page.find("class=\"view\""), std::string::npos);  // curves that zoom
+  EXPECT_NE(page.find("while filling"), std::string::npos);   // regimes
+  EXPECT_NE(page.find("robot from the front"), std::string::npos);
   EXPECT_EQ(page.find("http://www.w3.org") == std::string::npos ? page.find("http") : std::string::npos, std::string::npos);
 }
 
@@ -121,6 +92,48 @@ TEST(Diagnose, RefusesRecordingsItCannotUse) {
   EXPECT_THROW(diagnose(recordings), BadParameter);
   EXPECT_THROW(diagnose({}), BadParameter);
   EXPECT_THROW(diagnose(plant({}), few({"no_such_effect"})), BadParameter);
+}
+
+Signal& lengthOf(Recording& recording) {
+  return recording.signals[1];
+}
+
+TEST(Diagnose, RefusesLengthsInMetres) {
+  std::vector<Recording> recordings = plant({});
+  for (Recording& recording : recordings)
+    for (double& value : lengthOf(recording).values) value /= 1000;
+  try {
+    diagnose(recordings);
+    FAIL();
+  } catch (const BadParameter& error) {
+    const std::string message = error.what();
+    EXPECT_NE(message.find("length_0_mm"), std::string::npos);
+    EXPECT_NE(message.find("thousand"), std::string::npos);
+  }
+}
+
+TEST(Diagnose, RefusesRecordingsWhoseOnlySignalIsDead) {
+  std::vector<Recording> recordings = plant({});
+  for (Recording& recording : recordings)
+    for (double& value : lengthOf(recording).values) value = 240;
+  EXPECT_THROW(diagnose(recordings), BadParameter);
+}
+
+TEST(Diagnose, SaysWhatRowsAreMissing) {
+  std::vector<Recording> recordings = plant({});
+  for (std::size_t row = 100; row < 150; ++row) lengthOf(recordings[0]).values[row] = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t row = 200; row < recordings[1].time_s.size(); ++row) recordings[1].time_s[row] += 0.5;
+  const Diagnosis found = diagnose(recordings, few({"payload"}));
+  const auto says = [&](const std::string& words) {
+    return std::ranges::any_of(found.notes, [&](const std::string& note) { return note.find(words) != std::string::npos; });
+  };
+  EXPECT_TRUE(says("50 of 400 rows have no number for length_0_mm"));
+  EXPECT_TRUE(says("no rows between 1.990 and 2.500 s"));
+}
+
+TEST(Diagnose, RestingCommandsAreNotExcited) {
+  std::vector<Recording> recordings = {recorded({}, 0, 1), recorded({}, 0, 2)};
+  EXPECT_EQ(diagnose(recordings).verdict, Verdict::not_excited);
 }
 
 }  // namespace

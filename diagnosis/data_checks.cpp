@@ -1,0 +1,97 @@
+#include "data_checks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "musclesim/error.h"
+
+namespace musclesim {
+
+namespace {
+
+constexpr double least_change = 0.02;
+constexpr double usual_steps = 10;  ///< a gap is longer than that many usual steps
+constexpr double thousand_low = 300, thousand_high = 3000;
+
+/// Median of the sizes of all numbers; 0 if there are none.
+double medianSize(const std::vector<double>& values) {
+  std::vector<double> sizes;
+  for (const double value : values)
+    if (std::isfinite(value)) sizes.push_back(std::abs(value));
+  if (sizes.empty()) return 0;
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::ranges::nth_element(sizes, middle);
+  return *middle;
+}
+
+std::vector<std::string> gapNotes(const Recording& recording) {
+  std::vector<double> steps;
+  for (std::size_t row = 1; row < recording.time_s.size(); ++row) steps.push_back(recording.time_s[row] - recording.time_s[row - 1]);
+  const double usual_s = medianSize(steps);
+  std::vector<std::string> notes;
+  for (std::size_t row = 0; row < steps.size(); ++row)
+    if (steps[row] > usual_steps * usual_s)
+      notes.push_back(fmt::format("{}: no rows between {:.3f} and {:.3f} s; the simulation runs through with the command held",
+                                  recording.file, recording.time_s[row], recording.time_s[row + 1]));
+  return notes;
+}
+
+}  // namespace
+
+bool commandsMove(const std::vector<Recording>& recordings) {
+  for (const Recording& recording : recordings)
+    for (const Signal& signal : recording.signals) {
+      if (!signal.name.starts_with("command_")) continue;
+      const auto [least, largest] = std::ranges::minmax_element(signal.values);
+      if (*largest - *least > least_change) return true;
+    }
+  return false;
+}
+
+bool neverChanges(const std::vector<Recording>& recordings, const std::string& name) {
+  double first = std::numeric_limits<double>::quiet_NaN();
+  for (const Recording& recording : recordings) {
+    const Signal* signal = recording.find(name);
+    if (!signal) continue;
+    for (const double value : signal->values) {
+      if (!std::isfinite(value)) continue;
+      if (std::isnan(first)) first = value;
+      if (value != first) return false;
+    }
+  }
+  return true;
+}
+
+std::vector<std::string> dataNotes(const std::vector<Recording>& recordings) {
+  std::vector<std::string> notes;
+  for (const Recording& recording : recordings) {
+    std::ranges::move(gapNotes(recording), std::back_inserter(notes));
+    for (const Signal& signal : recording.signals) {
+      const auto missing = std::ranges::count_if(signal.values, [](double value) { return !std::isfinite(value); });
+      if (missing > 0)
+        notes.push_back(fmt::format("{}: {} of {} rows have no number for {}; they are left out", recording.file, missing,
+                                    signal.values.size(), signal.name));
+    }
+  }
+  return notes;
+}
+
+void requireUnits(const Plant& plant, int recording, const Prediction& prediction) {
+  for (std::size_t i = 0; i < plant.signals().size(); ++i) {
+    const double measured = medianSize(plant.measured(recording, static_cast<int>(i))), predicted = medianSize(prediction.values[i]);
+    if (measured <= 0 || predicted <= plant.signals()[i].floor.value) continue;
+    const double ratio = measured / predicted;
+    for (const double factor : {ratio, 1 / ratio})
+      if (factor > thousand_low && factor < thousand_high)
+        throw BadParameter(
+            plant.signals()[i].name + " of " + plant.recordings()[static_cast<std::size_t>(recording)].file,
+            fmt::format("about {:.3g}", measured),
+            fmt::format("be in the unit of its name: the model's values are about {:.3g}, which is about a thousand times {}", predicted,
+                        ratio > 1 ? "less" : "more"));
+  }
+}
+
+}  // namespace musclesim

@@ -1,0 +1,24 @@
+/// What is odd about recordings before anything is diagnosed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "plant.h"
+
+namespace musclesim {
+
+/// Whether some command changes by more than 0.02.
+bool commandsMove(const std::vector<Recording>& recordings);
+
+/// Whether a signal has the same value in every row of every recording that has it.
+bool neverChanges(const std::vector<Recording>& recordings, const std::string& signal);
+
+/// Gaps in time (more than ten usual steps) and rows without a number, in sentences.
+std::vector<std::string> dataNotes(const std::vector<Recording>& recordings);
+
+/// Throws BadParameter if a signal's size is about a thousand times that of the model's or a thousandth of it: m in place of mm, kPa in
+/// place of fractions.
+void requireUnits(const Plant& plant, int recording, const Prediction& prediction);
+
+}  // namespace musclesim

@@ -1,0 +1,142 @@
+// Residuals, their sizes, the first look and the fit, on short rigs.
+#include "diagnosis/comparison.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "diagnosis/drawing.h"
+#include "diagnosis/refit.h"
+#include "diagnosis/regimes.h"
+#include "diagnosis/screen.h"
+#include "planted.h"
+
+namespace musclesim {
+namespace {
+
+/// Two short recordings of a rig, both for fitting.
+class Rig : public testing::Test {
+ protected:
+  explicit Rig(const std::vector<ActiveEffect>& effects = {}, double amplitude = 0.1)
+      : plant({planted::recorded(effects, amplitude, 1), planted::recorded(effects, 1.3 * amplitude, 2)}, options),
+        both(plant, {{0, 0, 150}, {1, 0, 150}}) {}
+
+  DiagnosisOptions options;
+  Plant plant;
+  Comparison both;
+};
+
+TEST_F(Rig, MisfitIsTheLogarithmOfTheResidualOverTheFloorPerCell) {
+  ASSERT_EQ(both.cells().size(), 2u);
+  ASSERT_EQ(both.size(), 300);
+  const double floor = planted::noise_mm;
+  EXPECT_NEAR(both.cells()[0].floor, floor, 1e-12);
+  EXPECT_EQ(both.logMisfit(Eigen::VectorXd::Zero(300)), 0);
+  EXPECT_EQ(both.logMisfit(Eigen::VectorXd::Constant(300, 0.5 * floor)), 0);
+  Eigen::VectorXd residual = Eigen::VectorXd::Constant(300, floor);
+  residual.head(150) *= 3;
+  residual.tail(150) *= 5;
+  EXPECT_NEAR(both.logMisfit(residual), std::log(3) + std::log(5), 1e-12);
+  EXPECT_TRUE(std::isinf(both.logMisfit({})));
+  residual[0] = NAN;
+  EXPECT_TRUE(std::isinf(both.logMisfit(residual)));
+}
+
+TEST_F(Rig, GapIsTheMeanSquareBeyondTheFloorInUnitsOfTheFloor) {
+  const Gap gap = both.gap(Eigen::VectorXd::Constant(300, 3 * planted::noise_mm));
+  EXPECT_NEAR(gap.normalised, 8, 1e-9);
+  EXPECT_NEAR(gap.per_signal.at("length_0_mm").rmse, 3 * planted::noise_mm, 1e-12);
+  EXPECT_EQ(both.gap(Eigen::VectorXd::Constant(300, 0.9 * planted::noise_mm)).normalised, 0);
+}
+
+TEST_F(Rig, CellsOutOfTheFloorAreCounted) {
+  Eigen::VectorXd residual = Eigen::VectorXd::Constant(300, planted::noise_mm);
+  EXPECT_EQ(both.affectedCells(residual), 1);  // at least one
+  residual.head(150) *= 2;
+  EXPECT_EQ(both.affectedCells(residual), 1);
+  residual.tail(150) *= 2;
+  EXPECT_EQ(both.affectedCells(residual), 2);
+}
+
+TEST_F(Rig, RegimesFollowTheCommand) {
+  // The first recording steps between 0.55 and 0.35 every half second from 0.55 at the start.
+  const Comparison first(plant, {{0, 0, 200}});
+  const RegimeSums sums = regimeSums(first, Eigen::VectorXd::Constant(200, 2 * planted::noise_mm));
+  // A step counts for a tenth of a second: falls at 0.5 and 1.5 s, a rise at 1 s.
+  EXPECT_EQ(sums.rows[static_cast<std::size_t>(Regime::venting)], 20);
+  EXPECT_EQ(sums.rows[static_cast<std::size_t>(Regime::filling)], 10);
+  EXPECT_EQ(sums.rows[static_cast<std::size_t>(Regime::holding)], 170);
+  for (const Regime regime : {Regime::filling, Regime::venting, Regime::holding}) EXPECT_NEAR(sums.meanSquare(regime), 4, 1e-9);
+}
+
+/// A problem without a simulation: the measured values are reached at z = (2, -1) along two directions, one of them bent.
+TEST_F(Rig, FitFindsTheBottomOfABentValley) {
+  Eigen::VectorXd first(300), second(300);
+  for (Eigen::Index i = 0; i < 300; ++i) {
+    first[i] = std::sin(0.1 * static_cast<double>(i));
+    second[i] = std::cos(0.03 * static_cast<double>(i));
+  }
+  auto moved = [&](const Eigen::VectorXd& z) -> Eigen::VectorXd { return first * (z[0] + 0.2 * z[0] * z[0]) + second * z[1]; };
+  const Eigen::VectorXd truth = Eigen::Vector2d(2, -1);
+  FitProblem problem;
+  problem.start = Eigen::Vector2d(0.5, 0.1);
+  problem.clamped = [](const Eigen::VectorXd& z) -> Eigen::VectorXd { return z.cwiseMax(-3).cwiseMin(3); };
+  problem.predicted = [&](const Eigen::VectorXd& z) -> Eigen::VectorXd { return both.measured() + moved(z) - moved(truth); };
+  const FitResult found = fit(both, problem, 20);
+  EXPECT_NEAR(found.z[0], 2, 0.05);
+  EXPECT_NEAR(found.z[1], -1, 0.05);
+  EXPECT_LT(found.log_misfit, 0.1);
+}
+
+TEST_F(Rig, FitStaysWithinBoundsAndReportsADivergedStart) {
+  FitProblem problem;
+  problem.start = Eigen::VectorXd::Constant(1, 0.1);
+  problem.clamped = [](const Eigen::VectorXd& z) -> Eigen::VectorXd { return z.cwiseMax(0).cwiseMin(1); };
+  problem.predicted = [&](const Eigen::VectorXd& z) -> Eigen::VectorXd {
+    return both.measured() + Eigen::VectorXd::Constant(300, 4 - 2 * z[0]);
+  };
+  EXPECT_EQ(fit(both, problem, 10).z[0], 1);
+  problem.predicted = [](const Eigen::VectorXd&) { return Eigen::VectorXd{}; };
+  const FitResult diverged = fit(both, problem, 10);
+  EXPECT_EQ(diverged.residual.size(), 0);
+  EXPECT_TRUE(std::isinf(diverged.log_misfit));
+}
+
+class LoadedRig : public Rig {
+ protected:
+  LoadedRig() : Rig({{"payload", "hand", {{"mass_kg", 0.1}}}}, 0.05) {}
+};
+
+TEST_F(LoadedRig, FirstLookSeesThePayload) {
+  options.candidates = {"payload", "valve_lag"};
+  const std::vector<Suspect> all = suspects(plant, options);
+  const Eigen::VectorXd nominal = both.predicted(Model{});
+  int simulations = 0;
+  const std::vector<Signature> looks = screen(both, all, nominal, 1, [&] { ++simulations; });
+  EXPECT_GT(simulations, 1);
+  const double before = both.logMisfit(both.measured() - nominal);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].info().id == "payload") {
+      EXPECT_LT(looks[i].log_misfit, 0.4 * before);
+      const auto values = all[i].valuesAt(looks[i].amount);
+      EXPECT_NEAR(values.front().second, 0.1, 0.03);
+    } else {
+      EXPECT_GT(looks[i].log_misfit, 0.8 * before);
+    }
+  }
+}
+
+TEST(Drawing, ShowsMusclesBonesAndJoints) {
+  Simulation simulation;
+  simulation.build("elbow");
+  const RobotDrawing drawing = drawingOf(simulation);
+  int muscles = 0, bones = 0;
+  for (const RobotDrawing::Line& line : drawing.lines) (line.component.empty() ? bones : muscles) += 1;
+  EXPECT_EQ(muscles, 2);
+  EXPECT_GE(bones, 1);  // the upper arm is the environment
+  ASSERT_FALSE(drawing.points.empty());
+  EXPECT_EQ(drawing.points.front().component, "joint_elbow");
+}
+
+}  // namespace
+}  // namespace musclesim

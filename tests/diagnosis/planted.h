@@ -1,0 +1,52 @@
+/// Rigs with a planted effect and noise; candidates are few to keep the tests short.
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "musclesim/diagnosis/diagnosis.h"
+#include "musclesim/random.h"
+#include "musclesim/simulation/replay.h"
+
+namespace musclesim::planted {
+
+constexpr double noise_mm = 0.05;
+
+/// What a rig with these effects measures under steps and a wave, 4 s.
+inline Recording recorded(const std::vector<ActiveEffect>& effects, double amplitude, std::uint64_t seed) {
+  Recording plan;
+  plan.file = "plan_" + std::to_string(seed) + ".csv";
+  plan.info.robot = "rig";
+  plan.signals = {{"command_0", {}}};
+  for (int row = 0; row < 400; ++row) {
+    const double t = 0.01 * row;
+    plan.time_s.push_back(t);
+    const double step = std::fmod(t, 1.0) < 0.5 ? 1 : -1;
+    plan.signals[0].values.push_back(0.45 + amplitude * (t < 2 ? step : std::sin(2 * std::numbers::pi * t)));
+  }
+  ReplayOptions options;
+  options.effects = effects;
+  Recording recording = replayRecording(plan, options).simulated;
+  recording.file = plan.file;
+  recording.info.active_effects.clear();
+  recording.info.noise_std = {{"length_0_mm", noise_mm}};
+  std::erase_if(recording.signals, [](const Signal& s) { return s.name != "command_0" && s.name != "length_0_mm"; });
+  RandomStream random(seed, "planted");
+  for (double& value : recording.signals[1].values) value += noise_mm * random.normal();
+  return recording;
+}
+
+inline std::vector<Recording> plant(const std::vector<ActiveEffect>& effects) {
+  return {recorded(effects, 0.15, 1), recorded(effects, 0.2, 2)};
+}
+
+inline DiagnosisOptions few(const std::vector<std::string>& candidates) {
+  DiagnosisOptions options;
+  options.candidates = candidates;
+  options.job_count = 2;
+  return options;
+}
+
+}  // namespace musclesim::planted
