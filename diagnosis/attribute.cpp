@@ -191,14 +191,28 @@ void Attributor::sort() {
   std::ranges::stable_sort(result_.explanations, [](const Explanation& a, const Explanation& b) { return a.probability > b.probability; });
 }
 
-/// Mean over affected cells of ln(RMS / floor), where floor^2 = noise floor^2 + (law_mismatch * RMS without any effect)^2.
-double Attributor::weighedMisfit(const std::function<double(const Comparison::Cell&)>& mean_square) const {
+/// Mean over affected cells of ln(RMS / floor), where floor^2 = noise floor^2 + (mismatch * RMS without any effect)^2.
+double Attributor::weighedMisfit(const std::function<double(const Comparison::Cell&)>& mean_square, double mismatch) const {
   double sum = 0;
   for (const Comparison::Cell& cell : fit_.cells()) {
-    const double mismatch = weighing_.law_mismatch * weighing_.law_mismatch * fit_.meanSquare(cell, nominal_residual_);
-    sum += 0.5 * std::log(std::max(1.0, mean_square(cell) / (cell.floor * cell.floor + mismatch)));
+    const double square = mismatch * mismatch * fit_.meanSquare(cell, nominal_residual_);
+    sum += 0.5 * std::log(std::max(1.0, mean_square(cell) / (cell.floor * cell.floor + square)));
   }
   return sum / fit_.affectedCells(nominal_residual_);
+}
+
+double Attributor::weighedMisfit(const Eigen::VectorXd& residual, double mismatch) const {
+  return weighedMisfit([&](const Comparison::Cell& cell) { return fit_.meanSquare(cell, residual); }, mismatch);
+}
+
+/// Of a pair: what its first effect leaves alone, less what the second one gains where a wrong law is forgiven more.
+double Attributor::weighedMisfit(const Explanation& explanation) const {
+  if (explanation.suspects.size() < 2) return weighedMisfit(explanation.residual, weighing_.law_mismatch);
+  const auto first = std::ranges::find_if(result_.explanations, [&](const Explanation& other) {
+    return other.suspects.size() == 1 && other.suspects.front() == explanation.suspects.front();
+  });
+  return weighedMisfit(first->residual, weighing_.law_mismatch) - weighedMisfit(first->residual, weighing_.second_mismatch) +
+         weighedMisfit(explanation.residual, weighing_.second_mismatch);
 }
 
 /// odds = exp(-per_misfit * weighed misfit - costs); "none of these" and "no effect" are explanations like any other.
@@ -207,17 +221,17 @@ void Attributor::weigh() {
     return -weighing_.per_misfit * misfit - weighing_.per_parameter * static_cast<double>(parameters) -
            weighing_.per_effect * (static_cast<double>(effects) - 1);
   };
-  auto left = [&](const Eigen::VectorXd& residual) {
-    return weighedMisfit([&](const Comparison::Cell& cell) { return fit_.meanSquare(cell, residual); });
-  };
-  const double none = weighedMisfit([&](const Comparison::Cell& cell) {
-    const double before = std::sqrt(fit_.meanSquare(cell, nominal_residual_)), least = weighing_.none_floor_ratio * cell.floor;
-    const double after = before > least ? std::max(least, weighing_.none_ratio * before) : before;
-    return after * after;
-  });
-  std::vector<double> odds = {logOdds(left(nominal_residual_), 0, 1), logOdds(none, 1, 1)};
+  const double no_effect = weighedMisfit(nominal_residual_, weighing_.law_mismatch);
+  const double none = weighedMisfit(
+      [&](const Comparison::Cell& cell) {
+        const double before = std::sqrt(fit_.meanSquare(cell, nominal_residual_)), least = weighing_.none_floor_ratio * cell.floor;
+        const double after = before > least ? std::max(least, weighing_.none_ratio * before) : before;
+        return after * after;
+      },
+      weighing_.law_mismatch);
+  std::vector<double> odds = {logOdds(no_effect, 0, 1), logOdds(none, 1, 1)};
   for (Explanation& explanation : result_.explanations) {
-    explanation.weighed_misfit = left(explanation.residual);
+    explanation.weighed_misfit = weighedMisfit(explanation);
     odds.push_back(logOdds(explanation.weighed_misfit, explanation.z.size(), explanation.suspects.size()));
   }
   const double largest = *std::ranges::max_element(odds);

@@ -27,8 +27,9 @@ struct Explanation {
 struct Weighing {
   double per_misfit = 10;         ///< ln of the odds per unit of log misfit per affected cell
   double per_parameter = 0.5;     ///< ln of the odds that a further parameter costs
-  double per_effect = 2;          ///< ln of the odds that a second effect costs
+  double per_effect = 3.5;        ///< ln of the odds that a second effect costs
   double law_mismatch = 0.05;     ///< share of the residual that the right cause may leave since its law is not quite ours
+  double second_mismatch = 0.15;  ///< the same where a second effect is asked for: it must explain more than the first one's wrong law
   double none_ratio = 0.15;       ///< "none of these" stands for a cause that would leave this share of the residual,
   double none_floor_ratio = 1.5;  ///< but not less than this multiple of the floor
 };
@@ -63,7 +64,9 @@ class Attributor {
   Eigen::VectorXd startOf(std::size_t index, const Signature& signature) const;
   void fitSingles();
   void fitPairs();
-  double weighedMisfit(const std::function<double(const Comparison::Cell&)>& mean_square) const;
+  double weighedMisfit(const std::function<double(const Comparison::Cell&)>& mean_square, double mismatch) const;
+  double weighedMisfit(const Eigen::VectorXd& residual, double mismatch) const;
+  double weighedMisfit(const Explanation& explanation) const;
   void weigh();
   void sort();
 
