@@ -38,7 +38,7 @@ RobotDrawing drawingOf(Simulation& simulation) {
   }
   for (const Robot::Angle& angle : simulation.robot().angles()) {
     for (const DrawnFrame& frame : snapshot.frames)
-      if (frame.name == angle.joint->name()) drawing.points.push_back({"joint_" + angle.name, frame.pose.block<2, 1>(0, 3).cast<double>()});
+      if (frame.name == angle.name) drawing.points.push_back({"joint_" + angle.name, frame.pose.block<2, 1>(0, 3).cast<double>()});
   }
   if (const Primitive* hand = simulation.robot().hand()) drawing.points.push_back({"hand", hand->getPosition().head<2>()});
   return drawing;

@@ -8,20 +8,20 @@
 namespace musclesim {
 
 EffectInfo FlowLimit::info() {
-  return {
-      .id = "flow_limit",
-      .stage = Stage::pressure,
-      .acts_on = {ComponentKind::muscle},
-      .summary = "choked flow limits how fast the pressure changes",
-      .equation = "dp/dt = rate sat((u - p) / proportional_band), rate by the sign of u - p    u delivered, p actual",
-      .signature = "ramps at large steps, small steps untouched",
-      .source = "choked flow through an orifice (ISO 6358); +7 and -2.7 bar/s of 6 bar measured",
-      .parameters = {{"fill_rate_per_s", "1/s", unlimited, 0.01, unlimited, 0.3, 2, "largest dp/dt"},
-                     {"vent_rate_per_s", "1/s", unlimited, 0.01, unlimited, 0.3, 2, "largest -dp/dt"},
-                     {"proportional_band", "1", 0, 0, 0.5, 0.01, 0.05, "distance of p from u below which the flow falls in proportion", true}},
-      .make = [](const EffectValues& values) {
-        return std::make_unique<FlowLimit>(values["fill_rate_per_s"], values["vent_rate_per_s"], values["proportional_band"]);
-      }};
+  return {.id = "flow_limit",
+          .stage = Stage::pressure,
+          .acts_on = {ComponentKind::muscle},
+          .summary = "choked flow limits how fast the pressure changes",
+          .equation = "dp/dt = rate sat((u - p) / proportional_band), rate by the sign of u - p    u delivered, p actual",
+          .signature = "ramps at large steps, small steps untouched",
+          .source = "choked flow through an orifice (ISO 6358); +7 and -2.7 bar/s of 6 bar measured",
+          .parameters = {{"fill_rate_per_s", "1/s", unlimited, 0.01, unlimited, 0.3, 2, "largest dp/dt"},
+                         {"vent_rate_per_s", "1/s", unlimited, 0.01, unlimited, 0.3, 2, "largest -dp/dt"},
+                         {"proportional_band", "1", 0, 0, 0.5, 0.01, 0.05, "distance of p from u below which the flow falls in proportion",
+                          true}},
+          .make = [](const EffectValues& values) {
+            return std::make_unique<FlowLimit>(values["fill_rate_per_s"], values["vent_rate_per_s"], values["proportional_band"]);
+          }};
 }
 
 double FlowLimit::output(double input, const Moment& moment) {
