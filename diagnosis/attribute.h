@@ -26,7 +26,7 @@ struct Explanation {
 /// How answers are weighed. Found on practice cases with odd numbers; docs/diagnosing.md has the numbers.
 struct Weighing {
   double per_misfit = 10;         ///< ln of the odds per unit of log misfit per affected cell
-  double per_parameter = 0.5;     ///< ln of the odds that a further parameter costs
+  double per_parameter = 1;       ///< ln of the odds that a further parameter costs
   double per_effect = 3.5;        ///< ln of the odds that a second effect costs
   double law_mismatch = 0.05;     ///< share of the residual that the right cause may leave since its law is not quite ours
   double second_mismatch = 0.15;  ///< the same where a second effect is asked for: it must explain more than the first one's wrong law

@@ -105,7 +105,8 @@ void update(Eigen::MatrixXd& jacobian, const Point& from, const Point& to) {
 
 FitResult fit(const Comparison& comparison, const FitProblem& problem, int round_count) {
   Point best = evaluate(comparison, problem, problem.start);
-  if (!best.residual.size() || round_count == 0) return {best.z, best.residual, best.log_misfit, Eigen::VectorXd::Zero(best.z.size())};
+  if (!best.residual.size() || best.z.size() == 0 || round_count == 0)
+    return {best.z, best.residual, best.log_misfit, Eigen::VectorXd::Zero(best.z.size())};
   Eigen::MatrixXd jacobian = derivatives(comparison, problem, best);
   bool fresh = true;
   double damping = 0.01;

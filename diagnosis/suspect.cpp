@@ -49,8 +49,8 @@ Suspect::Suspect(EffectInfo info, std::string component, const Plant& plant) : i
       c.typical = positive ? std::sqrt(p.usual_low * p.usual_high) : 0.5 * (p.usual_low + p.usual_high);
       c.unit = 0.5 * (p.usual_high - p.usual_low);
     } else if (std::isinf(p.neutral)) {
-      c.scale = p.unit == "bit" ? Scale::bits : Scale::inverse;
-      c.typical = c.scale == Scale::bits ? 0.5 * (p.usual_low + p.usual_high) : std::sqrt(p.usual_low * p.usual_high);
+      c.scale = Scale::inverse;
+      c.typical = std::sqrt(p.usual_low * p.usual_high);
     } else if (both_signs) {
       c.typical = p.neutral + 0.5 * (p.usual_high - p.neutral);
     } else {
@@ -110,8 +110,6 @@ double Suspect::valueOf(const Coordinate& c, double z) const {
       return base + z * (c.typical - base);
     case Scale::inverse:
       return c.typical / z;  // z = 0: infinite
-    case Scale::bits:
-      return c.typical - std::log2(z);
     case Scale::factor:
       return c.typical * std::exp(z);
     case Scale::shift:
@@ -127,8 +125,6 @@ double Suspect::coordinateOf(const Coordinate& c, double value) const {
       return (value - base) / (c.typical - base);
     case Scale::inverse:
       return c.typical / value;
-    case Scale::bits:
-      return std::exp2(c.typical - value);
     case Scale::factor:
       return std::log(value / c.typical);
     case Scale::shift:
@@ -158,6 +154,11 @@ std::vector<std::pair<std::string, double>> Suspect::valuesAt(const Eigen::Vecto
     const EffectParameter& p = info_.parameters[coordinates_[i].parameter];
     values.emplace_back(p.name, std::clamp(valueOf(coordinates_[i], z[static_cast<Eigen::Index>(i)]), p.minimum, p.maximum));
   }
+  for (std::size_t i = 0; i < info_.parameters.size(); ++i) {
+    const EffectParameter& p = info_.parameters[i];
+    const bool fitted = std::ranges::any_of(coordinates_, [&](const Coordinate& c) { return c.parameter == i; });
+    if (!fitted && p.choices.empty() && base_[i] != p.neutral) values.emplace_back(p.name, base_[i]);
+  }
   return values;
 }
 
@@ -176,7 +177,22 @@ Eigen::VectorXd Suspect::typical() const {
   return z;
 }
 
+/// Levels are a matter of one or the other: whole numbers of bits are tried, nothing is fitted.
+std::vector<Suspect> Suspect::numbersOfBits() const {
+  constexpr int fewest = 5, most = 11;
+  std::vector<Suspect> result;
+  for (int bits = fewest; bits <= most; ++bits) {
+    Suspect variant = *this;
+    for (const Coordinate& c : coordinates_) variant.base_[c.parameter] = bits;
+    variant.coordinates_.clear();
+    variant.strengths_.clear();
+    result.push_back(std::move(variant));
+  }
+  return result;
+}
+
 std::vector<Suspect> Suspect::variants(const Plant& plant) const {
+  if (info_.id == "command_quantisation") return numbersOfBits();
   if (info_.id != "contact") return {*this};
   std::vector<Suspect> result;
   auto add = [&](const std::string& plane, double at, const std::string& side, int axis) {

@@ -13,7 +13,7 @@ namespace musclesim {
 
 /// Coordinates z of one suspect's parameters, one per parameter that a fit changes:
 ///   neutral value finite      value = neutral + z * (typical - neutral)
-///   neutral value infinite    value = typical / z;  of a number of bits: typical - log2(z)
+///   neutral value infinite    value = typical / z
 ///   shape parameters          value = typical * exp(z), or typical + z * half the usual range where that has both signs
 /// z = 0 is neutral for the first two and usual for the third; z = 1 is a typical strength. Values are clamped to their range.
 class Suspect {
@@ -29,18 +29,19 @@ class Suspect {
   /// Whether a strength may have either sign.
   bool isSigned(int coordinate) const;
   ActiveEffect at(const Eigen::VectorXd& z) const;
-  /// Names and values of the parameters that z changes.
+  /// Names and values of the parameters that z changes, and of those that are set to something else than neutral.
   std::vector<std::pair<std::string, double>> valuesAt(const Eigen::VectorXd& z) const;
   /// z with every coordinate between the bounds that the parameters' ranges give.
   Eigen::VectorXd clamped(Eigen::VectorXd z) const;
   /// All strengths 1, all shapes usual.
   Eigen::VectorXd typical() const;
-  /// The suspect once for each choice that no fit can reach from another one: a wall on either side of each axis.
+  /// The suspect once for each choice that no fit can reach from another one: a wall on either side of each axis, a
+  /// number of bits.
   std::vector<Suspect> variants(const Plant& plant) const;
 
  private:
   static constexpr double strongest = 50;  ///< bound of |z|
-  enum class Scale { linear, inverse, bits, factor, shift };
+  enum class Scale { linear, inverse, factor, shift };
   struct Coordinate {
     std::size_t parameter;
     Scale scale;
@@ -49,6 +50,7 @@ class Suspect {
   double valueOf(const Coordinate& coordinate, double z) const;
   double coordinateOf(const Coordinate& coordinate, double value) const;
   void useChouHannaford(const Plant& plant);
+  std::vector<Suspect> numbersOfBits() const;
 
   EffectInfo info_;
   std::string component_;

@@ -94,6 +94,13 @@ TEST(Diagnose, RefusesRecordingsItCannotUse) {
   EXPECT_THROW(diagnose(plant({}), few({"no_such_effect"})), BadParameter);
 }
 
+TEST(Diagnose, FindsTheNumberOfBits) {
+  const Diagnosis found = diagnose(plant({{"command_quantisation", "all", {{"bits", 6.0}}}}), few({"command_quantisation", "valve_lag"}));
+  ASSERT_FALSE(found.effects.empty());
+  EXPECT_EQ(found.effects.front().id, "command_quantisation");
+  EXPECT_EQ(found.effects.front().parameters.at("bits").value, 6);
+}
+
 Signal& lengthOf(Recording& recording) {
   return recording.signals[1];
 }
