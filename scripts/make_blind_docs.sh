@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Writes docs/blind.md and three figures: makes cases with withheld causes from a seed, diagnoses them without the key, scores.
-# Resumable: the same call goes on where it was stopped. A case on rig or elbow takes 2 to 3 CPU minutes; one on the arm is expected to take
+# Resumable: the same call goes on with the diagnoses where it was stopped; making the cases, a matter of minutes, begins anew. A case on rig or elbow takes 2 to 3 CPU minutes; one on the arm is expected to take
 # half an hour. 132 cases: 5 to 7 hours on two free cores.
 # Usage: scripts/make_blind_docs.sh SEED CASES KEYS [build folder] [options of `blind make`]
 #     SEED           of all draws; one that has not been used since the diagnosis was changed last

@@ -28,7 +28,10 @@ int makeCases(MakeArguments& arguments) {
   arguments.make.interrupted = [] { return interruptSignal() != 0; };
   arguments.make.progress = [&](int done, int count) { progress.show(done, count); };
   const auto key = blind::make(arguments.folder, arguments.keys, arguments.make);
-  if (interruptSignal() != 0) return interrupted_base + interruptSignal();
+  if (interruptSignal() != 0) {
+    fmt::print(stderr, "musclesim: interrupted; the cases made so far have no key and were removed\n");
+    return interrupted_base + interruptSignal();
+  }
   fmt::print("cases   {}\nkey     {}\nseal    {}/seal.json\n", arguments.make.count + arguments.make.arm_count, key.string(),
              arguments.folder);
   return done;
@@ -62,6 +65,7 @@ int runCases(RunArguments& arguments) {
   arguments.run.progress = [&](int done, int count) { progress.show(done, count); };
   const blind::RunSummary summary = blind::run(arguments.folder, arguments.run);
   fmt::print("answers  {} of {}\n", summary.answered, summary.count);
+  if (summary.failed > 0) fmt::print("failed   {}: the answer is the reason why the case cannot be diagnosed\n", summary.failed);
   return interruptSignal() != 0 ? interrupted_base + interruptSignal() : done;
 }
 

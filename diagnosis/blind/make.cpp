@@ -212,6 +212,10 @@ json makeCase(const std::string& name, const std::string& robot_name, const fs::
   return keyOf(plan, causes, robot, truth, redrawn);
 }
 
+std::string caseName(int index) {
+  return fmt::format("case{:03}", index + 1);
+}
+
 /// Not from the seed: who knows the seed does not know the name.
 std::string randomKeyName() {
   std::random_device device;
@@ -245,6 +249,23 @@ json sealOf(const std::string& key_name, const std::string& key_text, const fs::
   return seal;
 }
 
+/// Removes the cases unless they were sealed: without a key nobody can score them.
+class UnsealedCases {
+ public:
+  UnsealedCases(fs::path folder, int count) : folder_(std::move(folder)), count_(count) {}
+  ~UnsealedCases() {
+    std::error_code ignored;
+    for (int i = 0; i < count_; ++i) fs::remove_all(folder_ / caseName(i), ignored);
+  }
+  UnsealedCases(const UnsealedCases&) = delete;
+  UnsealedCases& operator=(const UnsealedCases&) = delete;
+  void keep() { count_ = 0; }
+
+ private:
+  fs::path folder_;
+  int count_;
+};
+
 }  // namespace
 
 fs::path make(const fs::path& folder, const fs::path& key_folder, const MakeOptions& options) {
@@ -252,22 +273,24 @@ fs::path make(const fs::path& folder, const fs::path& key_folder, const MakeOpti
   fs::create_directories(folder);
   fs::create_directories(key_folder);
   const int case_count = options.count + options.arm_count;
+  UnsealedCases unsealed(folder, case_count);
   std::vector<json> keys(static_cast<std::size_t>(case_count));
   std::mutex one_at_a_time;
   int done = 0;
   parallelFor(case_count, options.job_count, [&](int i) {
     if (options.interrupted()) return;
     const std::string robot = i >= options.count ? "arm" : i % 2 == 0 ? "rig" : "elbow";
-    keys[static_cast<std::size_t>(i)] = makeCase(fmt::format("case{:03}", i + 1), robot, folder, options);
+    keys[static_cast<std::size_t>(i)] = makeCase(caseName(i), robot, folder, options);
     const std::lock_guard lock(one_at_a_time);
     options.progress(++done, case_count);
   });
   if (options.interrupted()) return {};
   json key = {{"format", "musclesim-blind-key-1"}, {"seed", options.seed}, {"cases", json::object()}};
-  for (int i = 0; i < case_count; ++i) key["cases"][fmt::format("case{:03}", i + 1)] = keys[static_cast<std::size_t>(i)];
+  for (int i = 0; i < case_count; ++i) key["cases"][caseName(i)] = keys[static_cast<std::size_t>(i)];
   const fs::path file = key_folder / randomKeyName();
   writeObject(key, file);
   writeObject(sealOf(file.filename().string(), key.dump(2) + "\n", folder, options), folder / "seal.json");
+  unsealed.keep();
   return file;
 }
 

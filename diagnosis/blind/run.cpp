@@ -8,6 +8,7 @@
 
 #include "../parallel.h"
 #include "musclesim/diagnosis/diagnosis.h"
+#include "musclesim/effect/catalogue.h"
 #include "musclesim/error.h"
 #include "musclesim/log/recording.h"
 #include "seal.h"
@@ -106,6 +107,7 @@ std::vector<std::string> answerFiles(const fs::path& folder) {
 }
 
 RunSummary run(const fs::path& folder, const RunOptions& options) {
+  for (const std::string& id : options.candidates) effectInfo(id);  // throws for an unknown one
   const json seal = readSeal(folder);
   const std::string key_file = seal["key_file"];
   if (const auto key = keyInReach(key_file, folder))
@@ -131,6 +133,8 @@ RunSummary run(const fs::path& folder, const RunOptions& options) {
     ++summary.answered;
     options.progress(++done_now, static_cast<int>(open.size()));
   });
+  for (const std::string& name : names)
+    if (isAnswered(folder, name) && readObject(answerOf(folder, name)).value("verdict", "") == "failed") ++summary.failed;
   if (summary.complete()) writeSummary(folder, names, members);
   return summary;
 }

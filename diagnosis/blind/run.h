@@ -19,12 +19,14 @@ struct RunOptions {
 struct RunSummary {
   int answered = 0;  ///< by now, earlier runs included
   int count = 0;
+  int failed = 0;  ///< answers that are only the reason why there is none
   bool complete() const { return answered == count; }
 };
 
 /// Writes DIR/answers/caseNNN.json for every case without an answer, and DIR/answers.json when there are all: program, SHA-256 of the
 /// answers, seconds per case. A case that cannot be diagnosed gets the verdict "failed" with its reason.
-/// Throws BadParameter if the key is within reach, and if other answers were made by another program or with other candidates.
+/// Throws BadParameter if the key is within reach, if other answers were made by another program or with other
+/// candidates, and for unknown candidates.
 RunSummary run(const std::filesystem::path& folder, const RunOptions& options);
 
 /// The answers relative to DIR, in the order of the cases.

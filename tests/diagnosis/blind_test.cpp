@@ -109,6 +109,17 @@ TEST_F(Blind, DoesNotRunWhileTheKeyCanBeRead) {
   EXPECT_FALSE(fs::exists(cases() / "answers"));
 }
 
+TEST_F(Blind, LeavesNoCasesWithoutAKey) {
+  MakeOptions two = tiny({"null"});
+  two.count = 2;
+  two.job_count = 1;
+  int asked = 0;
+  two.interrupted = [&] { return ++asked > 1; };
+  EXPECT_TRUE(make(cases(), keys(), two).empty());
+  EXPECT_TRUE(fs::is_empty(cases()));
+  EXPECT_FALSE(make(cases(), keys(), tiny({"null"})).empty());
+}
+
 TEST_F(Blind, RunsResumesAndScores) {
   MakeOptions two = tiny({"null"});
   two.count = 2;
@@ -133,6 +144,9 @@ TEST_F(Blind, RunsResumesAndScores) {
   RunOptions others = few();
   others.candidates = {"creep"};
   EXPECT_TRUE(contains(messageOf<BadParameter>([&] { run(cases(), others); }), "candidates"));
+
+  others.candidates = {"nonsense"};
+  EXPECT_TRUE(contains(messageOf<BadParameter>([&] { run(cases(), others); }), "nonsense"));
 
   append(cases() / "answers" / "case001.json", " ");
   EXPECT_TRUE(contains(messageOf<BadFile>([&] { score(cases(), key); }), "answers were changed"));
