@@ -51,6 +51,13 @@ double defaultDurationS(const RunOptions& options) {
   return options.simple ? batch_s : hasWindow(options) ? longest_s : pictures_s;
 }
 
+/// Why a run is over.
+struct Ending {
+  std::string status;  ///< of the verdict
+  std::string error;   ///< empty: none
+  int exit_status;
+};
+
 /// One run from the first command to the last row.
 class Run {
  public:
@@ -85,12 +92,14 @@ class Run {
     } catch (const Diverged& error) {
       divergence = error;
     }
-    const nlohmann::json verdict = conclude(divergence, progress.wallS());
+    const Ending ending = endingOf(divergence);
+    const nlohmann::json verdict = conclude(ending, progress.wallS());
     recorder.note("verdict", verdict.dump());
     if (hands_) noteHands(recorder);
-    recorder.close(!divergence && interruptSignal() == 0);
+    recorder.close(ending.exit_status == done);
     dismissSpectator(divergence);
-    return report(verdict, csv, drawFigure(csv, recorder.rowCount()), divergence);
+    report(verdict, csv, drawFigure(csv, recorder.rowCount()), ending);
+    return ending.exit_status;
   }
 
  private:
@@ -209,10 +218,21 @@ class Run {
                             gap.joint, gap.gap_mm, simulation_.time_s()));
   }
 
-  nlohmann::json conclude(const std::optional<Diverged>& divergence, double wall_s) const {
+  bool hasEndedEarly() const { return simulation_.time_s() < duration_s_ - simulation_.stepS(); }
+
+  Ending endingOf(const std::optional<Diverged>& divergence) const {
+    if (divergence) return {"diverged", divergence->what(), ExitStatus::diverged};
+    if (const int signal = interruptSignal()) return {"interrupted", "", interrupted_base + signal};
+    const auto failure = spectator_ && hasEndedEarly() ? spectator_->failure() : std::nullopt;
+    if (failure)
+      return {"window_lost", fmt::format("the window ended on its own at {:.4g} s: {}", simulation_.time_s(), *failure), io_error};
+    return {"done", "", done};
+  }
+
+  nlohmann::json conclude(const Ending& ending, double wall_s) const {
     nlohmann::json verdict = score_.verdict();
-    verdict["status"] = divergence ? "diverged" : interruptSignal() ? "interrupted" : "done";
-    if (divergence) verdict["message"] = divergence->what();
+    verdict["status"] = ending.status;
+    if (!ending.error.empty()) verdict["message"] = ending.error;
     verdict["simulated_s"] = simulation_.time_s();
     verdict["worst_joint_gap_mm"] = simulation_.worstGap().gap_mm;
     verdict["worst_joint"] = simulation_.worstGap().joint;
@@ -223,9 +243,15 @@ class Run {
     return verdict;
   }
 
-  int report(nlohmann::json verdict, const fs::path& csv, const fs::path& svg, const std::optional<Diverged>& divergence) const {
-    if (divergence) std::fprintf(stderr, "musclesim: error: %s\n", divergence->what());
-    if (interruptSignal()) say(model_, "interrupted; the files are complete up to then");
+  void sayEnding(const Ending& ending) const {
+    if (!ending.error.empty()) std::fprintf(stderr, "musclesim: error: %s\n", ending.error.c_str());
+    if (ending.exit_status > interrupted_base) say(model_, "interrupted; the files are complete up to then");
+    if (ending.exit_status == done && options_.duration_s && hasEndedEarly())
+      say(model_, fmt::format("the window was closed: {:.4g} s of {:g} s are recorded", simulation_.time_s(), duration_s_));
+  }
+
+  void report(nlohmann::json verdict, const fs::path& csv, const fs::path& svg, const Ending& ending) const {
+    sayEnding(ending);
     const double ratio = verdict["wall_per_simulated_s"];
     say(model_,
         fmt::format("{:g} s simulated in {:.3g} s of wall time: r = {:.3g}", simulation_.time_s(), verdict["wall_s"].get<double>(), ratio));
@@ -241,8 +267,6 @@ class Run {
       verdict["figure"] = svg.string();
       fmt::print("{}\n", verdict.dump());
     }
-    if (divergence) return ExitStatus::diverged;
-    return interruptSignal() ? interrupted_base + interruptSignal() : done;
   }
 
   Robot& robot() { return simulation_.robot(); }

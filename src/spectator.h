@@ -1,6 +1,7 @@
 /// Whoever looks on while a simulation runs.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "musclesim/robot/state.h"
@@ -13,6 +14,8 @@ class Spectator {
   virtual ~Spectator() = default;
   /// The readings once per control step, in order of time, the first and the last included. False: the run is to end here.
   virtual bool see(const State& state) = 0;
+  /// Why it ended the run, if it could not go on itself.
+  virtual std::optional<std::string> failure() const { return std::nullopt; }
   /// The run has ended in a divergence; before finish().
   virtual void diverge(const std::string& message) { static_cast<void>(message); }
   /// The run is over; the simulation may be gone.

@@ -18,6 +18,7 @@ class WindowSpectator final : public Spectator {
       : snapshots_(simulation), display_(displayOptions(options, simulation, folder, log_file), hands, snapshots_.take(first)) {}
 
   bool see(const State& state) override { return display_.show(snapshots_.take(state), isInterrupted); }
+  std::optional<std::string> failure() const override { return display_.loss(); }
   void diverge(const std::string& message) override { display_.showDivergence(message, isInterrupted); }
   void finish() override {}
 

@@ -9,6 +9,17 @@ namespace musclesim {
 
 namespace {
 
+/// What goes wrong is noted before the window is destroyed, which closes it.
+void loop(Window& window, Display::Shared& shared) {
+  try {
+    window.loop();
+  } catch (const std::exception& error) {
+    shared.lose(error.what());
+  } catch (...) {
+    shared.lose("unknown failure");
+  }
+}
+
 void runWindow(Display::Shared& shared) {
   bool is_open = false;
   try {
@@ -16,7 +27,7 @@ void runWindow(Display::Shared& shared) {
     shared.opened_at = std::chrono::steady_clock::now();
     is_open = true;
     shared.opened.set_value();
-    window.loop();
+    loop(window, shared);
   } catch (...) {
     if (!is_open) shared.opened.set_exception(std::current_exception());
   }
@@ -49,6 +60,10 @@ void Display::showDivergence(const std::string& message, const Interrupted& inte
   shared_->setDivergence(message);
   shared_->pace.setPaused(true);
   while (!shared_->pace.isClosed() && !interrupted()) std::this_thread::sleep_for(look_around);
+}
+
+std::optional<std::string> Display::loss() const {
+  return shared_->loss();
 }
 
 double Display::framesPerS() const {

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -38,6 +39,9 @@ class Display {
   bool show(Snapshot snapshot, const Interrupted& interrupted);
   /// Shows the banner of a divergence and waits until the user closes the window or `interrupted` says so.
   void showDivergence(const std::string& message, const Interrupted& interrupted);
+
+  /// Why the window ended on its own: a lost connection, an X error, a failure to draw. Empty if it is open or somebody closed it.
+  std::optional<std::string> loss() const;
 
   /// Pictures drawn so far over the time since the window was opened.
   double framesPerS() const;

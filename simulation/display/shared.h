@@ -37,6 +37,18 @@ struct Display::Shared {
     const std::lock_guard lock(access_);
     return latest_;
   }
+  /// The window cannot go on. Errors after its end are of no interest.
+  void lose(const std::string& reason) {
+    if (!pace.isClosed()) {
+      const std::lock_guard lock(access_);
+      if (!loss_) loss_ = reason;
+    }
+    pace.close();
+  }
+  std::optional<std::string> loss() {
+    const std::lock_guard lock(access_);
+    return loss_;
+  }
   void setDivergence(const std::string& message) {
     const std::lock_guard lock(access_);
     divergence_ = message;
@@ -49,7 +61,7 @@ struct Display::Shared {
  private:
   std::mutex access_;
   std::shared_ptr<const Snapshot> latest_;
-  std::optional<std::string> divergence_;
+  std::optional<std::string> divergence_, loss_;
 };
 
 }  // namespace musclesim

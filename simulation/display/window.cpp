@@ -33,12 +33,14 @@ Display::Shared* shared_of_handlers = nullptr;
 /// The display is gone. Xlib would end the process, before the run's files are complete; so this thread stops here.
 int parkThread(::Display*) {
   shared_of_handlers->is_lost = true;
-  shared_of_handlers->pace.close();
+  shared_of_handlers->lose("the connection to the display is lost");
   for (;;) pause();
 }
 
-int closeAfterError(::Display*, XErrorEvent*) {
-  shared_of_handlers->pace.close();
+int closeAfterError(::Display* display, XErrorEvent* error) {
+  char text[256];
+  XGetErrorText(display, error->error_code, text, sizeof text);
+  shared_of_handlers->lose(fmt::format("X error in request {}.{}: {}", error->request_code, error->minor_code, text));
   return 0;
 }
 
@@ -167,12 +169,12 @@ void Window::listen() {
 
 /// The context is still there and current.
 void Window::closed() {
+  shared_.pace.close();
   window_ = 0;
   panel_.reset();
   target_.reset();
   scene_.reset();
   video_.reset();
-  shared_.pace.close();
 }
 
 void Window::loop() {

@@ -71,6 +71,18 @@ class WindowTest : public testing::Test {
 
   json sidecar() const { return json::parse(contentOf(folder_ / "run" / "run.json")); }
 
+  /// The run has failed for this reason and its files hold what was recorded.
+  void expectWindowLost(Session& session, const std::string& reason) {
+    EXPECT_EQ(session.exitStatus(), 5);
+    const std::string said = contentOf(folder_ / "output.txt");
+    EXPECT_NE(said.find("musclesim: error: the window ended on its own at "), std::string::npos) << said;
+    EXPECT_NE(said.find(reason), std::string::npos) << said;
+    EXPECT_EQ(sidecar().at("complete"), false);
+    EXPECT_EQ(sidecar().at("verdict").at("status"), "window_lost");
+    EXPECT_GT(readRecording((folder_ / "run" / "run.csv").string()).time_s.size(), 2u);
+    EXPECT_TRUE(fs::exists(folder_ / "run" / "run.svg"));
+  }
+
   /// A picture by the key s.
   Image picture(Session& session) {
     const fs::path file = folder_ / "run" / ("window-" + std::to_string(++picture_count_) + ".png");
@@ -219,12 +231,33 @@ TEST_F(WindowTest, ClosingTheWindowEndsTheRunWithCompleteFiles) {
   EXPECT_GT(readRecording((folder_ / "run" / "run.csv").string()).time_s.size(), 2u);
 }
 
-TEST_F(WindowTest, LossOfTheDisplayEndsTheRunWithCompleteFiles) {
+TEST_F(WindowTest, ClosingTheWindowBeforeTheEndIsSaid) {
+  Session session(*server_, folder_, {"--duration", "1000", "--picture-size", "320x240"});
+  session.press("q");
+  ASSERT_EQ(session.exitStatus(), 0);
+  EXPECT_EQ(sidecar().at("complete"), true);
+  const std::string said = contentOf(folder_ / "output.txt");
+  EXPECT_NE(said.find("the window was closed: "), std::string::npos) << said;
+  EXPECT_NE(said.find(" of 1000 s are recorded"), std::string::npos) << said;
+}
+
+TEST_F(WindowTest, LossOfTheDisplayEndsTheRunWithReadableFilesThatAreNotComplete) {
   XServer own;
   Session session(own, folder_, small_arm);
   own.kill();
-  ASSERT_EQ(session.exitStatus(), 0);
-  EXPECT_EQ(sidecar().at("complete"), true);
+  expectWindowLost(session, "the connection to the display is lost");
+}
+
+TEST_F(WindowTest, KilledConnectionEndsTheRunLikewise) {
+  Session session(*server_, folder_, small_arm);
+  session.xdotool("search --name musclesim: windowkill");
+  expectWindowLost(session, "the connection to the display is lost");
+}
+
+TEST_F(WindowTest, XErrorEndsTheRunLikewise) {
+  Session session(*server_, folder_, small_arm);
+  session.xdotool("search --name musclesim: windowclose");  // destroys it
+  expectWindowLost(session, "X error in request");
 }
 
 TEST_F(WindowTest, InterruptEndsAPausedRun) {
