@@ -5,12 +5,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <memory>
 
 #include "musclesim/error.h"
+#include "musclesim/log/unique_name.h"
 
 namespace musclesim {
 
@@ -20,10 +20,17 @@ namespace {
   throw IoError(fmt::format("{}: cannot be {}: {}", file, what, std::strerror(reason)));
 }
 
-/// Unique among all processes of this machine and all threads of this process.
-std::string temporaryName(const std::string& file) {
-  static std::atomic<unsigned> counter{0};
-  return fmt::format("{}.{}-{}.tmp", file, getpid(), counter++);
+/// Creates FILE.xxxx.tmp with a name that nobody else has, also not on another machine; returns its descriptor.
+int createTemporary(const std::string& file, std::string& temporary_file) {
+  constexpr int most_tries = 10;
+  int descriptor = -1;
+  for (int i = 0; i < most_tries; ++i) {
+    temporary_file = fmt::format("{}.{}.tmp", file, uniqueName());
+    descriptor = open(temporary_file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor >= 0 || errno != EEXIST) break;
+  }
+  if (descriptor < 0) failed(file, "opened for writing", errno);
+  return descriptor;
 }
 
 }  // namespace
@@ -57,12 +64,10 @@ std::size_t writeAll(int descriptor, std::string_view bytes) {
   return written;
 }
 
-FileReplacement::FileReplacement(std::string file, std::string_view text, bool to_disk)
-    : file_(std::move(file)), temporary_file_(temporaryName(file_)) {
-  const int descriptor = open(temporary_file_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (descriptor < 0) failed(file_, "opened for writing", errno);
+FileReplacement::FileReplacement(std::string file, std::string_view text) : file_(std::move(file)) {
+  const int descriptor = createTemporary(file_, temporary_file_);
   int reason = 0;
-  if (writeAll(descriptor, text) != text.size() || (to_disk && fsync(descriptor) != 0)) reason = errno;
+  if (writeAll(descriptor, text) != text.size() || fsync(descriptor) != 0) reason = errno;
   if (close(descriptor) != 0 && reason == 0) reason = errno;
   if (reason == 0) return;
   unlink(temporary_file_.c_str());

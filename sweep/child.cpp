@@ -70,7 +70,7 @@ class Child {
     int status = 0;
     double stopped_at_s = 0;
     bool killed = false;
-    while (waitpid(pid_, &status, WNOHANG) == 0) {
+    while (!hasEnded(status)) {
       if (!end.stopped && stop()) {
         end.stopped = true;
         stopped_at_s = elapsedS();
@@ -89,6 +89,11 @@ class Child {
   }
 
  private:
+  bool hasEnded(int& status) const {
+    const pid_t ended = waitpid(pid_, &status, WNOHANG);
+    if (ended < 0 && errno != EINTR) throw IoError(fmt::format("process {}: its end is not known: {}", pid_, std::strerror(errno)));
+    return ended > 0;
+  }
   /// Until the child ends or a signal arrives, a fifth of a second at most; without descriptors of processes (Linux before 5.3) 5 ms.
   void pause() const {
     pollfd ended{descriptor_, POLLIN, 0};
@@ -109,6 +114,7 @@ ChildEnd runChild(const ChildCommand& command, const std::function<bool()>& stop
   arguments.push_back(nullptr);
   constexpr int anew = O_WRONLY | O_CREAT | O_TRUNC;
   const StandardFiles files{{"/dev/null", O_RDONLY}, {command.out_file, anew}, {command.error_file, anew}};
+  std::signal(SIGCHLD, SIG_DFL);  // where it is ignored, as some starters leave it, the system keeps no exit status
   const pid_t parent = getpid(), pid = fork();
   if (pid < 0) throw IoError(fmt::format("{}: no process can be started: {}", command.program, std::strerror(errno)));
   if (pid == 0) become(command, files, arguments.data(), parent);

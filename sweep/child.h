@@ -22,7 +22,8 @@ struct ChildEnd {
 };
 
 /// Starts the command, without a shell, and waits for its end. `stop` is asked several times a second; when it says true, the child gets
-/// SIGTERM and, five seconds later, SIGKILL. If this process dies, the child dies with it. Throws IoError if it cannot be started.
+/// SIGTERM and, five seconds later, SIGKILL. If this process dies, the child dies with it. Sets SIGCHLD to its default. Throws IoError if
+/// it cannot be started or its end cannot be learnt.
 ChildEnd runChild(const ChildCommand& command, const std::function<bool()>& stop);
 
 /// The program that this process runs, also if its file has been replaced since.

@@ -16,6 +16,7 @@
 
 #include "musclesim/error.h"
 #include "musclesim/log/file.h"
+#include "musclesim/log/unique_name.h"
 #include "sweep.h"
 
 namespace musclesim {
@@ -63,6 +64,23 @@ double steadySeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+/// What a claim says, if it is one.
+struct Claim {
+  std::string worker, machine, begin;
+  long pid = 0;
+};
+
+std::optional<Claim> readClaim(const std::string& file) {
+  try {
+    const auto json = nlohmann::json::parse(readTextFile(file, claim_limit_bytes));
+    return Claim{json.at("worker"), json.at("machine"), json.at("begin"), json.at("pid")};
+  } catch (const nlohmann::json::exception&) {
+    return std::nullopt;
+  } catch (const BadFile&) {
+    return std::nullopt;
+  }
+}
+
 double modifiedS(const std::string& file, int& reason) {
   struct stat status {};
   reason = stat(file.c_str(), &status) == 0 ? 0 : errno;
@@ -73,7 +91,8 @@ double modifiedS(const std::string& file, int& reason) {
 
 Claims::Claims(const std::string& folder, double stale_after_s) : folder_(folder), machine_(thisMachine()), stale_after_s_(stale_after_s) {
   const std::string begin = beginOf(getpid());
-  worker_ = fmt::format("{}-{}-{}", hostName(), getpid(), begin);
+  // Containers on one machine may have equal host names and ids of processes.
+  worker_ = fmt::format("{}-{}-{}", hostName(), getpid(), uniqueName());
   text_ = nlohmann::json{{"worker", worker_}, {"host", hostName()}, {"machine", machine_}, {"pid", getpid()}, {"begin", begin}}.dump();
   replaceFile(folder_ + "/workers/" + worker_, text_);
   beat();
@@ -100,8 +119,9 @@ void Claims::beat() {
 bool Claims::claim(std::size_t row, int attempt) {
   const std::string file = path(row, attempt);
   if (access(file.c_str(), F_OK) == 0) return false;
-  constexpr bool to_disk = false;  // a claim that a power failure took away is of nobody who lives
-  return FileReplacement(file, text_, to_disk).commitIfAbsent();
+  const bool mine = FileReplacement(file, text_).commitIfAbsent();
+  if (mine) syncFolder(folder_ + "/claims");
+  return mine;
 }
 
 void Claims::end(std::size_t row, int attempt, AttemptEnd how, const std::string& message) {
@@ -113,39 +133,41 @@ RowHistory Claims::history(std::size_t row) const {
   RowHistory history;
   for (int attempt = 1; access(path(row, attempt).c_str(), F_OK) == 0; ++attempt) {
     history.attempt_count = attempt;
-    const std::string end_file = path(row, attempt) + ".end";
     history.free = true;
-    if (access(end_file.c_str(), F_OK) == 0) {
-      const auto json = nlohmann::json::parse(readTextFile(end_file, claim_limit_bytes), nullptr, false);
-      if (!json.is_object() || !json.contains("end")) throw BadFile(end_file, "is not the end of an attempt");
-      history.crash_count += json["end"] == end_names[0];
-      history.kill_count += json["end"] == end_names[1];
-      if (json["end"] != end_names[2]) history.message = json.value("message", "");
+    if (access((path(row, attempt) + ".end").c_str(), F_OK) == 0) {
+      addEnd(history, path(row, attempt) + ".end");
       continue;
     }
     // Whoever took over has seen that the worker was gone.
     const bool is_last = access(path(row, attempt + 1).c_str(), F_OK) != 0;
-    history.free = !is_last || isGone(readTextFile(path(row, attempt), claim_limit_bytes));
+    history.free = !is_last || isGone(path(row, attempt));
     if (!history.free) return history;
     ++history.kill_count;
-    history.message = "its worker vanished";
+    history.message = readClaim(path(row, attempt)) ? "its worker vanished" : path(row, attempt) + ": is not a claim; its worker vanished";
   }
   return history;
 }
 
-bool Claims::isGone(const std::string& claim_text) const {
-  const auto claim = nlohmann::json::parse(claim_text, nullptr, false);
-  if (!claim.is_object() || !claim.contains("worker") || !claim.contains("pid"))
-    throw BadFile(folder_ + "/claims", "holds a file that is not a claim");
-  const std::string worker = claim.value("worker", "");
-  if (worker == worker_) return false;
-  if (claim.value("machine", "") == machine_) return beginOf(claim.value("pid", 0L)) != claim.value("begin", "");
-  return heartbeatAgeS(worker) > stale_after_s_;
+void Claims::addEnd(RowHistory& history, const std::string& end_file) {
+  const auto json = nlohmann::json::parse(readTextFile(end_file, claim_limit_bytes), nullptr, false);
+  if (!json.is_object() || !json.contains("end")) throw BadFile(end_file, "is not the end of an attempt");
+  history.crash_count += json["end"] == end_names[0];
+  history.kill_count += json["end"] == end_names[1];
+  if (json["end"] != end_names[2]) history.message = json.value("message", "");
 }
 
-double Claims::heartbeatAgeS(const std::string& worker) const {
+bool Claims::isGone(const std::string& claim_file) const {
+  const auto claim = readClaim(claim_file);
+  // A power failure may leave a claim without contents; a network file system may show a fresh one so for a moment.
+  if (!claim) return ageS(claim_file) > stale_after_s_;
+  if (claim->worker == worker_) return false;
+  if (claim->machine == machine_) return beginOf(claim->pid) != claim->begin;
+  return ageS(folder_ + "/workers/" + claim->worker) > stale_after_s_;
+}
+
+double Claims::ageS(const std::string& file) const {
   int reason = 0;
-  const double then_s = modifiedS(folder_ + "/workers/" + worker, reason);
+  const double then_s = modifiedS(file, reason);
   if (reason == ENOENT) return 1e300;  // it has ended
   const double now_s = modifiedS(folder_ + "/workers/" + worker_, reason);
   if (reason != 0) throw IoError(fmt::format("{}/workers: cannot be read: {}", folder_, std::strerror(reason)));

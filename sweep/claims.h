@@ -3,6 +3,8 @@
 ///     workers/WORKER         one per worker; its time of change is the worker's heartbeat
 ///     claims/ROW.N           the N-th attempt at a row, created atomically (link) by the worker who makes it; never removed
 ///     claims/ROW.N.end       that attempt ended without a result, and why
+/// Claims are on the disk before work begins. One that is not readable as a claim nevertheless is an attempt whose worker is gone when the
+/// file is older than the limit.
 ///
 /// A row is free if no attempt was made, if the last one has an end, or if the worker of the last one is gone: on this machine when its
 /// process no longer exists, on another when its heartbeat is older than the limit. Times are compared as the file system gives them, so
@@ -53,8 +55,10 @@ class Claims {
 
  private:
   std::string path(std::size_t row, int attempt) const;
-  bool isGone(const std::string& claim_text) const;
-  double heartbeatAgeS(const std::string& worker) const;
+  static void addEnd(RowHistory& history, const std::string& end_file);
+  bool isGone(const std::string& claim_file) const;
+  /// How long before this worker's last heartbeat a file was changed.
+  double ageS(const std::string& file) const;
 
   std::string folder_, machine_, worker_, text_;
   double stale_after_s_;

@@ -110,6 +110,7 @@ class Worker {
       }
       const RowHistory history = claims_.history(row);
       if (history.free && claims_.claim(row, history.attempt_count + 1)) {
+        if (!history.message.empty()) options_.say(fmt::format("row {}: taken over: {}", row, history.message));
         makeAttempt(row, history.attempt_count + 1);
         return true;
       }

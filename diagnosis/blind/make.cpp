@@ -6,7 +6,6 @@
 #include <cmath>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <random>
 
 #include "../parallel.h"
 #include "cause.h"
@@ -14,6 +13,7 @@
 #include "excitation.h"
 #include "look_alikes.h"
 #include "musclesim/error.h"
+#include "musclesim/log/unique_name.h"
 #include "musclesim/robot/robot.h"
 #include "musclesim/simulation/replay.h"
 #include "musclesim/simulation/simulation.h"
@@ -218,8 +218,7 @@ std::string caseName(int index) {
 
 /// Not from the seed: who knows the seed does not know the name.
 std::string randomKeyName() {
-  std::random_device device;
-  return fmt::format("{:08x}{:08x}.json", device(), device());
+  return uniqueName() + ".json";
 }
 
 void requireApart(const fs::path& folder, const fs::path& key_folder, const MakeOptions& options) {

@@ -1,5 +1,10 @@
 #include "musclesim/log/file.h"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <set>
+
 #include "log_fixture.h"
 #include "musclesim/log/text_place.h"
 
@@ -19,6 +24,36 @@ TEST(File, ReplacesAsAWhole) {
   replaceFile(file, "new");
   EXPECT_EQ(readTextFile(file, 3), "new");
   EXPECT_EQ(folder.fileCount(), 1u);
+}
+
+TEST(File, TemporaryNamesDifferAlsoBetweenProcessesWithTheSameId) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("a.txt");
+  // What two processes in two containers would do: the same id, both at their first file.
+  const auto nameOfFirst = [&] {
+    const FileReplacement mine(file, "x");
+    for (const auto& entry : std::filesystem::directory_iterator(folder.file(""))) return entry.path().filename().string();
+    return std::string();
+  };
+  std::set<std::string> names;
+  for (int i = 0; i < 3; ++i) {
+    int ends[2];
+    ASSERT_EQ(pipe(ends), 0);
+    const pid_t child = fork();
+    if (child == 0) {
+      std::string name = nameOfFirst();
+      const std::string id = std::to_string(getpid());
+      if (const auto at = name.find(id); at != std::string::npos) name.replace(at, id.size(), "ID");
+      _exit(writeAll(ends[1], name) == name.size() ? 0 : 1);
+    }
+    close(ends[1]);
+    char name[256] = "";
+    EXPECT_GT(read(ends[0], name, sizeof name - 1), 0);
+    close(ends[0]);
+    waitpid(child, nullptr, 0);
+    names.insert(name);
+  }
+  EXPECT_EQ(names.size(), 3u);
 }
 
 TEST(File, ErrorsNameFileAndReason) {

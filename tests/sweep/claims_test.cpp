@@ -113,11 +113,27 @@ TEST_F(ClaimsOfRows, CountHowAttemptsEnded) {
   EXPECT_EQ(history.message, "why 3");
 }
 
-TEST_F(ClaimsOfRows, ThatCannotBeReadAreErrors) {
+TEST_F(ClaimsOfRows, ThatCannotBeReadAreOfWorkersThatAreGone) {
+  for (const std::string text : {"", "{", "[1]", R"({"worker": 1, "pid": "x"})"}) {
+    const std::string sweep = sweepOf(1, "sweep" + std::to_string(text.size())), file = sweep + "/claims/000000.1";
+    writeFile(file, text);
+    Claims claims(sweep, 60);
+    EXPECT_FALSE(claims.history(0).free) << "it may be fresh and still on its way: " << text;
+    const timespec old[2] = {{time(nullptr) - 61, 0}, {time(nullptr) - 61, 0}};
+    utimensat(AT_FDCWD, file.c_str(), old, 0);
+    const RowHistory history = claims.history(0);
+    EXPECT_TRUE(history.free) << text;
+    EXPECT_EQ(history.attempt_count, 1);
+    EXPECT_EQ(history.kill_count, 1);
+    EXPECT_TRUE(contains(history.message, "000000.1: is not a claim")) << history.message;
+    EXPECT_TRUE(claims.claim(0, 2));
+  }
+}
+
+TEST_F(ClaimsOfRows, AreOfWorkersWithDifferentNamesAlsoIfTheirProcessesHaveTheSameId) {
   const std::string sweep = sweepOf(1);
-  writeFile(sweep + "/claims/000000.1", "");
-  Claims claims(sweep, 60);
-  EXPECT_THROW(claims.history(0), BadFile);
+  const Claims first(sweep, 60), second(sweep, 60);
+  EXPECT_NE(first.worker(), second.worker());
 }
 
 }  // namespace

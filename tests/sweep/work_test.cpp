@@ -87,6 +87,25 @@ TEST_F(Working, TellsDivergedAndFailedRowsApart) {
   EXPECT_EQ(collected.failed, std::vector<std::size_t>{1});
 }
 
+TEST_F(Working, KnowsTheExitStatusAlsoWhereEndsOfProcessesAreIgnored) {
+  const std::string sweep = sweepOf(1);
+  const auto before = signal(SIGCHLD, SIG_IGN);
+  const WorkSummary summary = workWith(script("exit 2"), sweep);
+  signal(SIGCHLD, before);
+  EXPECT_EQ(summary.failed_count, 1u);
+  EXPECT_EQ(readResult(sweep, 0).status, "failed");
+  EXPECT_EQ(readResult(sweep, 0).exit_status, 2);
+}
+
+TEST_F(Working, AnEndThatIsNotKnownIsAnError) {
+  const ChildCommand command{script("exec sleep 0.1"), {}, path(""), path("out"), path("error")};
+  const auto taken_away = [] {
+    waitpid(-1, nullptr, 0);
+    return false;
+  };
+  EXPECT_TRUE(contains(messageOf<IoError>([&] { runChild(command, taken_away); }), "its end is not known"));
+}
+
 TEST_F(Working, EndsRowsThatTakeTooLong) {
   Sweep sweep;
   sweep.command = {"{x}", "{out}"};
@@ -133,6 +152,16 @@ TEST_F(Working, TakesOverFromAWorkerThatIsKilledInTheMiddleOfARow) {
   std::istringstream(contentOf(path("waiting"))) >> pid;
   ASSERT_FALSE(pid.empty());
   EXPECT_EQ(contentOf("/proc/" + pid + "/cmdline"), "") << "absent, or dead and not yet buried";
+}
+
+TEST_F(Working, TakesOverAClaimThatAPowerFailureLeftEmptyAndSaysSo) {
+  const std::string sweep = sweepOf(2);
+  writeFile(sweep + "/claims/000000.1", "");
+  fs::last_write_time(sweep + "/claims/000000.1", fs::file_time_type::clock::now() - std::chrono::hours(1));
+  std::string said;
+  options_.say = [&](const std::string& message) { said += message + "\n"; };
+  EXPECT_EQ(workWith(script(good_end), sweep).done_count, 2u);
+  EXPECT_TRUE(contains(said, "row 0: taken over: " + sweep + "/claims/000000.1: is not a claim")) << said;
 }
 
 TEST_F(Working, FinishesWhatWasKilledBetweenTheOutputAndTheResult) {

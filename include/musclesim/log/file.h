@@ -14,8 +14,8 @@ std::string readTextFile(const std::string& file, std::size_t limit_bytes);
 /// happened. Throws IoError naming the file and the system's reason.
 class FileReplacement {
  public:
-  /// Writes `text` to the temporary file and, unless told otherwise, to the disk (fsync).
-  FileReplacement(std::string file, std::string_view text, bool to_disk = true);
+  /// Writes `text` to the temporary file and to the disk (fsync).
+  FileReplacement(std::string file, std::string_view text);
   ~FileReplacement();
   FileReplacement(const FileReplacement&) = delete;
   FileReplacement& operator=(const FileReplacement&) = delete;
