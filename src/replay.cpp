@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
+#include "interrupt.h"
 #include "musclesim/error.h"
 #include "pictures.h"
 
@@ -32,6 +33,16 @@ void printTable(const ReplayResult& result) {
     fmt::print("{:<20} {:>12.4g} {:>12.4g} {:>9}  {}\n", e.name, e.rmse, e.largest, e.sample_count, unitOf(e.name));
 }
 
+/// Thrown between two rows.
+struct Interruption {};
+
+int reportInterruption(const ModelOptions& model, const ReplayArguments& arguments) {
+  say(model, "interrupted; pictures show the replay up to then, nothing is compared");
+  if (model.json)
+    fmt::print("{}\n", nlohmann::json{{"command", "replay"}, {"recording", arguments.recording}, {"status", "interrupted"}}.dump());
+  return interrupted_base + interruptSignal();
+}
+
 nlohmann::json verdictOf(const ReplayResult& result, const ReplayArguments& arguments) {
   nlohmann::json json;
   json["command"] = "replay";
@@ -52,12 +63,20 @@ int replay(const ModelOptions& model, const ReplayArguments& arguments) {
   for (const auto& note : recording.notes) say(model, note);
   std::unique_ptr<Spectator> spectator;
   ReplayOptions options = replayOptionsFrom(model);
-  if (arguments.pictures.wanted())
-    options.watch = [&](Simulation& simulation) {
-      spectator = makePictures(arguments.pictures, simulation);
-      return [&](const State& state) { spectator->see(state); };
+  options.watch = [&](Simulation& simulation) {
+    if (arguments.pictures.wanted()) spectator = makePictures(arguments.pictures, simulation);
+    return [&](const State& state) {
+      if (spectator) spectator->see(state);
+      if (interruptSignal() != 0) throw Interruption{};
     };
-  const ReplayResult result = replayRecording(recording, options);
+  };
+  ReplayResult result;
+  try {
+    result = replayRecording(recording, options);
+  } catch (const Interruption&) {
+    if (spectator) spectator->finish();
+    return reportInterruption(model, arguments);
+  }
   if (spectator) spectator->finish();
   if (arguments.out) writeRecording(result.simulated, *arguments.out);
   printTable(result);

@@ -64,7 +64,8 @@ VideoWriter::VideoWriter(const std::string& file, int width, int height, double 
   if (failure) throw IoError(result_ + ": cannot be made: " + failure.message());
 }
 
-/// Raw pictures go to ffmpeg's standard input; it is started by a list of arguments, without a shell.
+/// Raw pictures go to ffmpeg's standard input; it is started by a list of arguments, without a shell, and in a process group of its own: a
+/// terminal sends Ctrl-C to a whole group, and only the end of the pictures may end the video.
 void VideoWriter::startFfmpeg(double frames_per_s) {
   const fs::path program = findInPath("ffmpeg");
   if (program.empty()) return;
@@ -83,7 +84,12 @@ void VideoWriter::startFfmpeg(double frames_per_s) {
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  const int failure = posix_spawn(&child_, program.c_str(), &actions, nullptr, pointers.data(), environ);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  posix_spawnattr_setpgroup(&attributes, 0);
+  const int failure = posix_spawn(&child_, program.c_str(), &actions, &attributes, pointers.data(), environ);
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   ::close(ends[0]);
   pipe_ = ends[1];

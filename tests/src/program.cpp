@@ -53,6 +53,7 @@ ProgramResult interruptProgram(const std::vector<std::string>& arguments, int si
   const pid_t child = fork();
   if (child < 0) throw std::runtime_error("fork failed");
   if (child == 0) {
+    if (signal != 0) setpgid(0, 0);
     redirect(out_file, STDOUT_FILENO);
     redirect(err_file, STDERR_FILENO);
     if (chdir(folder.c_str()) != 0) _exit(126);
@@ -66,7 +67,7 @@ ProgramResult interruptProgram(const std::vector<std::string>& arguments, int si
   }
   if (signal != 0) {
     waitForBytes(folder / file, bytes);
-    kill(child, signal);
+    kill(-child, signal);
   }
   int status = 0;
   waitpid(child, &status, 0);

@@ -16,7 +16,8 @@ struct ProgramResult {
 ProgramResult runProgram(const std::vector<std::string>& arguments,
                          const std::filesystem::path& folder = std::filesystem::temp_directory_path());
 
-/// Starts it, sends a signal when a file in the folder has that many bytes (after a minute at the latest), and waits.
+/// Starts it in a process group of its own, sends a signal to the group, as a terminal does, when a file in the folder has that many bytes
+/// (after a minute at the latest), and waits.
 ProgramResult interruptProgram(const std::vector<std::string>& arguments, int signal, const std::string& file, std::uintmax_t bytes,
                                const std::filesystem::path& folder = std::filesystem::temp_directory_path());
 

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -53,6 +55,22 @@ TEST_F(ReplayCommand, ReproducesItsOwnRunsBitForBit) {
   for (const auto& [name, error] : verdict.at("signals").items()) EXPECT_EQ(error.at("largest"), 0.0) << name;
   const Recording again = readRecording((folder_ / "again.csv").string());
   EXPECT_EQ(again.time_s, readRecording((folder_ / "run.csv").string()).time_s);
+}
+
+TEST_F(ReplayCommand, InterruptedVideosAreWhole) {
+  if (std::system("command -v ffmpeg >/dev/null 2>&1") != 0) GTEST_SKIP() << "ffmpeg is not installed";
+  const ProgramResult recorded =
+      runProgram({"--simple", "--quiet", "--robot", "elbow", "--controller", "random", "--duration", "60", "--record", "run.csv"}, folder_);
+  ASSERT_EQ(recorded.status, 0) << recorded.err;
+  const ProgramResult result =
+      interruptProgram({"replay", "run.csv", "--video", "cut.mp4", "--picture-size", "1024x768"}, SIGINT, "cut.mp4", 1, folder_);
+  if (result.err.find("cannot draw pictures") != std::string::npos || result.err.find("need OSMesa") != std::string::npos)
+    GTEST_SKIP() << result.err;
+  EXPECT_EQ(result.status, 130) << result.err;
+  EXPECT_NE(result.err.find("interrupted"), std::string::npos) << result.err;
+  std::ifstream video(folder_ / "cut.mp4");
+  const std::string bytes{std::istreambuf_iterator<char>(video), {}};
+  EXPECT_NE(bytes.find("moov"), std::string::npos) << "the index that players need";
 }
 
 TEST_F(ReplayCommand, ShowsTheGapOfAnotherModel) {

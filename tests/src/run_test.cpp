@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -132,6 +133,21 @@ TEST_F(RunCommand, InterruptedRunsAreReadableAndNotComplete) {
   const Recording recording = readRecording((folder_ / "cut.csv").string());
   EXPECT_GT(recording.time_s.size(), 5u);
   EXPECT_EQ(nlohmann::json::parse(contentOf(folder_ / "cut.json")).at("complete"), false);
+}
+
+/// Also what writes the video gets the signal.
+TEST_F(RunCommand, InterruptedVideosAreWhole) {
+  if (std::system("command -v ffmpeg >/dev/null 2>&1") != 0) GTEST_SKIP() << "ffmpeg is not installed";
+  const ProgramResult result = interruptProgram({"--robot", "elbow", "--controller", "hold", "--duration", "1000", "--record", "cut.csv",
+                                                 "--video", "cut.mp4", "--picture-size", "160x120"},
+                                                SIGINT, "cut.csv", 2000, folder_);
+  if (result.err.find("cannot draw pictures") != std::string::npos || result.err.find("need OSMesa") != std::string::npos)
+    GTEST_SKIP() << result.err;
+  EXPECT_EQ(result.status, 130) << result.err;
+  EXPECT_NE(result.err.find("interrupted"), std::string::npos) << result.err;
+  EXPECT_GT(readRecording((folder_ / "cut.csv").string()).time_s.size(), 5u);
+  EXPECT_EQ(nlohmann::json::parse(contentOf(folder_ / "cut.json")).at("complete"), false);
+  EXPECT_NE(contentOf(folder_ / "cut.mp4").find("moov"), std::string::npos) << "the index that players need";
 }
 
 TEST_F(RunCommand, DivergenceKeepsTheRecordingAndExitsWith4) {
