@@ -95,6 +95,7 @@ int collectSweep(const CollectArguments& arguments) {
                                       {"diverged", collected.diverged},
                                       {"failed", collected.failed},
                                       {"crashed", collected.crashed},
+                                      {"unmet_columns", collected.unmet_columns},
                                       {"csv", collected.csv_file},
                                       {"json", collected.json_file}}
                            .dump());
@@ -106,7 +107,10 @@ int collectSweep(const CollectArguments& arguments) {
     printRows("crashed", collected.crashed);
     fmt::print("table    {}\njson     {}\n", collected.csv_file, collected.json_file);
   }
-  return collected.complete() ? done : incomplete_sweep;
+  for (const std::string& column : collected.unmet_columns)
+    fmt::print(stderr, "musclesim: columns: \"{}\": no row has a number of that name\n", column);
+  if (!collected.complete()) return incomplete_sweep;
+  return collected.unmet_columns.empty() ? done : bad_usage;
 }
 
 }  // namespace

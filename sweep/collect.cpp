@@ -15,8 +15,13 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// Numbers and texts by dotted name.
-using Flat = std::vector<std::pair<std::string, ordered_json>>;
+/// A number or text with its dotted name.
+struct Number {
+  std::string name;
+  ordered_json value;
+  bool of_machine;  ///< tells a time or place of the run
+};
+using Flat = std::vector<Number>;
 
 bool dependsOnTheMachine(const std::string& member) {
   for (const char* name : {"wall_s", "wall_per_simulated_s", "elapsed_s", "log", "figure", "out"})
@@ -24,25 +29,48 @@ bool dependsOnTheMachine(const std::string& member) {
   return false;
 }
 
-void flatten(const ordered_json& json, const std::string& prefix, bool with_lists, Flat& flat) {
+void flatten(const ordered_json& json, const std::string& prefix, bool with_lists, bool of_machine, Flat& flat) {
   const auto add = [&](const std::string& name, const ordered_json& value) {
+    const bool is_of_machine = of_machine || (json.is_object() && dependsOnTheMachine(name));
     if (value.is_object() || (value.is_array() && with_lists))
-      flatten(value, prefix + name + ".", with_lists, flat);
+      flatten(value, prefix + name + ".", with_lists, is_of_machine, flat);
     else if (!value.is_array())
-      flat.emplace_back(prefix + name, value);
+      flat.push_back({prefix + name, value, is_of_machine});
   };
   if (json.is_array())
     for (std::size_t i = 0; i < json.size(); ++i) add(std::to_string(i), json[i]);
   else
-    for (const auto& [name, value] : json.items())
-      if (!dependsOnTheMachine(name)) add(name, value);
+    for (const auto& [name, value] : json.items()) add(name, value);
 }
 
-bool chosen(const std::string& name, const std::vector<std::string>& columns) {
-  return columns.empty() || std::any_of(columns.begin(), columns.end(), [&](const std::string& column) {
-           return column.ends_with('*') ? name.starts_with(column.substr(0, column.size() - 1)) : name == column;
-         });
-}
+/// Which numbers are wanted, and which wishes no number has met.
+class Choice {
+ public:
+  explicit Choice(const std::vector<std::string>& columns) : all_(columns.empty()), unmet_(columns), columns_(columns) {}
+
+  bool takes(const Number& number) {
+    if (all_) return !number.of_machine;
+    bool taken = false;
+    for (const std::string& column : columns_) {
+      if (!matches(column, number)) continue;
+      std::erase(unmet_, column);
+      taken = true;
+    }
+    return taken;
+  }
+
+  const std::vector<std::string>& unmet() const { return unmet_; }
+
+ private:
+  /// What tells times and places must be asked for by its name.
+  static bool matches(const std::string& column, const Number& number) {
+    if (!column.ends_with('*')) return number.name == column;
+    return !number.of_machine && number.name.starts_with(column.substr(0, column.size() - 1));
+  }
+
+  bool all_;
+  std::vector<std::string> unmet_, columns_;
+};
 
 /// RFC 4180: in quotes if it must be.
 std::string cell(const ordered_json& value) {
@@ -81,15 +109,15 @@ class Table {
   std::vector<ordered_json> rows_;
 };
 
-ordered_json tableRow(const Sweep& sweep, std::size_t number, const RowResult* result) {
+ordered_json tableRow(const Sweep& sweep, std::size_t number, const RowResult* result, Choice& choice) {
   ordered_json row = {{"row", number}, {"status", result ? result->status : "missing"}};
   for (const auto& [name, value] : sweep.rows[number].parameters) row[name] = valueJson(value);
   if (!result) return row;
   if (!result->message.empty()) row["message"] = result->message;
   Flat flat;
-  flatten(result->numbers, "", !sweep.columns.empty(), flat);
-  for (const auto& [name, value] : flat)
-    if (chosen(name, sweep.columns)) row[row.contains(name) ? "result." + name : name] = value;
+  flatten(result->numbers, "", !sweep.columns.empty(), false, flat);
+  for (const Number& entry : flat)
+    if (choice.takes(entry)) row[row.contains(entry.name) || entry.name == "message" ? "result." + entry.name : entry.name] = entry.value;
   return row;
 }
 
@@ -109,10 +137,11 @@ Collected collect(const std::string& folder) {
   Collected collected;
   collected.row_count = sweep.rows.size();
   Table table;
+  Choice choice(sweep.columns);
   for (std::size_t row = 0; row < sweep.rows.size(); ++row) {
     if (!hasResult(folder, row)) {
       collected.missing.push_back(row);
-      table.add(tableRow(sweep, row, nullptr));
+      table.add(tableRow(sweep, row, nullptr, choice));
       continue;
     }
     const RowResult result = readResult(folder, row);
@@ -120,8 +149,9 @@ Collected collect(const std::string& folder) {
     if (result.status == "diverged") collected.diverged.push_back(row);
     if (result.status == "failed") collected.failed.push_back(row);
     if (result.status == "crashed") collected.crashed.push_back(row);
-    table.add(tableRow(sweep, row, &result));
+    table.add(tableRow(sweep, row, &result, choice));
   }
+  if (collected.done_count > 0) collected.unmet_columns = choice.unmet();
   collected.csv_file = folder + "/collected.csv";
   collected.json_file = folder + "/collected.json";
   replaceFile(collected.csv_file, table.csv());

@@ -114,9 +114,10 @@ class Plan {
 
   /// Multiplies the rows so far by those of a section.
   void combine(const toml::node& place, const std::vector<RowParameters>& section) {
+    static const std::set<std::string> reserved = {"out", "row", "repeat", "status", "message"};
     requireSize(place, rows_.size() * section.size(), rows_.front().size() + section.front().size());
     for (const auto& [name, value] : section.front())
-      if (!names_.insert(name).second || name == "out" || name == "row" || name == "repeat")
+      if (!names_.insert(name).second || reserved.contains(name))
         reader_.refuse(place, name + ": is given twice, or a name that has a meaning of its own");
     std::vector<RowParameters> ready = section;
     for (auto& row : ready)
@@ -178,7 +179,12 @@ class Plan {
     combine(section, rows);
   }
 
-  /// Rows that differ in their parameters but not in the repeat have the same seed: their differences are not chance.
+  bool commandUses(const std::string& name) const {
+    return std::ranges::any_of(sweep_.command, [&](const auto& argument) { return argument.find("{" + name + "}") != std::string::npos; });
+  }
+
+  /// Rows that differ in their parameters but not in the repeat have the same seed: their differences are not chance. A seed that the
+  /// command does not use is not listed, for it would not be that of the run.
   void addRepeats() {
     std::size_t count = 1;
     if (const auto found = sections_.find("repeats"); found != sections_.end()) {
@@ -187,11 +193,13 @@ class Plan {
         count = reader_.count(node, "repeats.count");
       }
       requireSize(*found->second, rows_.size() * count, rows_.front().size() + 2);
+      if (count > 1 && !commandUses("seed") && !commandUses("repeat"))
+        reader_.refuse(*found->second, "repeats: would all be the same run; write {seed} or {repeat} into the command");
     }
     std::vector<RowParameters> rows;
     for (std::size_t i = 0; i < count; ++i) {
       rows.push_back({{"repeat", static_cast<double>(i)}});
-      if (!names_.contains("seed")) rows.back().emplace_back("seed", static_cast<double>(sweep_.seed + i));
+      if (!names_.contains("seed") && commandUses("seed")) rows.back().emplace_back("seed", static_cast<double>(sweep_.seed + i));
     }
     rows_ = combined(rows_, rows);
   }

@@ -98,7 +98,7 @@ std::vector<std::string> argumentsOf(const Sweep& sweep, std::size_t number, con
   for (const std::string& argument : command) arguments.push_back(substitution.substituted(argument));
   for (const auto& [name, value] : row.parameters) {
     if (substitution.used(name)) continue;
-    if (name.find('.') == std::string::npos && name != "seed" && name != "repeat")
+    if (name.find('.') == std::string::npos && name != "repeat")
       throw BadParameter(fmt::format("parameter {}: the command does not use it; write {{{}}} where it belongs", name, name));
     if (name.find('.') == std::string::npos) continue;
     arguments.insert(arguments.end(), {"--set", name + "=" + valueText(value)});

@@ -25,12 +25,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
+using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t output_limit_bytes = std::size_t{64} << 20;
 constexpr int most_crashes = 2, most_kills = 5;
 constexpr std::chrono::milliseconds longest_wait(1000);
-constexpr double end_margin_s = 1.0;  ///< what a worker needs to give a row back
+constexpr std::chrono::milliseconds interrupt_delay(300);  ///< between the ends of a run and of its worker by the same cause, at most
+constexpr double end_margin_s = 1.0;                       ///< what a worker needs to give a row back
 
 /// What the program's exit statuses say about a row; see docs/getting_started.md.
 enum Status { done = 0, bad_usage = 2, bad_input = 3, diverged = 4 };
@@ -168,8 +170,16 @@ class Worker {
       if (without->first != AttemptEnd::abandoned) options_.say(fmt::format("row {}: {} (attempt {})", row, without->second, attempt));
       return without->first == AttemptEnd::abandoned;
     }
-    finish(row, attempt, end, absolute_out, last_words);
+    finish(row, attempt, end, command, absolute_out, last_words);
     return true;
+  }
+
+  bool isInterruptedSoon() const {
+    for (auto waited = 0ms; waited < interrupt_delay; waited += 10ms) {
+      if (options_.interrupt_signal() != 0) return true;
+      std::this_thread::sleep_for(10ms);
+    }
+    return options_.interrupt_signal() != 0;
   }
 
   /// Why an attempt counts for nothing, if it does.
@@ -179,6 +189,8 @@ class Worker {
     if (end.stopped && out_of_time) return {{AttemptEnd::crashed, fmt::format("took longer than {} s", sweep_.row_time_limit_s)}};
     const int signal = end.signal != 0 ? end.signal : end.exit_status > 128 ? end.exit_status - 128 : 0;
     const bool from_outside = signal == SIGKILL || signal == SIGTERM || signal == SIGINT || signal == SIGHUP;
+    // A batch system signals the run and its worker, in whatever order.
+    if (from_outside && signal != SIGKILL && isInterruptedSoon()) return {{AttemptEnd::abandoned, "its worker had to stop"}};
     if (signal != 0)
       return {{from_outside ? AttemptEnd::killed : AttemptEnd::crashed, fmt::format("ended by signal {} ({})", signal, strsignal(signal))}};
     for (const int final : {done, bad_usage, bad_input, diverged})
@@ -186,21 +198,27 @@ class Worker {
     return {{AttemptEnd::crashed, fmt::format("exit status {}: {}", end.exit_status, last_words)}};
   }
 
-  void finish(std::size_t row, int attempt, const ChildEnd& end, const std::string& out, const std::string& last_words) {
+  void finish(std::size_t row, int attempt, const ChildEnd& end, const ChildCommand& command, const std::string& out,
+              const std::string& last_words) {
     RowResult result;
     result.status = end.exit_status == done ? "done" : end.exit_status == diverged ? "diverged" : "failed";
     result.exit_status = end.exit_status;
     result.attempt_count = attempt;
     result.wall_s = end.wall_s;
     if (end.exit_status != done) result.message = last_words;
-    readNumbers(out, result);
+    readNumbers(out, command.arguments, result);
     for (const char* name : {"/stdout.txt", "/stderr.txt"})
       if (fs::file_size(out + name) == 0) fs::remove(out + name);
     moveInPlace(out, folder_ + "/outputs/" + rowName(row));
     conclude(row, result);
   }
 
-  void readNumbers(const std::string& out, RowResult& result) const {
+  /// The plan says what is collected, or the run is told to print numbers.
+  bool expectsNumbers(const std::vector<std::string>& arguments) const {
+    return !sweep_.columns.empty() || !sweep_.result_file.empty() || std::ranges::find(arguments, "--json") != arguments.end();
+  }
+
+  void readNumbers(const std::string& out, const std::vector<std::string>& arguments, RowResult& result) const {
     const bool from_file = !sweep_.result_file.empty();
     if (from_file && !fs::exists(out + "/" + sweep_.result_file)) {
       if (result.status == "done") throwAway(result, fmt::format("{{out}}/{} was not written", sweep_.result_file));
@@ -212,6 +230,7 @@ class Worker {
       result.numbers = std::move(json);
     else if (from_file)
       throwAway(result, fmt::format("{{out}}/{} is not a JSON object", sweep_.result_file));
+    if (result.status == "done" && result.numbers.empty() && expectsNumbers(arguments)) throwAway(result, "gave no numbers");
   }
 
   static void throwAway(RowResult& result, const std::string& why) {

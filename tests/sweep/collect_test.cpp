@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "musclesim/error.h"
+#include "src/program.h"
 #include "sweep/result.h"
 #include "sweep/sweep_fixture.h"
 
@@ -49,6 +50,40 @@ TEST_F(Collecting, ChoosesColumnsAlsoInLists) {
   writeSweep(sweep, path("sweep"));
   writeResult(path("sweep"), 0, resultOf("done", {{"effects", {{{"id", "leak, or not"}, {"p", 1}}}}, {"fit", {{"a", 1}, {"b", true}}}}));
   EXPECT_EQ(contentOf(collect(path("sweep")).csv_file), "row,status,x,effects.0.id,fit.a,fit.b\n0,done,1,\"leak, or not\",1,true\n");
+}
+
+TEST_F(Collecting, NamesColumnsThatNoRowHas) {
+  Sweep sweep;
+  sweep.command = {"{x}"};
+  sweep.columns = {"rmse", "typo", "no.*", "late"};
+  for (const double x : {1.0, 2.0}) sweep.rows.push_back({{{"x", x}}, {}});
+  writeSweep(sweep, path("sweep"));
+  EXPECT_TRUE(collect(path("sweep")).unmet_columns.empty()) << "nothing is done yet";
+  writeResult(path("sweep"), 0, resultOf("done", {{"rmse", 3}}));
+  writeResult(path("sweep"), 1, resultOf("done", {{"rmse", 4}, {"late", 5}}));
+  const Collected collected = collect(path("sweep"));
+  EXPECT_EQ(collected.unmet_columns, (std::vector<std::string>{"typo", "no.*"}));
+  const ProgramResult program = runProgram({"collect", "sweep"}, folder_);
+  EXPECT_EQ(program.status, 2);
+  EXPECT_TRUE(contains(program.err, "\"typo\": no row has a number of that name")) << program.err;
+}
+
+TEST_F(Collecting, KeepsTimesOfTheMachineOnlyIfTheirNamesAreAskedFor) {
+  const auto columnsWith = [&](const std::vector<std::string>& columns) {
+    Sweep sweep;
+    sweep.command = {"{x}"};
+    sweep.columns = columns;
+    sweep.rows = {{{{"x", 1.0}}, {}}};
+    const std::string folder = path("sweep" + std::to_string(columns.size()));
+    writeSweep(sweep, folder);
+    writeResult(folder, 0, resultOf("done", {{"wall_s", 9}, {"rmse", 3}, {"log", {{"file", "a"}}}}));
+    const std::string table = contentOf(collect(folder).csv_file);
+    return table.substr(0, table.find('\n'));
+  };
+  EXPECT_EQ(columnsWith({}), "row,status,x,rmse");
+  EXPECT_EQ(columnsWith({"*"}), "row,status,x,rmse");
+  EXPECT_EQ(columnsWith({"*", "wall_s"}), "row,status,x,wall_s,rmse");
+  EXPECT_EQ(columnsWith({"rmse", "wall_s", "log.file"}), "row,status,x,wall_s,rmse,log.file");
 }
 
 TEST_F(Collecting, KeepsTheFirstResultOfARow) {

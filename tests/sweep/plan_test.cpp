@@ -11,6 +11,7 @@ namespace musclesim {
 namespace {
 
 const std::string head = "format = \"musclesim-sweep-1\"\ncommand = [\"run\"]\n";
+const std::string head_with_seed = "format = \"musclesim-sweep-1\"\ncommand = [\"run\", \"--seed={seed}\"]\n";
 
 double number(const SweepRow& row, const std::string& name) {
   for (const auto& [key, value] : row.parameters)
@@ -37,18 +38,34 @@ TEST(Plan, GridHasEveryCombination) {
 }
 
 TEST(Plan, ListIsTakenRowByRowAndSectionsMultiply) {
-  const Sweep sweep = parsePlan(head + "[list]\na.x = [1, 2]\na.y = [10, 20]\n[grid]\na.z = [5, 6, 7]\n[repeats]\ncount = 2\n", "p.toml");
+  const Sweep sweep =
+      parsePlan(head_with_seed + "[list]\na.x = [1, 2]\na.y = [10, 20]\n[grid]\na.z = [5, 6, 7]\n[repeats]\ncount = 2\n", "p.toml");
   ASSERT_EQ(sweep.rows.size(), 12u);
   for (const SweepRow& row : sweep.rows) EXPECT_EQ(number(row, "a.y"), 10 * number(row, "a.x"));
 }
 
 TEST(Plan, RepeatsHaveSeedsThatDoNotDependOnTheOtherParameters) {
-  const Sweep sweep = parsePlan("seed = 40\n" + head + "[grid]\na.x = [1, 2]\n[repeats]\ncount = 3\n", "plan.toml");
+  const Sweep sweep = parsePlan("seed = 40\n" + head_with_seed + "[grid]\na.x = [1, 2]\n[repeats]\ncount = 3\n", "plan.toml");
   ASSERT_EQ(sweep.rows.size(), 6u);
   for (std::size_t i = 0; i < 6; ++i) {
     EXPECT_EQ(number(sweep.rows[i], "repeat"), static_cast<double>(i % 3));
     EXPECT_EQ(number(sweep.rows[i], "seed"), 40 + static_cast<double>(i % 3));
   }
+}
+
+TEST(Plan, RepeatsThatWouldBeTheSameRunAreRefused) {
+  const std::string repeats = "[repeats]\ncount = 2\n";
+  EXPECT_TRUE(contains(refusal(head + repeats), "plan.toml:3:1: repeats: would all be the same run"));
+  EXPECT_EQ(parsePlan("format = \"musclesim-sweep-1\"\ncommand = [\"run\", \"{repeat}\"]\n" + repeats, "p.toml").rows.size(), 2u);
+}
+
+TEST(Plan, SeedsThatTheCommandDoesNotUseAreRefusedIfPlannedAndElseNotListed) {
+  const Sweep planned = parsePlan(head + "[grid]\nseed = [1, 2]\n", "p.toml");
+  EXPECT_TRUE(contains(messageOf<BadParameter>([&] { argumentsOf(planned, 0, "out"); }), "parameter seed: the command does not use it"));
+  const Sweep used = parsePlan(head_with_seed + "[grid]\nseed = [5, 6]\n", "p.toml");
+  EXPECT_EQ(argumentsOf(used, 1, "out"), (std::vector<std::string>{"run", "--seed=6"}));
+  const Sweep unused = parsePlan("seed = 9\n" + head, "p.toml");
+  for (const auto& [name, value] : unused.rows.at(0).parameters) EXPECT_NE(name, "seed");
 }
 
 TEST(Plan, LatinHypercubeHasOneValueInEveryPart) {
@@ -99,6 +116,8 @@ TEST(Plan, RefusesWhatItDoesNotUnderstandNamingThePlace) {
   EXPECT_TRUE(contains(refusal(head + "[random]\ncount = 2\na.x = {low = 0, high = 2, log = true}\n"), "log needs low > 0"));
   EXPECT_TRUE(contains(refusal(head + "[random]\ncount = 2\na.x = {low = 0, high = 2, colour = 1}\n"), "a.x.colour"));
   EXPECT_TRUE(contains(refusal(head + "[grid]\na.x = [1]\n[list]\na.x = [1]\n"), "given twice"));
+  for (const std::string name : {"out", "row", "repeat", "status", "message"})
+    EXPECT_TRUE(contains(refusal(head + "[grid]\n" + name + " = [1]\n"), name + ": is given twice, or a name that has a meaning"));
   EXPECT_TRUE(contains(refusal(head + "[random]\ncount = 100000\n[repeats]\ncount = 2\n"), "at most"));
   EXPECT_TRUE(contains(refusal(head + "files = [\"recording\"]\n"), "without a folder"));
   EXPECT_TRUE(contains(refusal(head + "[grid\n"), "plan.toml:3"));

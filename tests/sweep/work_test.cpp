@@ -76,6 +76,14 @@ TEST_F(Working, RepeatsWhatIsKilledFromOutsideUpToFiveTimes) {
   EXPECT_EQ(contentOf(path("runs")), "0\n0\n0\n0\n0\n");
 }
 
+TEST_F(Working, ARunThatIsTerminatedShortlyBeforeItsWorkerIsGivenBack) {
+  const std::string sweep = sweepOf(1);
+  int asked_since = 0;
+  options_.interrupt_signal = [&] { return fs::exists(path("ended")) && ++asked_since > 5 ? SIGTERM : 0; };
+  EXPECT_EQ(workWith(script("touch " + path("ended") + "; kill -TERM $$"), sweep).end, WorkSummary::End::interrupted);
+  EXPECT_TRUE(contains(contentOf(sweep + "/claims/000000.1.end"), "abandoned"));
+}
+
 TEST_F(Working, TellsDivergedAndFailedRowsApart) {
   const std::string sweep = sweepOf(3);
   const WorkSummary summary = workWith(script("echo words >&2; case $1 in 0) exit 4;; 1) exit 2;; esac; " + good_end), sweep);
@@ -104,6 +112,22 @@ TEST_F(Working, AnEndThatIsNotKnownIsAnError) {
     return false;
   };
   EXPECT_TRUE(contains(messageOf<IoError>([&] { runChild(command, taken_away); }), "its end is not known"));
+}
+
+TEST_F(Working, RowsWithoutTheNumbersThatAreExpectedHaveFailed) {
+  Sweep sweep;
+  sweep.command = {"{x}", "{out}"};
+  sweep.columns = {"twice"};
+  for (const double x : {0.0, 1.0, 2.0}) sweep.rows.push_back({{{"x", x}}, {}});
+  writeSweep(sweep, path("sweep"));
+  const WorkSummary summary = workWith(script("case $1 in 0) echo words;; 1) echo '{}';; *) " + good_end + ";; esac"), path("sweep"));
+  EXPECT_EQ(summary.failed_count, 2u);
+  EXPECT_EQ(summary.done_count, 1u);
+  EXPECT_EQ(readResult(path("sweep"), 0).message, "gave no numbers");
+
+  const std::string with_json = sweepOf(1, "json", {"{x}", "--json"}), without = sweepOf(1, "plain", {"{x}"});
+  EXPECT_EQ(workWith(script("echo words"), with_json).failed_count, 1u);
+  EXPECT_EQ(workWith(script("echo words"), without).done_count, 1u) << "nothing asks for numbers";
 }
 
 TEST_F(Working, EndsRowsThatTakeTooLong) {
