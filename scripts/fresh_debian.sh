@@ -26,7 +26,7 @@ make_debian() {
   debootstrap --variant=minbase bookworm "$debian" "${MIRROR:-http://deb.debian.org/debian}" >"$dir/debootstrap.log" ||
     fail "debootstrap failed, see $dir/debootstrap.log"
   say "  took $((SECONDS - start)) s"
-  # Where this machine is a Debian 12 too, its settings of apt lead to a mirror that works from here.
+  # If the host is a Debian 12 too, its settings of apt are used.
   if [[ -z ${MIRROR-} ]] && grep -qs '^VERSION_CODENAME=bookworm' /etc/os-release; then
     for part in sources.list sources.list.d apt.conf.d keyrings trusted.gpg.d; do
       if [[ -e /etc/apt/$part ]]; then

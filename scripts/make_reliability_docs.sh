@@ -3,7 +3,7 @@
 #
 #     scripts/make_reliability_docs.sh [ROW ...]       default: all that need no fresh machine; DATE of the last run stands in each row
 #
-# The last result of every row is kept in docs/reliability/ROW.txt: how it ended, when, and what its command printed. Rows that are not named
+# A command that ends with status 77 could not try what it should: "not tried". The last result of every row is kept in docs/reliability/ROW.txt: how it ended, when, and what its command printed. Rows that are not named
 # keep theirs. Uses build/dev and, for the parsers, build/fuzz. BUILD=folder chooses another build.
 set -euo pipefail
 root=$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")
@@ -32,24 +32,38 @@ rows=(
 [[ -e $build/build.ninja ]] || { echo "make_reliability_docs: there is no build in $build; cmake --preset dev makes one" >&2; exit 2; }
 cmake --build "$build" --target musclesim fuzz_tests reliability_tests robot_tests log_tests analytic_tests soak_study sweep_study >&2
 mkdir -p docs/reliability
+# passed_some: whether a test program's output (standard input) tells of at least one test that passed; a filter may match none.
+passed_some() {
+  grep -qaE '^\[  PASSED  \] [1-9][0-9]* tests?\.'
+}
+
 wanted=("$@")
 status=0
 for row in "${rows[@]}"; do
   IFS='|' read -r name _ command <<<"$row"
   if ((${#wanted[@]})) && [[ " ${wanted[*]} " != *" $name "* ]]; then continue; fi
   echo "$name: $command" >&2
-  result=passed start=$SECONDS
+  result=passed ended=0 start=$SECONDS
   # Words of a command are separated by spaces; none has any within.
   # shellcheck disable=SC2086
-  output=$($command 2>&1) || result=FAILED
-  [[ $result == passed ]] || status=1
+  output=$($command 2>&1) || ended=$?
+  case $ended in
+    0) ;;
+    77) result="not tried" ;;
+    *) result=FAILED ;;
+  esac
+  if [[ $result == passed && $command == *_tests* ]] && ! passed_some <<<"$output"; then
+    result=FAILED
+    output+=$'\nno test was run'
+  fi
+  [[ $result != FAILED ]] || status=1
   {
     echo "$result"
     date -u +%Y-%m-%d
     echo "$((SECONDS - start)) s"
     # Of a test program the totals, failures and figures; of a script everything.
     if [[ $command == *_tests* ]]; then
-      grep -aE '^\[ +(PASSED|FAILED)|tests? from .* ran|Failure$|^(valid|places): ' <<<"$output"
+      grep -aE '^\[ +(PASSED|FAILED)|tests? from .* ran|Failure$|^(valid|places): |^no test was run' <<<"$output"
     else
       tail -n 25 <<<"$output"
     fi | cut -c1-300 | sed -e "s|$root/||g" || true

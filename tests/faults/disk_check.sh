@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Disks that fail: full, read-only, and every single call to the system that writes. A run whose files could not be written must end with exit
 # status 5, say so, and leave nothing that looks complete. Usage: disk_check.sh [PROGRAM]
-# The full disk is a tmpfs in a private mount namespace (root); the failing calls need libfiu (fiu-utils). What cannot be tried is said.
+# The full disk is a tmpfs in a private mount namespace (root); the failing calls need libfiu (fiu-utils). What cannot be tried is said;
+# exit status 77 then, if nothing else is wrong.
 set -euo pipefail
 root=$(dirname "$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")")
 program=$(realpath "${1:-$root/build/dev/musclesim}")
@@ -11,7 +12,7 @@ fi
 work=$(mktemp -d)
 trap 'umount "$work/full" "$work/read_only" 2>/dev/null || true; rm -rf "$work"' EXIT
 cd "$work"
-failed=0
+failed=0 untried=0
 wrong() {
   echo "WRONG: $*"
   failed=1
@@ -51,6 +52,7 @@ if [[ $EUID -eq 0 ]]; then
   echo "read-only disk: $(cat error)"
 else
   echo "full and read-only disks: NOT TRIED, needs root"
+  untried=1
 fi
 
 status=0
@@ -74,5 +76,7 @@ if command -v fiu-run >/dev/null; then
   echo "failing calls (write, fsync, rename, close, open): $calls runs, $ends_5 ended with exit status 5, the others wrote everything"
 else
   echo "failing calls: NOT TRIED, needs fiu-run (apt-get install fiu-utils)"
+  untried=1
 fi
+((failed || !untried)) || exit 77
 exit "$failed"
