@@ -45,6 +45,15 @@ bool hasWindow(const RunOptions& options) {
   return !options.simple && !options.pictures.wanted();
 }
 
+/// Options of what this run does not have would be without effect.
+void requireUsedOptions(const RunOptions& options) {
+  if (hasWindow(options)) return;
+  const char* without_window = options.simple ? "--simple opens no window" : "--screenshot and --video open no window";
+  if (options.window_log) throw BadParameter(fmt::format("--window-log logs what is done in a window, but {}", without_window));
+  if (options.pictures.speed && !options.pictures.video)
+    throw BadParameter(fmt::format("--speed is that of a window or a video, but {} and there is no --video", without_window));
+}
+
 /// Without --duration: the published 300 s; as much as makes a video worth looking at; with a window until it is closed.
 double defaultDurationS(const RunOptions& options) {
   constexpr double batch_s = 300, pictures_s = 20;
@@ -284,6 +293,7 @@ class Run {
 };
 
 int run(const ModelOptions& model, const RunOptions& options) {
+  requireUsedOptions(options);
   Run run(model, options);
   if (options.verbose) list(run.simulation());
   if (options.print_config) {

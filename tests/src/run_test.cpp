@@ -188,6 +188,19 @@ TEST_F(RunCommand, RefusesPicturesThatCannotBe) {
   expectRefused({"--video", "a.mp4", "--speed", "-1", "--robot", "rig", "--controller", "hold"}, 2, {"speed"});
 }
 
+TEST_F(RunCommand, RefusesOptionsOfAWindowWithoutOne) {
+  const std::vector<std::string> rig = {"--robot", "rig", "--controller", "hold", "--duration", "0.1"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.end(), rig.begin(), rig.end());
+    return more;
+  };
+  expectRefused(with({"--simple", "--window-log", "w.jsonl"}), 2, {"--window-log", "--simple opens no window"});
+  expectRefused(with({"--screenshot", "a.png", "--window-log", "w.jsonl"}), 2, {"--window-log", "--screenshot"});
+  expectRefused(with({"--simple", "--speed", "2"}), 2, {"--speed", "--simple opens no window"});
+  expectRefused(with({"--screenshot", "a.png", "--speed", "2"}), 2, {"--speed", "--video"});
+  EXPECT_TRUE(fs::is_empty(folder_));
+}
+
 TEST_F(RunCommand, RefusesUnknownNames) {
   expectRefused({"--simple", "--frobnicate"}, 2, {"--frobnicate"});
   expectRefused({"frobnicate"}, 2, {"frobnicate"});
