@@ -12,7 +12,7 @@ namespace musclesim {
 bool commandsMove(const std::vector<Recording>& recordings);
 
 /// Whether a signal has the same value in every row of every recording that has it.
-bool neverChanges(const std::vector<Recording>& recordings, const std::string& signal);
+bool neverChanges(const std::vector<Recording>& recordings, const std::string& name);
 
 /// Gaps in time (more than ten usual steps) and rows without a number, in sentences.
 std::vector<std::string> dataNotes(const std::vector<Recording>& recordings);
