@@ -18,6 +18,7 @@ enter_private_mounts() {
 
 # make_debian DIR: a minimal Debian 12 in DIR/debian, ready to be entered; sets $dir and $debian.
 make_debian() {
+  [[ $1 != *[[:space:]]* ]] || fail "debootstrap cannot work in a folder with a space in its name: $1"
   mkdir -p "$1"
   dir=$(cd "$1" && pwd)
   debian=$dir/debian
