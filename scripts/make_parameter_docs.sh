@@ -90,6 +90,10 @@ tables() {
   config --robot rig --controller hold | rows rig | table
   section 'Robot `elbow`'
   config --robot elbow --controller hold | rows elbow | table
+  section 'Robot `wrist`'
+  config --robot wrist --controller hold | rows wrist | table
+  section 'Robot `spring_bench`'
+  config --robot spring_bench --controller hold | rows spring_bench | table
   section 'Robot `arm`'
   echo
   echo 'In `original` and `scaled` physics the default of `arm.composite_inertia` is `summed`.'

@@ -25,6 +25,8 @@ class Contacts {
   void collide();
   /// Error reduction and softness of contacts from now on, in ODE's terms; without them they are the world's.
   void soften(double error_reduction, double softness);
+  /// Memory for that many contacts, so that steps need not ask for it.
+  void reserve(std::size_t count) { points_.reserve(count); }
   int count() const { return static_cast<int>(points_.size()); }
   const std::vector<ContactPoint>& points() const { return points_; }
   double frictionLimit() const { return friction_limit_; }

@@ -165,6 +165,7 @@ void Simulation::prepareSteps() {
   adaptJoints(internalStepS(), error_reduction_, physics_, joints_, actuators_);
   error_reduction_ = physics_.errorReductionPerStep(internalStepS());
   prepared_actuator_count_ = actuators_.size();
+  contacts_->reserve(100 + 20 * actuators_.size());
 }
 
 Controller& Simulation::control(std::unique_ptr<Controller> controller) {

@@ -51,7 +51,7 @@ struct ActiveSetResult {
 class BoxActiveSet {
  public:
   BoxActiveSet() { worst_.reserve(256); }
-  int full_rounds = 2, most_rounds = 60, patience = 15, most_monotone_rounds = 400;
+  int full_rounds = 4, most_rounds = 60, patience = 15, most_monotone_rounds = 400;
   ActiveSetResult run(BoxProblem& problem, std::vector<BoundedRow>& rows);
 
  private:

@@ -68,7 +68,20 @@ bool ContactSet::make(const std::vector<ContactPoint>& points, const BodyState& 
     warmStart(contact, bodies);
     contacts_.push_back(contact);
   }
+  linkBodies(bodies.count());
   return true;
+}
+
+void ContactSet::linkBodies(int body_count) {
+  last_.assign(static_cast<std::size_t>(body_count), -1);
+  for (std::size_t i = 0; i < contacts_.size(); ++i)
+    for (int side = 0; side < 2; ++side) {
+      contacts_[i].before[side] = -1;
+      if (contacts_[i].body[side] < 0) continue;
+      int& last = last_[static_cast<std::size_t>(contacts_[i].body[side])];
+      contacts_[i].before[side] = last;
+      last = static_cast<int>(i);
+    }
 }
 
 /// A new contact presses, and slides as its bodies move.

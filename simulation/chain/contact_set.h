@@ -22,6 +22,8 @@ struct ContactRows {
   double lower[3], upper[3];
   RowState state[3];  ///< at the end of the step: where the same contact starts in the next
   int core_row[3];    ///< number in the core, -1 where the force is given
+  bool soft[3];       ///< its softness is a good part of the diagonal of A
+  int before[2];      ///< [body] the last contact before this one that acts on the same body, -1 if there is none
 };
 
 class ContactSet {
@@ -39,8 +41,10 @@ class ContactSet {
 
  private:
   void warmStart(ContactRows& contact, const BodyState& bodies) const;
+  void linkBodies(int body_count);
 
   std::vector<ContactRows> contacts_, before_;
+  std::vector<int> last_;  ///< of every body: the last contact that acts on it
 };
 
 }  // namespace musclesim::chain

@@ -2,56 +2,69 @@
 ///
 ///     M_b u_b - sum_i J_i,b^T y_i = g_b       for every bone b: own mass and what the chains that end on it add
 ///     sum_b J_i,b u_b + sum_j D_ij y_j = r_i  for every core row i: start balls, skeleton joints, free contact rows
-/// Bones couple only through rows, so M = block diagonal and  (D + J M^-1 J^T) y = r - J M^-1 g  is symmetric positive definite.
+/// Bones couple only through rows. A bone on which few rows act is eliminated first: D += J_b M_b^-1 J_b^T, r -= J_b M_b^-1 g_b. It
+/// connects all rows that act on it. A bone on which many rows act is kept as six unknowns, because they mostly have nothing else in
+/// common. What remains is quasi-definite,
+///     [D  J; J^T  -M] (y, u) = (r, -g),
+/// and is factored in the order: rows of the band, kept bones, further rows.
 #pragma once
 
 #include <vector>
 
 #include "body_state.h"
-#include "dense_cholesky.h"
+#include "tiled_matrix.h"
 
 namespace musclesim::chain {
 
 class SkeletonCore {
  public:
+  /// Rows are numbered 0 .. band - 1 (the band), then the further rows.
+  struct Layout {
+    int row_count = 0, band = 0;
+    std::vector<char> kept;  ///< of every bone: it is not eliminated first
+  };
   /// Starts a new system; everything is 0.
+  void reset(const Layout& layout);
+  /// The same without a band and kept bones.
   void reset(int bone_count, int row_count);
 
-  void addBone(int bone, const Matrix6& mass, const Vector6& momentum) {
-    bones_[static_cast<std::size_t>(bone)].mass += mass;
-    bones_[static_cast<std::size_t>(bone)].velocity += momentum;
-  }
+  void addBone(int bone, const Matrix6& mass, const Vector6& momentum);
   void addMomentum(int bone, const Vector6& momentum) { bones_[static_cast<std::size_t>(bone)].velocity += momentum; }
-  void addBlock(int row, int column, double value) { rows_.add(row, column, value); }
-  void addRight(int row, double value) { force_[static_cast<std::size_t>(row)] += value; }
+  void addBlock(int row, int column, double value) { matrix_.add(place(row), place(column), value); }
+  void addRight(int row, double value) { solution_[static_cast<std::size_t>(place(row))] += value; }
   /// Adds to J_row,bone; bone -1 does not move.
   void couple(int row, int bone, const double jacobian[6]);
 
   void solve();
   const Vector6& velocity(int bone) const { return bones_[static_cast<std::size_t>(bone)].velocity; }
-  double force(int row) const { return force_[static_cast<std::size_t>(row)]; }
+  double force(int row) const { return solution_[static_cast<std::size_t>(place(row))]; }
 
  private:
   /// Rows that act on a bone are numbered as they come; component i of row c stands at jacobian[i * stride + c].
   struct BoneSystem {
-    Matrix6 mass;      ///< then its Cholesky factor L
-    Vector6 velocity;  ///< first g, then u
-    Vector6 reduced;   ///< L^-1 g
+    int kept_place = -1;  ///< where a kept bone's six unknowns stand
+    Matrix6 mass;         ///< then its Cholesky factor L
+    Vector6 velocity;     ///< first g, then u
+    Vector6 reduced;      ///< L^-1 g
     std::vector<int> rows;
     std::vector<double> jacobian;  ///< J^T, then L^-1 J^T
   };
+  int place(int row) const { return row < band_ ? row : row + kept_unknowns_; }
+  void reserve(std::size_t bones, std::size_t rows);
   void factorise(BoneSystem& bone) const;
   void reduce(BoneSystem& bone);
   void addProducts(const BoneSystem& bone);
+  void enter(const BoneSystem& bone);
   void substitute(BoneSystem& bone) const;
 
+  int band_ = 0, kept_unknowns_ = 0;
   std::vector<BoneSystem> bones_;
   int bone_count_ = 0;
   std::size_t stride_ = 0;        ///< of the bones' Jacobians
   std::vector<int> place_;        ///< of a row among a bone's rows, bone * stride + row; -1: it does not act there
   std::vector<double> products_;  ///< of one row with all rows before it
-  DenseCholesky rows_;
-  std::vector<double> force_;  ///< first r, then y
+  TiledMatrix matrix_;
+  std::vector<double> solution_;  ///< first (r, -g), then (y, u); filled up to whole tiles
 };
 
 }  // namespace musclesim::chain

@@ -9,6 +9,9 @@ namespace musclesim::chain {
 
 namespace {
 
+/// Least share of a contact's softness in its diagonal of A that makes it a soft one.
+constexpr double least_softness_ratio = 1e-3;
+
 /// Torque of Lacoursiere's implicit gyroscopic term as ODE adds it: (I (I - h [L]x)^-1 - 1) L / h, L = I w.
 Vector gyroscopicTorque(const Eigen::Matrix3d& inertia, const Vector& spin, double h_s) {
   const Vector l = inertia * spin;
@@ -33,36 +36,47 @@ StepProblem::StepProblem(Model& model) : model_(model) {
     return model.chains[static_cast<std::size_t>(a)].beadCount() < model.chains[static_cast<std::size_t>(b)].beadCount();
   });
   chains_.resize(order.size());
-  for (std::size_t i = 0; i < order.size(); i += lane_count) {
-    int counts[lane_count] = {};
-    for (std::size_t lane = 0; lane < lane_count && i + lane < order.size(); ++lane) {
-      const auto number = static_cast<std::size_t>(order[i + lane]);
+  // The incomplete bundle takes the shortest.
+  for (std::size_t first = 0, end = (order.size() + lane_count - 1) % lane_count + 1; first < order.size();
+       first = end, end += lane_count) {
+    std::array<int, lane_count> counts = {};
+    for (std::size_t lane = 0; first + lane < end; ++lane) {
+      const auto number = static_cast<std::size_t>(order[first + lane]);
       counts[lane] = model.chains[number].beadCount();
-      chains_[number].pair = static_cast<int>(pairs_.size());
+      chains_[number].bundle = static_cast<int>(bundles_.size());
       chains_[number].lane = static_cast<int>(lane);
       chains_[number].joints.resize(model.chains[number].joints.size());
     }
-    pairs_.emplace_back(counts[0], counts[1]);
+    bundles_.emplace_back(counts);
   }
-  pair_dirty_.resize(pairs_.size());
+  bundle_dirty_.resize(bundles_.size());
   skeleton_.resize(model.skeleton.size());
   fixed_.resize(model.fixed.size());
   bones_.resize(model.bones.size());
+  // With fewer chains it costs less to eliminate the bones.
+  constexpr std::size_t chains_per_bone = 2;
+  keeps_bones_ = chains_.size() > chains_per_bone * (bones_.size() - fixed_.size());
+  layout_.kept.assign(bones_.size(), keeps_bones_ ? 1 : 0);
+  for (const JointModel& joint : model.fixed) layout_.kept[static_cast<std::size_t>(joint.body[0])] = 0;
   reserve();
 }
 
 /// Memory for as many contacts as a robot can be expected to have, so that steps need not ask for it.
 void StepProblem::reserve() {
-  constexpr int contacts_per_chain = 12;
-  const int contact_count = 100 + 8 * static_cast<int>(chains_.size());
+  constexpr int contacts_per_chain = 20;
+  const int contact_count = 100 + contacts_per_chain * static_cast<int>(chains_.size());
   const auto links = std::accumulate(chains_.begin(), chains_.end(), std::size_t{0},
                                      [](std::size_t sum, const ChainState& chain) { return sum + chain.joints.size(); });
   contacts_.reserve(contact_count);
   rows_.reserve(links + skeleton_.size() + 3 * contact_count);
   places_.reserve(rows_.capacity());
-  for (ChainState& chain : chains_) chain.border_rows.reserve(3 + 3 * contacts_per_chain);
-  for (ChainPair& pair : pairs_) pair.reserve(3 + 3 * contacts_per_chain);
-  core_.reset(model_.boneCount(), 3 * static_cast<int>(chains_.size()) + 6 * static_cast<int>(skeleton_.size()) + contact_count);
+  for (ChainState& chain : chains_) {
+    chain.border_rows.reserve(3 + 3 * contacts_per_chain);
+    chain.border_contacts.reserve(3 * contacts_per_chain);
+  }
+  for (ChainBundle& bundle : bundles_) bundle.reserve(3 + 3 * contacts_per_chain);
+  layout_.row_count = 3 * static_cast<int>(chains_.size()) + 6 * static_cast<int>(skeleton_.size()) + contact_count;
+  core_.reset(layout_);
 }
 
 bool StepProblem::begin(const Conditions& conditions, const std::vector<ContactPoint>& contacts) {
@@ -71,10 +85,11 @@ bool StepProblem::begin(const Conditions& conditions, const std::vector<ContactP
   addLoads();
   makeJointRows();
   if (!contacts_.make(contacts, model_.bodies, conditions.friction_force, conditions.contact_reduction / conditions.h_s)) return false;
-  setUpPairs();
+  setUpBundles();
   setUpBones();
   collectRows();
-  std::fill(pair_dirty_.begin(), pair_dirty_.end(), char{1});
+  arrangeCore();
+  std::fill(bundle_dirty_.begin(), bundle_dirty_.end(), char{1});
   return true;
 }
 
@@ -136,26 +151,38 @@ void StepProblem::addAxisForce(const JointModel& joint, const JointRows& rows, d
   }
 }
 
-void StepProblem::setUpPairs() {
+void StepProblem::setUpBundles() {
   const double per_h = 1 / conditions_.h_s;
   for (std::size_t c = 0; c < chains_.size(); ++c) {
     const Chain& chain = model_.chains[c];
     ChainState& state = chains_[c];
-    ChainPair& pair = pairs_[static_cast<std::size_t>(state.pair)];
+    ChainBundle& bundle = bundles_[static_cast<std::size_t>(state.bundle)];
     const BeadInertia inertia = {1 / chain.bead_mass_g, 1 / chain.bead_inertia};
-    pair.setInertia(state.lane, inertia);
+    bundle.setInertia(state.lane, inertia);
     for (int k = 0; k < chain.beadCount(); ++k) {
-      pair.setJoint(state.lane, k, state.joints[static_cast<std::size_t>(k)].rows, conditions_.h_s);
+      bundle.setJoint(state.lane, k, state.joints[static_cast<std::size_t>(k)].rows, conditions_.h_s);
       const BodyMotion& motion = model_.bodies[chain.first_bead + k];
       Vector6 a;
       a << per_h * motion.velocity + inertia.per_mass * motion.force, per_h * motion.spin + inertia.per_inertia * motion.torque;
-      pair.setFreeMotion(state.lane, k, a);
+      bundle.setFreeMotion(state.lane, k, a);
     }
+    setUpStart(c);
   }
-  for (ChainPair& pair : pairs_) pair.makeBlocks();
+  for (ChainBundle& bundle : bundles_) bundle.makeBlocks();
 }
 
-/// M = diag(m, R I R^T), g = M v/h + f; a fixation adds J^T (h/cfm) J and J^T (h/cfm) c/h.
+void StepProblem::setUpStart(std::size_t number) {
+  ChainState& state = chains_[number];
+  const JointRows& start = state.start.rows;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j <= i; ++j)
+      state.start_block(i, j) = state.start_block(j, i) =
+          throughBead(model_.chains[number].first_bead, start.jacobian[0][i], start.jacobian[0][j]);
+    state.start_block(i, i) += start.softness[i] / conditions_.h_s;
+  }
+}
+
+/// M = diag(m, R I R^T), g = M v/h + f; a fixation, whose J is 1, adds h/cfm and (h/cfm) c/h.
 void StepProblem::setUpBones() {
   const double per_h = 1 / conditions_.h_s;
   for (int i = 0; i < model_.boneCount(); ++i) {
@@ -174,10 +201,9 @@ void StepProblem::setUpBones() {
     BoneState& state = bones_[static_cast<std::size_t>(model_.fixed[f].body[0])];
     const JointRows& rows = fixed_[f].rows;
     for (int row = 0; row < 6; ++row) {
-      const Eigen::Map<const Vector6> j(rows.jacobian[0][row]);
       const double stiffness = conditions_.h_s / rows.softness[row];
-      state.mass += stiffness * j * j.transpose();
-      state.momentum += stiffness * rows.velocity[row] * per_h * j;
+      state.mass(row, row) += stiffness;
+      state.momentum[row] += stiffness * rows.velocity[row] * per_h;
     }
   }
 }
@@ -214,13 +240,23 @@ double StepProblem::diagonalOf(const ContactRows& contact, int row) const {
   return sum;
 }
 
+void StepProblem::arrangeCore() {
+  order_.reset(static_cast<int>(chains_.size()));
+  if (!keeps_bones_) return;
+  for (const ContactRows& contact : contacts_.all()) {
+    const int chains[2] = {model_.placeOf(contact.body[0]).chain, model_.placeOf(contact.body[1]).chain};
+    if (chains[0] >= 0 && chains[1] >= 0) order_.connect(chains[0], chains[1]);
+  }
+  order_.arrange();
+}
+
 void StepProblem::collectRows() {
   rows_.clear();
   places_.clear();
   for (std::size_t c = 0; c < chains_.size(); ++c)
     for (std::size_t k = 0; k + 1 < chains_[c].joints.size(); ++k)
       collectRow(chains_[c].joints[k], {RowKind::chain_joint, static_cast<int>(c), static_cast<int>(k)},
-                 pairs_[static_cast<std::size_t>(chains_[c].pair)].axisDiagonal(chains_[c].lane, static_cast<int>(k)));
+                 bundles_[static_cast<std::size_t>(chains_[c].bundle)].axisDiagonal(chains_[c].lane, static_cast<int>(k)));
   for (std::size_t i = 0; i < skeleton_.size(); ++i) {
     double diagonal = skeleton_[i].rows.softness[5] / conditions_.h_s;
     for (int side = 0; side < 2; ++side) {
@@ -233,13 +269,14 @@ void StepProblem::collectRows() {
     collectRow(skeleton_[i], {RowKind::skeleton_joint, static_cast<int>(i), 0}, diagonal);
   }
   for (std::size_t i = 0; i < contacts_.all().size(); ++i) {
-    const ContactRows& contact = contacts_.all()[i];
+    ContactRows& contact = contacts_.all()[i];
     for (int row = 0; row < contact.row_count; ++row) {
       BoundedRow bounded;
       bounded.lower = contact.lower[row];
       bounded.upper = contact.upper[row];
       bounded.state = contact.state[row];
       bounded.diagonal = diagonalOf(contact, row);
+      contact.soft[row] = softnessOfContact(row) / conditions_.h_s > least_softness_ratio * bounded.diagonal;
       bounded.group = static_cast<int>(chains_.size() + skeleton_.size() + i);
       rows_.push_back(bounded);
       places_.push_back({RowKind::contact, static_cast<int>(i), row});
@@ -249,7 +286,7 @@ void StepProblem::collectRows() {
 
 void StepProblem::changed(int row) {
   const RowPlace& place = places_[static_cast<std::size_t>(row)];
-  auto touch = [&](int chain) { pair_dirty_[static_cast<std::size_t>(chains_[static_cast<std::size_t>(chain)].pair)] = 1; };
+  auto touch = [&](int chain) { bundle_dirty_[static_cast<std::size_t>(chains_[static_cast<std::size_t>(chain)].bundle)] = 1; };
   if (place.kind == RowKind::chain_joint) return touch(place.owner);
   if (place.kind == RowKind::skeleton_joint) return;
   for (const int body : contacts_.all()[static_cast<std::size_t>(place.owner)].body)
@@ -262,7 +299,7 @@ void StepProblem::end(std::vector<Vector6>& u) {
   for (std::size_t c = 0; c < chains_.size(); ++c)
     for (int k = 0; k < model_.chains[c].beadCount(); ++k)
       u[static_cast<std::size_t>(model_.chains[c].first_bead + k)] =
-          pairs_[static_cast<std::size_t>(chains_[c].pair)].velocity(chains_[c].lane, k);
+          bundles_[static_cast<std::size_t>(chains_[c].bundle)].velocity(chains_[c].lane, k);
 }
 
 void StepProblem::forget() {

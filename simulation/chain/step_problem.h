@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "box_active_set.h"
-#include "chain_pair.h"
+#include "chain_bundle.h"
 #include "contact_set.h"
+#include "core_order.h"
 #include "model.h"
 #include "skeleton_core.h"
 
@@ -41,9 +42,14 @@ class StepProblem final : public BoxProblem {
   void solve(std::vector<BoundedRow>& rows) override;
   void changed(int row) override;
   double forceTolerance() const override { return 1e-10 * force_scale_; }
-  double slackTolerance() const override { return 1e-10 * velocity_scale_; }
+  double slackTolerance() const override { return 1e-12 * velocity_scale_; }
 
  private:
+  enum class RowKind : signed char { chain_joint, skeleton_joint, contact };
+  struct RowPlace {
+    RowKind kind;
+    int owner, part;  ///< chain and joint; skeleton joint; contact and direction
+  };
   /// A joint's rows and the state of its bounded row.
   struct JointState {
     JointRows rows;
@@ -55,43 +61,50 @@ class StepProblem final : public BoxProblem {
     bool axisFree() const { return rows.row_count == 6 && state == RowState::free; }
   };
   struct ChainState {
-    int pair, lane;
+    int bundle, lane;
     std::vector<JointState> joints;
     JointState start;
     std::vector<int> border_rows;  ///< core rows of its border: the start ball's, then free contact rows
+    std::vector<RowPlace> border_contacts;
+    bool start_in_band[3];
+    Eigen::Matrix3d start_block;  ///< J S J^T + cfm/h of the ball at the start
   };
   struct BoneState {
     Matrix6 mass;      ///< with what a fixation adds
     Vector6 momentum;  ///< M v/h + f
     double per_mass, per_inertia;
   };
-  enum class RowKind : signed char { chain_joint, skeleton_joint, contact };
-  struct RowPlace {
-    RowKind kind;
-    int owner, part;  ///< chain and joint; skeleton joint; contact and direction
-  };
 
   void reserve();
   void addLoads();
   void makeJointRows();
   void addAxisForce(const JointModel& joint, const JointRows& rows, double force);
-  void setUpPairs();
+  void setUpBundles();
+  void setUpStart(std::size_t number);
   void setUpBones();
+  void arrangeCore();
   void collectRows();
   void collectRow(JointState& joint, RowPlace place, double diagonal);
   double diagonalOf(const ContactRows& contact, int row) const;
 
   void takeStates(const std::vector<BoundedRow>& rows);
   void setUpBorders();
-  void setUpContactBorder(ContactRows& contact, int row);
+  void setUpContactBorder(std::size_t number, int row);
   void eliminateChains();
+  void numberRows();
+  void chooseBand();
+  void findStiffStart(std::size_t number);
+  bool isInBand(const ContactRows& contact, int row) const { return keeps_bones_ && contact.soft[row] && touchesChain(contact); }
+  bool touchesChain(const ContactRows& contact) const { return ownerOf(contact) >= 0; }
+  int ownerOf(const ContactRows& contact) const;
+  void numberContacts(int& next);
   void assembleCore();
   void addBones();
   void addChain(std::size_t number);
   void addSkeleton();
   double softnessOfContact(int row) const { return row == 0 ? conditions_.contact_softness : conditions_.world_softness; }
   void addContact(std::size_t number, int row);
-  void addContactPair(const ContactRows& contact, int row, const ContactRows& other, int other_row);
+  void addSharedBead(const ContactRows& contact, int row, int side);
   double throughBead(int body, const double first[6], const double second[6]) const;
   void substitute();
   void giveForces(std::vector<BoundedRow>& rows);
@@ -105,10 +118,12 @@ class StepProblem final : public BoxProblem {
   std::vector<ChainState> chains_;
   std::vector<JointState> skeleton_, fixed_;
   std::vector<BoneState> bones_;
-  std::vector<ChainPair> pairs_;
-  std::vector<char> pair_dirty_;
+  std::vector<ChainBundle> bundles_;
+  std::vector<char> bundle_dirty_;
+  CoreOrder order_;
+  bool keeps_bones_ = false;  ///< bones that move are unknowns of the core
   SkeletonCore core_;
-  int core_row_count_ = 0;
+  SkeletonCore::Layout layout_;
   std::vector<BoundedRow> rows_;
   std::vector<RowPlace> places_;
   double force_scale_ = 0, velocity_scale_ = 0;

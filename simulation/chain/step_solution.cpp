@@ -10,6 +10,7 @@ void StepProblem::solve(std::vector<BoundedRow>& rows) {
   takeStates(rows);
   setUpBorders();
   eliminateChains();
+  numberRows();
   assembleCore();
   core_.solve();
   substitute();
@@ -32,79 +33,135 @@ void StepProblem::takeStates(const std::vector<BoundedRow>& rows) {
 
 namespace {
 
-bool haveBodyInCommon(const ContactRows& a, const ContactRows& b) {
-  return a.body[0] == b.body[0] || a.body[0] == b.body[1] || a.body[1] == b.body[0] || a.body[1] == b.body[1];
-}
-
 double givenForce(const ContactRows& contact, int row) {
   return contact.state[row] == RowState::at_lower ? contact.lower[row] : contact.upper[row];
 }
 
 }  // namespace
 
-/// Numbers the core's rows: start balls, skeleton, free contact rows; gives the chains their border rows and the forces of rows at bounds.
+/// Gives the chains their border rows and the forces of rows at bounds.
 void StepProblem::setUpBorders() {
-  core_row_count_ = 0;
-  for (std::size_t p = 0; p < pairs_.size(); ++p) {
-    pairs_[p].clearBorder();
-    if (pair_dirty_[p]) pairs_[p].clearBeadForces();
+  for (std::size_t p = 0; p < bundles_.size(); ++p) {
+    bundles_[p].clearBorder();
+    if (bundle_dirty_[p]) bundles_[p].clearBeadForces();
   }
   for (ChainState& chain : chains_) {
-    ChainPair& pair = pairs_[static_cast<std::size_t>(chain.pair)];
-    chain.border_rows.clear();
-    for (int row = 0; row < 3; ++row) {
-      pair.addBorder(chain.lane, row, 0, chain.start.rows.jacobian[0][row]);
-      chain.border_rows.push_back(core_row_count_++);
-    }
-    if (!pair_dirty_[static_cast<std::size_t>(chain.pair)]) continue;
+    ChainBundle& bundle = bundles_[static_cast<std::size_t>(chain.bundle)];
+    chain.border_contacts.clear();
+    for (int row = 0; row < 3; ++row) bundle.addBorder(chain.lane, row, 0, chain.start.rows.jacobian[0][row]);
+    if (!bundle_dirty_[static_cast<std::size_t>(chain.bundle)]) continue;
     for (std::size_t k = 0; k + 1 < chain.joints.size(); ++k) {
       const JointState& joint = chain.joints[k];
       if (joint.axisFree())
-        pair.setFree(chain.lane, static_cast<int>(k));
+        bundle.setFree(chain.lane, static_cast<int>(k));
       else
-        pair.setForce(chain.lane, static_cast<int>(k), joint.bounded ? joint.force : 0);
+        bundle.setForce(chain.lane, static_cast<int>(k), joint.bounded ? joint.force : 0);
     }
   }
-  for (JointState& joint : skeleton_) {
-    joint.core_row = core_row_count_;
-    core_row_count_ += joint.axisFree() ? 6 : std::min(joint.rows.row_count, 5);
-  }
-  for (ContactRows& contact : contacts_.all())
-    for (int row = 0; row < contact.row_count; ++row) setUpContactBorder(contact, row);
+  for (std::size_t i = 0; i < contacts_.all().size(); ++i)
+    for (int row = 0; row < contacts_.all()[i].row_count; ++row) setUpContactBorder(i, row);
 }
 
-void StepProblem::setUpContactBorder(ContactRows& contact, int row) {
+void StepProblem::setUpContactBorder(std::size_t number, int row) {
+  const ContactRows& contact = contacts_.all()[number];
   const bool free = contact.state[row] == RowState::free;
-  contact.core_row[row] = free ? core_row_count_++ : -1;
   int column_of_first = -1;
   for (int side = 0; side < 2; ++side) {
     const auto place = model_.placeOf(contact.body[side]);
     if (place.chain < 0) continue;
     ChainState& chain = chains_[static_cast<std::size_t>(place.chain)];
-    ChainPair& pair = pairs_[static_cast<std::size_t>(chain.pair)];
+    ChainBundle& bundle = bundles_[static_cast<std::size_t>(chain.bundle)];
     if (!free) {
-      if (pair_dirty_[static_cast<std::size_t>(chain.pair)])
-        pair.addBeadForce(chain.lane, place.bead, contact.jacobian[side][row], givenForce(contact, row));
+      if (bundle_dirty_[static_cast<std::size_t>(chain.bundle)])
+        bundle.addBeadForce(chain.lane, place.bead, contact.jacobian[side][row], givenForce(contact, row));
       continue;
     }
     const bool within_chain = side == 1 && place.chain == model_.placeOf(contact.body[0]).chain;
-    const int column = within_chain ? column_of_first : static_cast<int>(chain.border_rows.size());
-    if (!within_chain) chain.border_rows.push_back(contact.core_row[row]);
+    const int column = within_chain ? column_of_first : 3 + static_cast<int>(chain.border_contacts.size());
+    if (!within_chain) chain.border_contacts.push_back({RowKind::contact, static_cast<int>(number), row});
     column_of_first = column;
-    pair.addBorder(chain.lane, column, place.bead, contact.jacobian[side][row]);
+    bundle.addBorder(chain.lane, column, place.bead, contact.jacobian[side][row]);
   }
 }
 
 void StepProblem::eliminateChains() {
-  for (std::size_t p = 0; p < pairs_.size(); ++p) {
-    if (!pair_dirty_[p]) continue;
-    pairs_[p].eliminate();
-    pair_dirty_[p] = 0;
+  for (std::size_t b = 0; b < bundles_.size(); ++b)
+    if (bundle_dirty_[b]) bundles_[b].eliminate();
+  for (std::size_t c = 0; c < chains_.size(); ++c)
+    if (bundle_dirty_[static_cast<std::size_t>(chains_[c].bundle)]) findStiffStart(c);
+  std::fill(bundle_dirty_.begin(), bundle_dirty_.end(), char{0});
+}
+
+int StepProblem::ownerOf(const ContactRows& contact) const {
+  const int first = model_.placeOf(contact.body[0]).chain, second = model_.placeOf(contact.body[1]).chain;
+  return keeps_bones_ ? order_.ownerOf(first, second) : std::max(first, second);
+}
+
+/// Numbers the core's rows: the band, further rows of chains, contacts, the skeleton.
+void StepProblem::numberRows() {
+  chooseBand();
+  int next = layout_.band = order_.rowCount();
+  for (std::size_t c = 0; c < chains_.size(); ++c) {
+    chains_[c].border_rows.clear();
+    for (const bool in_band : chains_[c].start_in_band)
+      chains_[c].border_rows.push_back(in_band ? order_.takeRow(static_cast<int>(c)) : next++);
+  }
+  numberContacts(next);
+  for (JointState& joint : skeleton_) {
+    joint.core_row = next;
+    next += joint.axisFree() ? 6 : std::min(joint.rows.row_count, 5);
+  }
+  layout_.row_count = next;
+  for (ChainState& chain : chains_)
+    for (const RowPlace& place : chain.border_contacts)
+      chain.border_rows.push_back(contacts_.all()[static_cast<std::size_t>(place.owner)].core_row[place.part]);
+}
+
+/// Into the band: what stands before the bones. Elsewhere rows that are nearly stiff while all bones are held.
+void StepProblem::chooseBand() {
+  order_.clearRows();
+  for (std::size_t c = 0; c < chains_.size(); ++c) {
+    order_.addRows(static_cast<int>(c), static_cast<int>(std::count(chains_[c].start_in_band, chains_[c].start_in_band + 3, true)));
+  }
+  for (const ContactRows& contact : contacts_.all())
+    for (int row = 0; row < contact.row_count; ++row)
+      if (contact.state[row] == RowState::free && isInBand(contact, row)) order_.addRows(ownerOf(contact), 1);
+  order_.number();
+}
+
+/// A stretched muscle whose joints stick is a rod: its start cannot move along it while its end is held. Elimination with the largest pivot
+/// first tells which rows are left with none.
+void StepProblem::findStiffStart(std::size_t number) {
+  constexpr double least_pivot_ratio = 1e-4;
+  ChainState& state = chains_[number];
+  std::fill_n(state.start_in_band, 3, keeps_bones_);
+  if (!keeps_bones_) return;
+  const ChainBundle& bundle = bundles_[static_cast<std::size_t>(state.bundle)];
+  Eigen::Matrix3d d = state.start_block;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) d(i, j) -= bundle.borderBlock(state.lane, i, j);
+  const double least_pivot = least_pivot_ratio * d.diagonal().maxCoeff();
+  bool done[3] = {};
+  for (int step = 0; step < 3; ++step) {
+    int p = -1;
+    for (int i = 0; i < 3; ++i)
+      if (!done[i] && (p < 0 || d(i, i) > d(p, p))) p = i;
+    done[p] = true;
+    state.start_in_band[p] = d(p, p) > least_pivot;
+    if (state.start_in_band[p]) d -= (d.col(p) * d.row(p) / d(p, p)).eval();
   }
 }
 
+void StepProblem::numberContacts(int& next) {
+  for (ContactRows& contact : contacts_.all())
+    for (int row = 0; row < contact.row_count; ++row) {
+      const bool free = contact.state[row] == RowState::free;
+      contact.core_row[row] = !free ? -1 : isInBand(contact, row) ? order_.takeRow(ownerOf(contact)) : next++;
+    }
+}
+
 void StepProblem::assembleCore() {
-  core_.reset(model_.boneCount(), core_row_count_);
+  core_.reset(layout_);
   addBones();
   for (std::size_t c = 0; c < chains_.size(); ++c) addChain(c);
   addSkeleton();
@@ -133,26 +190,25 @@ void StepProblem::addBones() {
 void StepProblem::addChain(std::size_t number) {
   const ChainState& state = chains_[number];
   const Chain& chain = model_.chains[number];
-  const ChainPair& pair = pairs_[static_cast<std::size_t>(state.pair)];
-  const int lane = state.lane, first_row = state.border_rows[0];
+  const ChainBundle& bundle = bundles_[static_cast<std::size_t>(state.bundle)];
+  const int lane = state.lane;
+  const int* rows = state.border_rows.data();
   const double per_h = 1 / conditions_.h_s;
-  const Vector6 motion = pair.motion(lane, 0);
+  const Vector6 motion = bundle.motion(lane, 0);
   const JointRows& start = state.start.rows;
   for (int row = 0; row < 3; ++row) {
-    for (int other = 0; other <= row; ++other)
-      core_.addBlock(first_row + row, first_row + other, throughBead(chain.first_bead, start.jacobian[0][row], start.jacobian[0][other]));
-    core_.addBlock(first_row + row, first_row + row, start.softness[row] * per_h);
-    core_.addRight(first_row + row, start.velocity[row] * per_h - Eigen::Map<const Vector6>(start.jacobian[0][row]).dot(motion));
-    core_.couple(first_row + row, chain.start.body[1], start.jacobian[1][row]);
+    for (int other = 0; other <= row; ++other) core_.addBlock(rows[row], rows[other], state.start_block(row, other));
+    core_.addRight(rows[row], start.velocity[row] * per_h - Eigen::Map<const Vector6>(start.jacobian[0][row]).dot(motion));
+    core_.couple(rows[row], chain.start.body[1], start.jacobian[1][row]);
   }
   const int end_bone = chain.joints.back().body[1];
   for (int i = 0; i < static_cast<int>(state.border_rows.size()); ++i) {
     const int row = state.border_rows[static_cast<std::size_t>(i)];
-    for (int j = 0; j <= i; ++j) core_.addBlock(row, state.border_rows[static_cast<std::size_t>(j)], -pair.borderBlock(lane, i, j));
-    core_.addRight(row, -pair.borderRight(lane, i));
-    if (end_bone >= 0) core_.couple(row, end_bone, pair.boneCoupling(lane, i).data());
+    for (int j = 0; j <= i; ++j) core_.addBlock(row, state.border_rows[static_cast<std::size_t>(j)], -bundle.borderBlock(lane, i, j));
+    core_.addRight(row, -bundle.borderRight(lane, i));
+    if (end_bone >= 0) core_.couple(row, end_bone, bundle.boneCoupling(lane, i).data());
   }
-  if (end_bone >= 0) core_.addBone(end_bone, pair.boneMass(lane), pair.boneMomentum(lane));
+  if (end_bone >= 0) core_.addBone(end_bone, bundle.boneMass(lane), bundle.boneMomentum(lane));
 }
 
 void StepProblem::addSkeleton() {
@@ -196,30 +252,30 @@ void StepProblem::addContact(std::size_t number, int row) {
       continue;
     }
     const ChainState& chain = chains_[static_cast<std::size_t>(place.chain)];
-    const Vector6 motion = pairs_[static_cast<std::size_t>(chain.pair)].motion(chain.lane, place.bead);
+    const Vector6 motion = bundles_[static_cast<std::size_t>(chain.bundle)].motion(chain.lane, place.bead);
     core_.addRight(core_row, -Eigen::Map<const Vector6>(jacobian).dot(motion));
     for (int start = 0; start < 3 && place.bead == 0; ++start)
       core_.addBlock(core_row, chain.border_rows[static_cast<std::size_t>(start)],
                      throughBead(body, jacobian, chain.start.rows.jacobian[0][start]));
   }
-  for (std::size_t number_before = 0; number_before < number; ++number_before) {
-    const ContactRows& other = contacts_.all()[number_before];
-    if (!haveBodyInCommon(contact, other)) continue;
-    for (int other_row = 0; other_row < other.row_count; ++other_row) addContactPair(contact, row, other, other_row);
-  }
-  for (int other_row = 0; other_row <= row; ++other_row) addContactPair(contact, row, contact, other_row);
+  for (int side = 0; side < 2; ++side)
+    if (model_.placeOf(contact.body[side]).chain >= 0) addSharedBead(contact, row, side);
 }
 
-/// Two contact rows couple through the beads that both act on.
-void StepProblem::addContactPair(const ContactRows& contact, int row, const ContactRows& other, int other_row) {
-  if (other_row >= other.row_count || other.core_row[other_row] < 0) return;
-  for (int side = 0; side < 2; ++side) {
-    const int body = contact.body[side];
-    if (model_.placeOf(body).chain < 0) continue;
-    for (int other_side = 0; other_side < 2; ++other_side)
-      if (other.body[other_side] == body)
-        core_.addBlock(contact.core_row[row], other.core_row[other_row],
-                       throughBead(body, contact.jacobian[side][row], other.jacobian[other_side][other_row]));
+/// Contact rows couple through the bead that both act on: the rows of the same contact up to this one, and of the contacts before.
+void StepProblem::addSharedBead(const ContactRows& contact, int row, int side) {
+  const int body = contact.body[side];
+  const auto add = [&](const ContactRows& other, int other_side, int other_row) {
+    if (other.core_row[other_row] >= 0)
+      core_.addBlock(contact.core_row[row], other.core_row[other_row],
+                     throughBead(body, contact.jacobian[side][row], other.jacobian[other_side][other_row]));
+  };
+  for (int other_row = 0; other_row <= row; ++other_row) add(contact, side, other_row);
+  for (int i = contact.before[side]; i >= 0;) {
+    const ContactRows& other = contacts_.all()[static_cast<std::size_t>(i)];
+    const int other_side = other.body[0] == body ? 0 : 1;
+    for (int other_row = 0; other_row < other.row_count; ++other_row) add(other, other_side, other_row);
+    i = other.before[other_side];
   }
 }
 
@@ -227,20 +283,20 @@ void StepProblem::substitute() {
   const Vector6 rest = Vector6::Zero();
   for (std::size_t c = 0; c < chains_.size(); ++c) {
     const ChainState& chain = chains_[c];
-    ChainPair& pair = pairs_[static_cast<std::size_t>(chain.pair)];
+    ChainBundle& bundle = bundles_[static_cast<std::size_t>(chain.bundle)];
     const int end_bone = model_.chains[c].joints.back().body[1];
-    pair.setBoneVelocity(chain.lane, end_bone >= 0 ? core_.velocity(end_bone) : rest);
+    bundle.setBoneVelocity(chain.lane, end_bone >= 0 ? core_.velocity(end_bone) : rest);
     for (std::size_t i = 0; i < chain.border_rows.size(); ++i)
-      pair.setBorderForce(chain.lane, static_cast<int>(i), core_.force(chain.border_rows[i]));
+      bundle.setBorderForce(chain.lane, static_cast<int>(i), core_.force(chain.border_rows[i]));
   }
   velocity_scale_ = force_scale_ = 0;
-  for (ChainPair& pair : pairs_) {
-    pair.substitute();
-    velocity_scale_ = std::max(velocity_scale_, pair.largestVelocity());
+  for (ChainBundle& bundle : bundles_) {
+    bundle.substitute();
+    velocity_scale_ = std::max(velocity_scale_, bundle.largestVelocity());
   }
   for (int i = 0; i < model_.boneCount(); ++i)
     velocity_scale_ = std::max(velocity_scale_, core_.velocity(i).head<3>().cwiseAbs().maxCoeff());
-  for (int row = 0; row < core_row_count_; ++row) force_scale_ = std::max(force_scale_, std::abs(core_.force(row)));
+  for (int row = 0; row < layout_.row_count; ++row) force_scale_ = std::max(force_scale_, std::abs(core_.force(row)));
 }
 
 void StepProblem::giveForces(std::vector<BoundedRow>& rows) {
@@ -250,8 +306,8 @@ void StepProblem::giveForces(std::vector<BoundedRow>& rows) {
     const bool free = rows[i].state == RowState::free;
     if (place.kind == RowKind::chain_joint) {
       const ChainState& chain = chains_[owner];
-      const ChainPair& pair = pairs_[static_cast<std::size_t>(chain.pair)];
-      (free ? rows[i].force : rows[i].slack) = free ? pair.axisForce(chain.lane, place.part) : pair.axisSlack(chain.lane, place.part);
+      const ChainBundle& bundle = bundles_[static_cast<std::size_t>(chain.bundle)];
+      (free ? rows[i].force : rows[i].slack) = free ? bundle.axisForce(chain.lane, place.part) : bundle.axisSlack(chain.lane, place.part);
     } else if (place.kind == RowKind::skeleton_joint) {
       (free ? rows[i].force : rows[i].slack) = free ? core_.force(skeleton_[owner].core_row + 5) : slackOfSkeleton(owner);
     } else {
@@ -280,7 +336,7 @@ double StepProblem::alongBody(int body, const double jacobian[6]) const {
   const auto place = model_.placeOf(body);
   if (place.chain < 0) return core_.velocity(body).dot(Eigen::Map<const Vector6>(jacobian));
   const ChainState& chain = chains_[static_cast<std::size_t>(place.chain)];
-  return pairs_[static_cast<std::size_t>(chain.pair)].velocityAlong(chain.lane, place.bead, jacobian);
+  return bundles_[static_cast<std::size_t>(chain.bundle)].velocityAlong(chain.lane, place.bead, jacobian);
 }
 
 }  // namespace musclesim::chain

@@ -4,32 +4,12 @@ namespace musclesim::chain {
 
 namespace {
 
-constexpr int width = 8;
+constexpr int width = tile_width;
 
 /// Eight numbers; loaded from and stored to any address. Inlined into the functions that are compiled for several processors.
 using Wide = double __attribute__((vector_size(width * sizeof(double)), aligned(sizeof(double)), may_alias));
 
 }  // namespace
-
-MUSCLESIM_WIDE void subtractColumns(double* target, const double* const* columns, const double* factors, int group_count, int count) {
-  int i = 0;
-  for (; i + width <= count; i += width) {
-    Wide sum = *reinterpret_cast<const Wide*>(target + i);
-    for (int g = 0; g < group_count; ++g) {
-      const double* const* c = columns + 4 * g;
-      const double* f = factors + 4 * g;
-      sum -= (f[0] * *reinterpret_cast<const Wide*>(c[0] + i) + f[1] * *reinterpret_cast<const Wide*>(c[1] + i)) +
-             (f[2] * *reinterpret_cast<const Wide*>(c[2] + i) + f[3] * *reinterpret_cast<const Wide*>(c[3] + i));
-    }
-    *reinterpret_cast<Wide*>(target + i) = sum;
-  }
-  for (; i < count; ++i)
-    for (int g = 0; g < group_count; ++g) {
-      const double* const* c = columns + 4 * g;
-      const double* f = factors + 4 * g;
-      target[i] -= (f[0] * c[0][i] + f[1] * c[1][i]) + (f[2] * c[2][i] + f[3] * c[3][i]);
-    }
-}
 
 MUSCLESIM_WIDE void combineSixRows(double* result, const double* const rows[6], const double factors[6], int count) {
   const double* f = factors;
@@ -41,6 +21,67 @@ MUSCLESIM_WIDE void combineSixRows(double* result, const double* const rows[6], 
   }
   for (; i < count; ++i)
     result[i] = (f[0] * rows[0][i] + f[1] * rows[1][i]) + (f[2] * rows[2][i] + f[3] * rows[3][i]) + (f[4] * rows[4][i] + f[5] * rows[5][i]);
+}
+
+MUSCLESIM_WIDE void factoriseTile(double* a, double* pivots) {
+  Wide* const columns = reinterpret_cast<Wide*>(a);
+  for (int k = 0; k < tile_width; ++k) {
+    const double pivot = pivots[k] = columns[k][k];
+    const Wide l = columns[k] / pivot;
+    for (int c = k + 1; c < tile_width; ++c) columns[c] -= columns[k][c] * l;
+    columns[k] = l;
+  }
+}
+
+MUSCLESIM_WIDE void solveTile(double* a, double* scaled, const double* l, const double* pivots) {
+  Wide columns[tile_width];
+  for (int k = 0; k < tile_width; ++k) {
+    Wide column = reinterpret_cast<const Wide*>(a)[k];
+    for (int m = 0; m < k; ++m) column -= l[m * tile_width + k] * columns[m];
+    columns[k] = column;
+  }
+  for (int k = 0; k < tile_width; ++k) {
+    reinterpret_cast<Wide*>(scaled)[k] = columns[k];
+    reinterpret_cast<Wide*>(a)[k] = columns[k] / pivots[k];
+  }
+}
+
+MUSCLESIM_WIDE void subtractTileProducts(double* const* targets, const double* left, const double* right, int count) {
+  for (int i = 0; i < count; ++i) {
+    Wide* const target = reinterpret_cast<Wide*>(targets[i]);
+    const Wide* const columns = reinterpret_cast<const Wide*>(left + i * tile_size);
+    Wide sum[tile_width];
+    for (int c = 0; c < tile_width; ++c) sum[c] = target[c];
+    for (int k = 0; k < tile_width; ++k) {
+      const Wide column = columns[k];
+      for (int c = 0; c < tile_width; ++c) sum[c] -= right[k * tile_width + c] * column;
+    }
+    for (int c = 0; c < tile_width; ++c) target[c] = sum[c];
+  }
+}
+
+void solveLower(const double* l, double* x) {
+  for (int k = 0; k < tile_width; ++k)
+    for (int i = k + 1; i < tile_width; ++i) x[i] -= l[k * tile_width + i] * x[k];
+}
+
+void solveUpper(const double* l, double* x) {
+  for (int k = tile_width - 1; k >= 0; --k)
+    for (int i = 0; i < k; ++i) x[i] -= l[i * tile_width + k] * x[k];
+}
+
+MUSCLESIM_WIDE void subtractProduct(double* y, const double* a, const double* x) {
+  Wide sum = *reinterpret_cast<const Wide*>(y);
+  for (int k = 0; k < tile_width; ++k) sum -= x[k] * reinterpret_cast<const Wide*>(a)[k];
+  *reinterpret_cast<Wide*>(y) = sum;
+}
+
+MUSCLESIM_WIDE void subtractTransposed(double* y, const double* a, const double* x) {
+  const Wide factors = *reinterpret_cast<const Wide*>(x);
+  for (int k = 0; k < tile_width; ++k) {
+    const Wide p = factors * reinterpret_cast<const Wide*>(a)[k];
+    y[k] -= ((p[0] + p[1]) + (p[2] + p[3])) + ((p[4] + p[5]) + (p[6] + p[7]));
+  }
 }
 
 }  // namespace musclesim::chain

@@ -1,6 +1,6 @@
 /// How soon controllers bring the hand to the target, and how long they keep it there: ASM on the height task, AASM on the reaching task,
 /// random pressures on both. Resumable: every run is a line of a CSV file, and runs that are there are not repeated.
-/// Usage: height_task_study RUNS.csv [--seeds 1-20] [--duration 300] [--physics original] [--controllers asm,random,aasm,random-reach]
+/// Usage: height_task_study RUNS.csv [--seeds 1-20] [--duration 300] [--physics original] [--controllers asm,random,aasm]
 ///                          [--document docs/controlling.md --figure docs/figures/controllers.svg] [name=value ...]
 #include <fmt/format.h>
 
@@ -26,7 +26,7 @@ struct Settings {
   std::string runs_file, physics = "original";
   int first_seed = 1, last_seed = 20;
   double duration_s = 300;
-  std::vector<std::string> controllers = {"asm", "random", "aasm", "random-reach"}, parameters;
+  std::vector<std::string> controllers = {"asm", "random", "aasm"}, parameters;
   std::optional<std::string> document, figure;
 };
 
@@ -36,36 +36,61 @@ struct Run {
   double duration_s = 0, reached_s = -1, held_ratio = 0, near_ratio = 0;  ///< reached_s < 0: never
 };
 
-Run simulate(const Settings& settings, const std::string& name, int seed) {
+/// Counts how long the hand is near a target.
+class Near {
+ public:
+  Near(const Settings& settings, const std::string& name, int seed, const Vector& target)
+      : reach_(name == "aasm" || name == "random-reach"),
+        target_(target),
+        run_{settings.physics, name, seed, settings.duration_s, -1, 0, 0} {}
+
+  void look(double time_s, const Vector& hand) {
+    const double error_mm = reach_ ? (hand - target_).norm() : std::abs(hand.y() - target_.y());
+    const bool is_near = error_mm <= near_mm;
+    if (is_near && run_.reached_s < 0) run_.reached_s = time_s;
+    ++count_, near_ += is_near;
+    if (run_.reached_s >= 0) ++since_;
+  }
+  Run result() const {
+    Run run = run_;
+    run.near_ratio = static_cast<double>(near_) / static_cast<double>(count_);
+    run.held_ratio = since_ ? static_cast<double>(near_) / static_cast<double>(since_) : 0;
+    return run;
+  }
+
+ private:
+  bool reach_;
+  Vector target_;
+  Run run_;
+  long count_ = 0, near_ = 0, since_ = 0;
+};
+
+/// One run of a controller; random pressures are looked at with both tasks' targets.
+std::vector<Run> simulate(const Settings& settings, const std::string& name, int seed) {
   SimulationOptions options;
   options.physics = physicsFromName(settings.physics);
   options.seed = static_cast<std::uint64_t>(seed);
   for (const auto& assignment : settings.parameters) options.parameters.setFromText(assignment, "study");
   Simulation simulation(std::move(options));
   Robot& robot = simulation.build("arm");
-  const bool reach = name == "aasm" || name == "random-reach";
   const double interval_s = settings.physics == "original" ? 6 : 3;
-  ControllerRequest request{
-      simulation.parameters(), robot.actuatorCount(), simulation.stepS(), interval_s, simulation.seed(), reach ? "reach" : "height", {}};
-  // The random baseline has no target of its own: that of the controller it is compared with.
-  const auto reference = Controller::make(reach ? "aasm" : "asm", request);
-  const Vector target = *reference->targetMm();
-  Controller& controller = simulation.control(Controller::make(name == "random-reach" ? "random" : name, request));
-  Run run{settings.physics, name, seed, settings.duration_s, -1, 0, 0};
-  long near = 0, near_since = 0, since = 0, count = 0;
-  for (; simulation.time_s() < settings.duration_s - 1e-9; ++count) {
+  const auto request = [&](const std::string& task) {
+    return ControllerRequest{simulation.parameters(), robot.actuatorCount(), simulation.stepS(), interval_s, simulation.seed(), task, {}};
+  };
+  ControllerRequest height = request("height"), reach = request("reach");
+  std::vector<Near> near;
+  if (name != "aasm") near.emplace_back(settings, name, seed, *Controller::make("asm", height)->targetMm());
+  if (name == "random") near.emplace_back(settings, "random-reach", seed, *Controller::make("aasm", reach)->targetMm());
+  if (name == "aasm") near.emplace_back(settings, name, seed, *Controller::make("aasm", reach)->targetMm());
+  Controller& controller = simulation.control(Controller::make(name, name == "aasm" ? reach : height));
+  while (simulation.time_s() < settings.duration_s - 1e-9) {
     robot.step(controller.output(robot.getState()));
     simulation.step();
-    const Vector hand = *robot.getState().hand_mm;
-    const double error_mm = reach ? (hand - target).norm() : std::abs(hand.y() - target.y());
-    const bool is_near = error_mm <= near_mm;
-    if (is_near && run.reached_s < 0) run.reached_s = simulation.time_s();
-    near += is_near;
-    if (run.reached_s >= 0) ++since, near_since += is_near;
+    for (Near& one : near) one.look(simulation.time_s(), *robot.getState().hand_mm);
   }
-  run.near_ratio = static_cast<double>(near) / static_cast<double>(count);
-  run.held_ratio = since ? static_cast<double>(near_since) / static_cast<double>(since) : 0;
-  return run;
+  std::vector<Run> runs;
+  for (const Near& one : near) runs.push_back(one.result());
+  return runs;
 }
 
 std::vector<Run> readRuns(const std::string& file) {
@@ -191,14 +216,16 @@ int main(int argc, char** argv) {
   const Settings settings = parse(argc, argv);
   if (settings.runs_file.empty()) return 2;
   std::vector<Run> runs = readRuns(settings.runs_file);
-  for (const std::string& controller : settings.controllers)
-    for (int seed = settings.first_seed; seed <= settings.last_seed; ++seed) {
+  for (int seed = settings.first_seed; seed <= settings.last_seed; ++seed)
+    for (const std::string& controller : settings.controllers) {
       const bool known = std::any_of(runs.begin(), runs.end(), [&](const Run& run) {
         return run.physics == settings.physics && run.controller == controller && run.seed == seed && run.duration_s == settings.duration_s;
       });
       if (known) continue;
-      runs.push_back(simulate(settings, controller, seed));
-      appendRun(settings.runs_file, runs.back());
+      for (const Run& run : simulate(settings, controller, seed)) {
+        runs.push_back(run);
+        appendRun(settings.runs_file, run);
+      }
     }
   Groups groups;
   for (const Run& run : runs) groups[{run.physics, run.controller}].push_back(run);

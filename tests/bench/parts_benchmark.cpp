@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "../../simulation/chain/dense_cholesky.h"
+#include "../../simulation/chain/tiled_matrix.h"
 #include "../../simulation/contacts.h"
 #include "simulation/step_comparison.h"
 
@@ -81,14 +81,14 @@ BENCHMARK(jointRows)->Arg(10)->Arg(30);
 /// Factoring and solving the dense core of so many rows.
 void denseCore(benchmark::State& state) {
   const auto size = static_cast<int>(state.range(0));
-  chain::DenseCholesky cholesky;
-  std::vector<double> x(static_cast<std::size_t>(size), 1.0);
+  chain::TiledMatrix matrix;
+  std::vector<double> x(static_cast<std::size_t>(size) + chain::tile_width, 1.0);
   for (auto _ : state) {
-    cholesky.reset(size);
+    matrix.reset(size);
     for (int j = 0; j < size; ++j)
-      for (int i = j; i < size; ++i) cholesky.at(i, j) = i == j ? size : 1.0 / (1 + i - j);
-    cholesky.factorise();
-    cholesky.solve(x.data());
+      for (int i = j; i < size; ++i) matrix.add(i, j, i == j ? size : 1.0 / (1 + i - j));
+    matrix.factorise();
+    matrix.solve(x.data());
   }
 }
 BENCHMARK(denseCore)->Arg(51)->Arg(100)->Arg(200)->Arg(300);

@@ -1,9 +1,10 @@
 /// 20,000 internal steps of the arm under random pressures, new ones every 0.25 s, for many seeds: does any run diverge, leave a step
 /// unsolved, or allocate memory?
-/// Usage: robustness_study [--muscles 10,30] [--seeds 20] [--steps 20000] [--threads 1] [--document docs/stepper.md] [name=value ...]
-/// With several threads simulations run side by side, one per thread; allocations are counted per thread.
+/// Usage: robustness_study [--muscles 10,30] [--seeds 20] [--steps 20000] [--threads 1] [--physics si] [--document docs/stepper.md]
+/// [name=value ...] With several threads simulations run side by side, one per thread; allocations are counted per thread.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <new>
@@ -32,6 +33,17 @@ void* operator new(std::size_t size) {
 void* operator new[](std::size_t size) {
   return counted(size);
 }
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  ++allocation_count;
+  if (void* memory = std::aligned_alloc(static_cast<std::size_t>(alignment), size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+  std::free(memory);
+}
 void operator delete(void* memory) noexcept {
   std::free(memory);
 }
@@ -53,6 +65,7 @@ struct Settings {
   std::vector<int> muscle_counts = {10, 30};
   int seed_count = 20, thread_count = 1;
   long steps = 20000;
+  PhysicsKind physics = PhysicsKind::si;
   std::optional<std::string> document;
   std::vector<std::string> parameters;
 };
@@ -75,12 +88,14 @@ struct Outcome {
 Outcome run(const Settings& settings, int muscle_count, std::uint64_t seed) {
   SimulationOptions options;
   options.seed = seed;
+  options.physics = settings.physics;
   options.parameters.set("arm.muscle_count", static_cast<double>(muscle_count), "study");
   for (const auto& assignment : settings.parameters) options.parameters.setFromText(assignment, "study");
   Simulation simulation(std::move(options));
   Robot& robot = simulation.build("arm");
   RandomStream random(seed, "robustness.pressures");
-  const long hold = std::lround(0.25 / simulation.stepS()), warm_up = 20;
+  const double slowness = settings.physics == PhysicsKind::original ? std::sqrt(1000.0) : 1;
+  const long hold = std::lround(0.25 * slowness / simulation.stepS()), warm_up = 20;
   Action command(static_cast<std::size_t>(muscle_count));
   const auto& statistics = dynamic_cast<const ChainStepper&>(simulation.stepper()).statistics();
   Outcome outcome;
@@ -133,6 +148,8 @@ Settings parse(int argc, char** argv) {
       settings.seed_count = std::stoi(value());
     else if (word == "--steps")
       settings.steps = std::stol(value());
+    else if (word == "--physics")
+      settings.physics = physicsFromName(value());
     else if (word == "--threads")
       settings.thread_count = std::stoi(value());
     else if (word == "--document")

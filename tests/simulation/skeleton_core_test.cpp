@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 
+#include "../../simulation/chain/core_order.h"
 #include "musclesim/random.h"
 
 namespace musclesim::chain {
@@ -16,32 +18,75 @@ Eigen::MatrixXd randomMatrix(RandomStream& random, int rows, int columns) {
   return m;
 }
 
-TEST(DenseCholesky, SolvesAllSizes) {
-  RandomStream random(1, "cholesky");
-  DenseCholesky cholesky;
+/// Multiplies, adds the entries that are not 0, and solves.
+void expectSolved(TiledMatrix& matrix, const Eigen::MatrixXd& a, RandomStream& random) {
+  const auto n = static_cast<int>(a.rows());
+  matrix.reset(n);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j <= i; ++j)
+      if (a(i, j) != 0) matrix.add(j, i, a(i, j));
+  const Eigen::VectorXd expected = randomMatrix(random, n, 1);
+  std::vector<double> x(static_cast<std::size_t>(matrix.paddedSize()), 1e3);
+  Eigen::Map<Eigen::VectorXd>(x.data(), n) = a * expected;
+  matrix.factorise();
+  matrix.solve(x.data());
+  EXPECT_LT((Eigen::Map<Eigen::VectorXd>(x.data(), n) - expected).norm(), 1e-9 * expected.norm()) << n;
+}
+
+TEST(TiledMatrix, SolvesAllSizes) {
+  RandomStream random(1, "tiles");
+  TiledMatrix matrix;
   for (int n = 1; n < 30; ++n) {
     const Eigen::MatrixXd root = randomMatrix(random, n, n);
-    const Eigen::MatrixXd a = root * root.transpose() + Eigen::MatrixXd::Identity(n, n);
-    const Eigen::VectorXd expected = randomMatrix(random, n, 1);
-    cholesky.reset(n);
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j <= i; ++j) cholesky.add(j, i, a(i, j));
-    Eigen::VectorXd x = a * expected;
-    cholesky.factorise();
-    cholesky.solve(x.data());
-    EXPECT_LT((x - expected).norm(), 1e-9 * expected.norm()) << n;
+    expectSolved(matrix, root * root.transpose() + Eigen::MatrixXd::Identity(n, n), random);
   }
 }
 
-/// The whole system at once: [M, -J^T; J, D] (u, y) = (g, r).
-TEST(SkeletonCore, SolvesBonesAndRowsTogether) {
-  RandomStream random(2, "core");
+/// Positive rows that have nothing in common, negative ones that couple with all, positive ones that couple with these.
+TEST(TiledMatrix, LeavesOutWhatIsZero) {
+  RandomStream random(3, "tiles");
+  TiledMatrix matrix;
+  for (const int band : {0, 5, 16, 40, 80}) {
+    const int negative = 6, size = band + negative + 5;
+    Eigen::MatrixXd a = Eigen::MatrixXd::Zero(size, size);
+    for (int j = 0; j < size; ++j) {
+      for (int i = std::max(j + 1, band); i < (j < band ? band + negative : size); ++i) a(i, j) = a(j, i) = random.normal();
+      a(j, j) = j >= band && j < band + negative ? -20.0 : 20.0;
+    }
+    expectSolved(matrix, a, random);
+    const int tiles = (size + 7) / 8, band_tiles = band / 8;
+    EXPECT_LE(matrix.tileCount(), tiles * (tiles + 1) / 2 - band_tiles * (band_tiles - 1) / 2);
+  }
+}
+
+/// Four chains that all touch a fifth: that one comes last, so that nothing is filled in.
+TEST(CoreOrder, TakesChainsWithFewNeighboursFirst) {
+  CoreOrder order;
+  order.reset(5);
+  for (const int chain : {1, 2, 3, 4}) order.connect(0, chain);
+  order.arrange();
+  for (const int chain : {1, 2, 3}) EXPECT_EQ(order.ownerOf(chain, 0), 0) << chain;
+  EXPECT_EQ(order.ownerOf(2, -1), 2);
+  EXPECT_EQ(order.ownerOf(-1, -1), -1);
+  for (int chain = 0; chain < 5; ++chain) order.addRows(chain, 3);
+  order.addRows(0, 4);
+  order.number();
+  EXPECT_EQ(order.rowCount(), 19);
+  std::vector<bool> taken(19);
+  for (int chain = 0; chain < 5; ++chain)
+    for (int row = 0; row < (chain == 0 ? 7 : 3); ++row) taken[static_cast<std::size_t>(order.takeRow(chain))] = true;
+  EXPECT_EQ(std::count(taken.begin(), taken.end(), true), 19);
+}
+
+/// The whole system at once: [M, -J^T; J, D] (u, y) = (g, r). Some bones are kept, some rows stand before them.
+void expectSolved(const SkeletonCore::Layout& layout, RandomStream& random) {
   SkeletonCore core;
-  for (int repeat = 0; repeat < 3; ++repeat) {
-    const int bones = 3 + repeat, rows = 7 + 5 * repeat, size = 6 * bones + rows;
+  for (int repeat = 0; repeat < 2; ++repeat) {
+    const auto bones = static_cast<int>(layout.kept.size());
+    const int rows = layout.row_count, size = 6 * bones + rows;
     Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(size, size);
     const Eigen::VectorXd right = randomMatrix(random, size, 1);
-    core.reset(bones, rows);
+    core.reset(layout);
     for (int b = 0; b < bones; ++b) {
       const Eigen::MatrixXd root = randomMatrix(random, 6, 6);
       const Matrix6 mass = root * root.transpose() + Matrix6::Identity();
@@ -64,6 +109,27 @@ TEST(SkeletonCore, SolvesBonesAndRowsTogether) {
     const Eigen::VectorXd expected = whole.partialPivLu().solve(right);
     for (int b = 0; b < bones; ++b) EXPECT_LT((core.velocity(b) - expected.segment<6>(6 * b)).norm(), 1e-10);
     for (int row = 0; row < rows; ++row) EXPECT_NEAR(core.force(row), expected(6 * bones + row), 1e-10);
+  }
+}
+
+TEST(SkeletonCore, SolvesBonesAndRowsTogether) {
+  RandomStream random(2, "core");
+  for (int i = 0; i < 3; ++i) {
+    SkeletonCore::Layout layout;
+    layout.row_count = 7 + 5 * i;
+    layout.kept.resize(static_cast<std::size_t>(3 + i));
+    expectSolved(layout, random);
+  }
+}
+
+TEST(SkeletonCore, KeepsBonesBehindTheBand) {
+  RandomStream random(4, "core");
+  SkeletonCore::Layout layout;
+  layout.row_count = 20;
+  layout.band = 9;
+  for (const std::vector<char>& kept : {std::vector<char>{1, 0, 1}, {1, 1, 1}, {0, 0, 1}}) {
+    layout.kept = kept;
+    expectSolved(layout, random);
   }
 }
 

@@ -1,4 +1,4 @@
-/// Block elimination of two chains at once, one per lane of a Pack.
+/// Block elimination of four chains at once, one per lane of a Pack.
 ///
 /// The unknowns of a chain are the forces of its joints, node k for the joint between bead k and bead k + 1 (the last: the ball at the end
 /// on the bone B), six rows each. With the beads eliminated they couple neighbour with neighbour only:
@@ -8,6 +8,7 @@
 /// the start (3 rows) and the free rows of contacts on the beads. Elimination runs from the start to the end, A_k = L D L^T.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "body_state.h"
@@ -22,12 +23,12 @@ struct BeadInertia {
   double operator[](int component) const { return component < 3 ? per_mass : per_inertia; }
 };
 
-class ChainPair {
+class ChainBundle {
  public:
   /// Chains of different length are aligned at their ends; the shorter one's first nodes are empty. Bead counts are even; 0: empty lane.
-  ChainPair(int first_bead_count, int second_bead_count);
+  explicit ChainBundle(const std::array<int, lane_count>& bead_counts);
 
-  int beadCount(int lane) const { return bead_count_[lane]; }
+  int beadCount(int lane) const { return bead_count_[static_cast<std::size_t>(lane)]; }
   int nodeCount() const { return static_cast<int>(nodes_.size()); }
 
   /// Rows of joint k of a chain, for the step h.
@@ -112,7 +113,7 @@ class ChainPair {
   };
   struct Carry;
 
-  std::size_t index(int lane, int joint) const { return static_cast<std::size_t>(offset_[lane] + joint); }
+  std::size_t index(int lane, int joint) const { return static_cast<std::size_t>(offset_[static_cast<std::size_t>(lane)] + joint); }
   static std::size_t blockIndex(int i, int j) {
     const int high = i > j ? i : j, low = i > j ? j : i;
     return static_cast<std::size_t>(high * (high + 1) / 2 + low);
@@ -122,19 +123,21 @@ class ChainPair {
   void growBorder(int count);
   void fillBorder();
   void moveBeads();
-  void factorise(Node& node, Pack own[6][6]) const;
-  void factoriseNode(int k, const Carry& carry);
-  void reduceColumns(int k, const Carry& carry);
-  void carryOver(int k, Carry& carry);
-  void accumulateBorder(int k);
-  void leaveToBone();
-  void substituteForces();
-  void substituteVelocities();
-  void makeSlacks();
-  Pack inertia(int component) const { return component < 3 ? per_mass_ : per_inertia_; }
+  MUSCLESIM_INLINE void factorise(Node& node, Pack own[6][6]) const;
+  MUSCLESIM_INLINE void factoriseNode(int k, const Carry& carry);
+  MUSCLESIM_INLINE void reduceColumns(int k, const Carry& carry);
+  MUSCLESIM_INLINE void carryOver(int k, Carry& carry);
+  MUSCLESIM_INLINE void accumulateBorder(int k);
+  MUSCLESIM_INLINE void leaveToBone();
+  MUSCLESIM_INLINE void substituteForces();
+  MUSCLESIM_INLINE void substituteVelocities();
+  MUSCLESIM_INLINE void makeSlacks();
+  MUSCLESIM_INLINE Pack inertia(int component) const { return component < 3 ? per_mass_ : per_inertia_; }
+  /// Border rows that act on node k or on one before it.
+  bool reaches(int column, int k) const { return first_node_[static_cast<std::size_t>(column)] <= k; }
 
-  int bead_count_[lane_count];
-  int offset_[lane_count];  ///< number of empty nodes before the chain
+  std::array<int, lane_count> bead_count_;
+  std::array<int, lane_count> offset_;  ///< number of empty nodes before the chain
   int border_count_ = 0;
   std::size_t border_capacity_ = 0;
   Pack per_mass_{}, per_inertia_{};
@@ -142,6 +145,7 @@ class ChainPair {
   std::vector<Bead> beads_;
   std::vector<Column> border_;
   std::vector<BorderEntry> entries_;
+  std::vector<int> first_node_;  ///< of every border row: the first with which it couples
   std::vector<Single> border_block_, border_right_, border_force_;
   std::vector<Column> bone_coupling_;
   Matrix6 bone_mass_[lane_count];

@@ -1,4 +1,4 @@
-#include "../../simulation/chain/chain_pair.h"
+#include "../../simulation/chain/chain_bundle.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 namespace musclesim::chain {
 namespace {
 
-/// A chain of random rows, as ChainPair sees it and as one dense system
+/// A chain of random rows, as ChainBundle sees it and as one dense system
 ///     J u + cfm/h l = c/h,   u = a + S J^T l   with u of the bone and y of the border given.
 struct RandomChain {
   int beads;
@@ -43,15 +43,15 @@ struct RandomChain {
     for (int i = 0; i < 6; ++i) bone_velocity[i] = random.normal();
   }
 
-  void put(ChainPair& pair, int lane, double h_s) const {
-    pair.setInertia(lane, inertia);
+  void put(ChainBundle& bundle, int lane, double h_s) const {
+    bundle.setInertia(lane, inertia);
     for (int k = 0; k < beads; ++k) {
       const auto i = static_cast<std::size_t>(k);
-      pair.setJoint(lane, k, joints[i], h_s);
-      pair.setFreeMotion(lane, k, a[i]);
-      if (!std::isnan(given[i])) pair.setForce(lane, k, given[i]);
+      bundle.setJoint(lane, k, joints[i], h_s);
+      bundle.setFreeMotion(lane, k, a[i]);
+      if (!std::isnan(given[i])) bundle.setForce(lane, k, given[i]);
     }
-    for (int c = 0; c < 3; ++c) pair.addBorder(lane, c, 0, border[c]);
+    for (int c = 0; c < 3; ++c) bundle.addBorder(lane, c, 0, border[c]);
   }
 
   /// Velocities of all beads, by the dense system.
@@ -94,26 +94,26 @@ struct RandomChain {
   }
 };
 
-TEST(ChainPair, BothLanesMatchTheDenseSystem) {
+TEST(ChainBundle, LanesMatchTheDenseSystem) {
   RandomStream random(3, "chains");
   const double h_s = 0.01;
-  for (const auto& [first, second] : {std::pair{4, 4}, {2, 8}, {10, 6}, {6, 0}}) {
-    ChainPair pair(first, second);
+  for (const std::array<int, lane_count>& counts : {std::array{4, 4, 4, 4}, {2, 8, 4, 6}, {10, 6, 2, 0}, {6, 4, 0, 0}, {6, 0, 0, 0}}) {
+    ChainBundle bundle(counts);
     std::vector<RandomChain> chains;
-    for (const int beads : {first, second})
+    for (const int beads : counts)
       if (beads > 0) chains.emplace_back(random, beads);
-    for (std::size_t lane = 0; lane < chains.size(); ++lane) chains[lane].put(pair, static_cast<int>(lane), h_s);
-    pair.makeBlocks();
-    pair.eliminate();
+    for (std::size_t lane = 0; lane < chains.size(); ++lane) chains[lane].put(bundle, static_cast<int>(lane), h_s);
+    bundle.makeBlocks();
+    bundle.eliminate();
     for (std::size_t lane = 0; lane < chains.size(); ++lane) {
-      pair.setBoneVelocity(static_cast<int>(lane), chains[lane].bone_velocity);
-      for (int c = 0; c < 3; ++c) pair.setBorderForce(static_cast<int>(lane), c, chains[lane].border_force[c]);
+      bundle.setBoneVelocity(static_cast<int>(lane), chains[lane].bone_velocity);
+      for (int c = 0; c < 3; ++c) bundle.setBorderForce(static_cast<int>(lane), c, chains[lane].border_force[c]);
     }
-    pair.substitute();
+    bundle.substitute();
     for (std::size_t lane = 0; lane < chains.size(); ++lane) {
       const Eigen::VectorXd expected = chains[lane].velocities(h_s);
       for (int k = 0; k < chains[lane].beads; ++k)
-        EXPECT_LT((pair.velocity(static_cast<int>(lane), k) - expected.segment<6>(6 * k)).norm(), 1e-7 * expected.norm()) << k;
+        EXPECT_LT((bundle.velocity(static_cast<int>(lane), k) - expected.segment<6>(6 * k)).norm(), 1e-7 * expected.norm()) << k;
     }
   }
 }

@@ -1,15 +1,16 @@
-/// Elimination and back substitution of ChainPair.
+/// Elimination and back substitution of ChainBundle.
 #include <algorithm>
 #include <cmath>
 
-#include "chain_pair.h"
+#include "chain_bundle.h"
+#include "wide.h"
 
 namespace musclesim::chain {
 
 namespace {
 
 /// y <- L^-1 y with unit lower L.
-inline void forward(const Pack factor[6][6], Pack y[6]) {
+MUSCLESIM_INLINE void forward(const Pack factor[6][6], Pack y[6]) {
   for (int i = 1; i < 6; ++i)
     for (int j = 0; j < i; ++j) y[i] -= factor[i][j] * y[j];
 }
@@ -17,12 +18,12 @@ inline void forward(const Pack factor[6][6], Pack y[6]) {
 }  // namespace
 
 /// What node k subtracts from node k + 1.
-struct ChainPair::Carry {
+struct ChainBundle::Carry {
   Pack own[6][6] = {};
   Pack right[6] = {};
 };
 
-void ChainPair::moveBeads() {
+MUSCLESIM_WIDE void ChainBundle::moveBeads() {
   const std::size_t last = nodes_.size() - 1;
   for (std::size_t k = 0; k <= last; ++k) {
     Bead& bead = beads_[k];
@@ -35,7 +36,7 @@ void ChainPair::moveBeads() {
 }
 
 /// L D L^T of `own`, whose lower part is used up.
-void ChainPair::factorise(Node& node, Pack own[6][6]) const {
+MUSCLESIM_INLINE void ChainBundle::factorise(Node& node, Pack own[6][6]) const {
   for (int p = 0; p < 6; ++p) {
     const Pack per_pivot = 1.0 / own[p][p];
     node.per_pivot[p] = per_pivot;
@@ -48,7 +49,7 @@ void ChainPair::factorise(Node& node, Pack own[6][6]) const {
 }
 
 /// A_k' with row 5 masked, factored.
-void ChainPair::factoriseNode(int k, const Carry& carry) {
+MUSCLESIM_INLINE void ChainBundle::factoriseNode(int k, const Carry& carry) {
   Node& node = nodes_[static_cast<std::size_t>(k)];
   const Pack free = node.free;
   Pack own[6][6];
@@ -60,10 +61,10 @@ void ChainPair::factoriseNode(int k, const Carry& carry) {
 }
 
 /// L^-1 times the right side, the coupling with the next node and the border.
-void ChainPair::reduceColumns(int k, const Carry& carry) {
+MUSCLESIM_INLINE void ChainBundle::reduceColumns(int k, const Carry& carry) {
   const auto last = static_cast<int>(nodes_.size()) - 1;
   Node& node = nodes_[static_cast<std::size_t>(k)];
-  const Pack free = node.free, next_free = k < last ? nodes_[static_cast<std::size_t>(k) + 1].free : both(1);
+  const Pack free = node.free, next_free = k < last ? nodes_[static_cast<std::size_t>(k) + 1].free : all(1);
   for (int i = 0; i < 6; ++i) {
     Pack r = node.target[i] - dot(node.jacobian[0][i], beads_[static_cast<std::size_t>(k)].motion) - carry.right[i];
     if (k < last) r -= dot(node.jacobian[1][i], beads_[static_cast<std::size_t>(k) + 1].motion);
@@ -81,13 +82,14 @@ void ChainPair::reduceColumns(int k, const Carry& carry) {
   }
   Column* border = borderOf(k);
   for (int c = 0; c < border_count_; ++c) {
+    if (!reaches(c, k)) continue;
     border[c].value[5] *= free;
     forward(node.factor, border[c].value);
   }
 }
 
 /// What node k takes from node k + 1: W^T D^-1 times W, the right side and the border.
-void ChainPair::carryOver(int k, Carry& carry) {
+MUSCLESIM_INLINE void ChainBundle::carryOver(int k, Carry& carry) {
   const Node& node = nodes_[static_cast<std::size_t>(k)];
   Pack scaled[6][6];
   for (int c = 0; c < 6; ++c)
@@ -101,22 +103,25 @@ void ChainPair::carryOver(int k, Carry& carry) {
   const Column* border = borderOf(k);
   Column* next_border = borderOf(k + 1);
   for (int c = 0; c < border_count_; ++c)
-    for (int i = 0; i < 6; ++i) next_border[c].value[i] -= dot(scaled[i], border[c].value);
+    if (reaches(c, k))
+      for (int i = 0; i < 6; ++i) next_border[c].value[i] -= dot(scaled[i], border[c].value);
 }
 
-void ChainPair::accumulateBorder(int k) {
+MUSCLESIM_INLINE void ChainBundle::accumulateBorder(int k) {
   const Node& node = nodes_[static_cast<std::size_t>(k)];
   const Column* border = borderOf(k);
   for (int c = 0; c < border_count_; ++c) {
+    if (!reaches(c, k)) continue;
     Pack scaled[6];
     for (int p = 0; p < 6; ++p) scaled[p] = border[c].value[p] * node.per_pivot[p];
-    for (int d = 0; d <= c; ++d) border_block_[blockIndex(c, d)].value += dot(scaled, border[d].value);
+    for (int d = 0; d <= c; ++d)
+      if (reaches(d, k)) border_block_[blockIndex(c, d)].value += dot(scaled, border[d].value);
     border_right_[static_cast<std::size_t>(c)].value += dot(scaled, node.right);
   }
 }
 
 /// M_B += W^T D^-1 W,  g_B += W^T D^-1 right,  J_B = -W^T D^-1 border, with W = L^-1 J of the last node's three rows.
-void ChainPair::leaveToBone() {
+MUSCLESIM_INLINE void ChainBundle::leaveToBone() {
   const auto last = static_cast<int>(nodes_.size()) - 1;
   const Node& node = nodes_[static_cast<std::size_t>(last)];
   const Column* border = borderOf(last);
@@ -124,67 +129,48 @@ void ChainPair::leaveToBone() {
     Pack scaled[6];
     for (int p = 0; p < 6; ++p) scaled[p] = node.coupling[p][i] * node.per_pivot[p];
     for (int j = 0; j < 6; ++j) {
-      Pack sum = both(0);
+      Pack sum = all(0);
       for (int p = 0; p < 3; ++p) sum += scaled[p] * node.coupling[p][j];
       for (int lane = 0; lane < lane_count; ++lane) bone_mass_[lane](i, j) = sum[lane];
     }
-    Pack sum = both(0);
+    Pack sum = all(0);
     for (int p = 0; p < 3; ++p) sum += scaled[p] * node.right[p];
     for (int lane = 0; lane < lane_count; ++lane) bone_momentum_[lane][i] = sum[lane];
     for (int c = 0; c < border_count_; ++c) {
-      Pack coupling = both(0);
+      Pack coupling = all(0);
       for (int p = 0; p < 3; ++p) coupling -= scaled[p] * border[c].value[p];
       bone_coupling_[static_cast<std::size_t>(c)].value[i] = coupling;
     }
   }
 }
 
-void ChainPair::eliminate() {
-  moveBeads();
-  fillBorder();
-  Carry carry;
-  for (int k = 0; k < nodeCount(); ++k) {
-    factoriseNode(k, carry);
-    reduceColumns(k, carry);
-    accumulateBorder(k);
-    if (k + 1 < nodeCount()) carryOver(k, carry);
-  }
-  leaveToBone();
-}
-
-Vector6 ChainPair::boneCoupling(int lane, int i) const {
+Vector6 ChainBundle::boneCoupling(int lane, int i) const {
   Vector6 result;
   for (int q = 0; q < 6; ++q) result[q] = bone_coupling_[static_cast<std::size_t>(i)].value[q][lane];
   return result;
 }
 
-Vector6 ChainPair::motion(int lane, int bead) const {
+Vector6 ChainBundle::motion(int lane, int bead) const {
   Vector6 result;
   for (int q = 0; q < 6; ++q) result[q] = beads_[index(lane, bead)].motion[q][lane];
   return result;
 }
 
-Vector6 ChainPair::velocity(int lane, int bead) const {
+Vector6 ChainBundle::velocity(int lane, int bead) const {
   Vector6 result;
   for (int q = 0; q < 6; ++q) result[q] = beads_[index(lane, bead)].velocity[q][lane];
   return result;
 }
 
-double ChainPair::velocityAlong(int lane, int bead, const double jacobian[6]) const {
+double ChainBundle::velocityAlong(int lane, int bead, const double jacobian[6]) const {
   return dot(beads_[index(lane, bead)].velocity, jacobian)[lane];
 }
 
-void ChainPair::setBoneVelocity(int lane, const Vector6& u) {
+void ChainBundle::setBoneVelocity(int lane, const Vector6& u) {
   for (int q = 0; q < 6; ++q) bone_velocity_[q][lane] = u[q];
 }
 
-void ChainPair::substitute() {
-  substituteForces();
-  substituteVelocities();
-  makeSlacks();
-}
-
-void ChainPair::substituteForces() {
+MUSCLESIM_INLINE void ChainBundle::substituteForces() {
   const auto last = static_cast<int>(nodes_.size()) - 1;
   Pack following[6];
   for (int q = 0; q < 6; ++q) following[q] = bone_velocity_[q];
@@ -193,7 +179,8 @@ void ChainPair::substituteForces() {
     const Column* border = borderOf(k);
     for (int i = 0; i < 6; ++i) {
       Pack sum = node.right[i] - dot(node.coupling[i], following);
-      for (int c = 0; c < border_count_; ++c) sum -= border[c].value[i] * border_force_[static_cast<std::size_t>(c)].value;
+      for (int c = 0; c < border_count_; ++c)
+        if (reaches(c, k)) sum -= border[c].value[i] * border_force_[static_cast<std::size_t>(c)].value;
       node.force[i] = sum * node.per_pivot[i];
     }
     for (int i = 4; i >= 0; --i)
@@ -203,10 +190,10 @@ void ChainPair::substituteForces() {
 }
 
 /// u = a + S J^T l
-void ChainPair::substituteVelocities() {
+MUSCLESIM_INLINE void ChainBundle::substituteVelocities() {
   for (std::size_t k = 0; k < beads_.size(); ++k)
     for (int i = 0; i < 6; ++i) {
-      Pack sum = both(0);
+      Pack sum = all(0);
       for (int row = 0; row < 6; ++row) {
         sum += nodes_[k].jacobian[0][row][i] * nodes_[k].force[row];
         if (k > 0) sum += nodes_[k - 1].jacobian[1][row][i] * nodes_[k - 1].force[row];
@@ -221,7 +208,7 @@ void ChainPair::substituteVelocities() {
 }
 
 /// w = J u + cfm/h l - c/h of row 5
-void ChainPair::makeSlacks() {
+MUSCLESIM_INLINE void ChainBundle::makeSlacks() {
   for (std::size_t k = 0; k + 1 < nodes_.size(); ++k) {
     Node& node = nodes_[k];
     node.slack = dot(node.jacobian[0][5], beads_[k].velocity) + dot(node.jacobian[1][5], beads_[k + 1].velocity) +
@@ -229,12 +216,31 @@ void ChainPair::makeSlacks() {
   }
 }
 
-double ChainPair::largestVelocity() const {
+double ChainBundle::largestVelocity() const {
   double largest = 0;
   for (const Bead& bead : beads_)
     for (int i = 0; i < 3; ++i)
       for (int lane = 0; lane < lane_count; ++lane) largest = std::max(largest, std::abs(bead.velocity[i][lane]));
   return largest;
+}
+
+MUSCLESIM_WIDE void ChainBundle::eliminate() {
+  moveBeads();
+  fillBorder();
+  Carry carry;
+  for (int k = 0; k < nodeCount(); ++k) {
+    factoriseNode(k, carry);
+    reduceColumns(k, carry);
+    accumulateBorder(k);
+    if (k + 1 < nodeCount()) carryOver(k, carry);
+  }
+  leaveToBone();
+}
+
+MUSCLESIM_WIDE void ChainBundle::substitute() {
+  substituteForces();
+  substituteVelocities();
+  makeSlacks();
 }
 
 }  // namespace musclesim::chain

@@ -1,25 +1,27 @@
-#include "chain_pair.h"
+#include "chain_bundle.h"
 
 #include <algorithm>
 #include <cstring>
 
+#include "wide.h"
+
 namespace musclesim::chain {
 
-ChainPair::ChainPair(int first_bead_count, int second_bead_count) : bead_count_{first_bead_count, second_bead_count} {
-  const int longest = std::max(first_bead_count, second_bead_count);
-  for (int lane = 0; lane < lane_count; ++lane) offset_[lane] = longest - bead_count_[lane];
+ChainBundle::ChainBundle(const std::array<int, lane_count>& bead_counts) : bead_count_(bead_counts) {
+  const int longest = *std::max_element(bead_counts.begin(), bead_counts.end());
+  for (std::size_t lane = 0; lane < lane_count; ++lane) offset_[lane] = longest - bead_count_[lane];
   nodes_.resize(static_cast<std::size_t>(longest));
   beads_.resize(nodes_.size());
   std::memset(static_cast<void*>(nodes_.data()), 0, nodes_.size() * sizeof(Node));
   std::memset(static_cast<void*>(beads_.data()), 0, beads_.size() * sizeof(Bead));
   // Rows that hold nothing: force 0.
   for (Node& node : nodes_) {
-    node.free = both(1);
-    for (Pack& softness : node.softness) softness = both(1);
+    node.free = all(1);
+    for (Pack& softness : node.softness) softness = all(1);
   }
 }
 
-void ChainPair::setJoint(int lane, int joint, const JointRows& rows, double h_s) {
+void ChainBundle::setJoint(int lane, int joint, const JointRows& rows, double h_s) {
   Node& node = nodes_[index(lane, joint)];
   for (int body = 0; body < 2; ++body)
     for (int row = 0; row < 6; ++row)
@@ -33,17 +35,17 @@ void ChainPair::setJoint(int lane, int joint, const JointRows& rows, double h_s)
   node.given[lane] = 0;
 }
 
-void ChainPair::setInertia(int lane, const BeadInertia& inertia) {
+void ChainBundle::setInertia(int lane, const BeadInertia& inertia) {
   per_mass_[lane] = inertia.per_mass;
   per_inertia_[lane] = inertia.per_inertia;
 }
 
-void ChainPair::setFreeMotion(int lane, int bead, const Vector6& a) {
+void ChainBundle::setFreeMotion(int lane, int bead, const Vector6& a) {
   Bead& b = beads_[index(lane, bead)];
   for (int i = 0; i < 6; ++i) b.free_motion[i][lane] = a[i];
 }
 
-void ChainPair::makeBlocks() {
+MUSCLESIM_WIDE void ChainBundle::makeBlocks() {
   const std::size_t last = nodes_.size() - 1;
   for (std::size_t k = 0; k <= last; ++k) {
     Node& node = nodes_[k];
@@ -64,43 +66,43 @@ void ChainPair::makeBlocks() {
   }
 }
 
-void ChainPair::setFree(int lane, int joint) {
+void ChainBundle::setFree(int lane, int joint) {
   nodes_[index(lane, joint)].free[lane] = 1;
   nodes_[index(lane, joint)].given[lane] = 0;
 }
 
-void ChainPair::setForce(int lane, int joint, double force) {
+void ChainBundle::setForce(int lane, int joint, double force) {
   nodes_[index(lane, joint)].free[lane] = 0;
   nodes_[index(lane, joint)].given[lane] = force;
 }
 
-void ChainPair::clearBeadForces() {
+void ChainBundle::clearBeadForces() {
   for (Bead& bead : beads_)
-    for (Pack& force : bead.outer_force) force = both(0);
+    for (Pack& force : bead.outer_force) force = all(0);
 }
 
-void ChainPair::addBeadForce(int lane, int bead, const double jacobian[6], double force) {
+void ChainBundle::addBeadForce(int lane, int bead, const double jacobian[6], double force) {
   for (int i = 0; i < 6; ++i) beads_[index(lane, bead)].outer_force[i][lane] += force * jacobian[i];
 }
 
-void ChainPair::clearBorder() {
+void ChainBundle::clearBorder() {
   border_count_ = 0;
   entries_.clear();
 }
 
-void ChainPair::addBorder(int lane, int column, int bead, const double jacobian[6]) {
+void ChainBundle::addBorder(int lane, int column, int bead, const double jacobian[6]) {
   border_count_ = std::max(border_count_, column + 1);
   BorderEntry entry = {lane, column, static_cast<int>(index(lane, bead)), {}};
   std::copy_n(jacobian, 6, entry.jacobian);
   entries_.push_back(entry);
 }
 
-void ChainPair::reserve(int border_count) {
+void ChainBundle::reserve(int border_count) {
   growBorder(border_count);
   entries_.reserve(lane_count * static_cast<std::size_t>(border_count));
 }
 
-void ChainPair::growBorder(int count) {
+void ChainBundle::growBorder(int count) {
   const auto needed = static_cast<std::size_t>(count);
   if (needed <= border_capacity_) return;
   border_capacity_ = needed + 6;
@@ -109,26 +111,37 @@ void ChainPair::growBorder(int count) {
   border_right_.resize(border_capacity_);
   border_force_.resize(border_capacity_);
   bone_coupling_.resize(border_capacity_);
+  first_node_.resize(border_capacity_);
 }
 
 /// B_k,j = J_k S J_j^T for all border rows j.
-void ChainPair::fillBorder() {
+void ChainBundle::fillBorder() {
   growBorder(border_count_);
+  std::fill_n(first_node_.begin(), border_count_, nodeCount());
+  for (const BorderEntry& entry : entries_) {
+    int& first = first_node_[static_cast<std::size_t>(entry.column)];
+    first = std::min(first, std::max(0, entry.node - 1));
+  }
   for (int k = 0; k < nodeCount(); ++k)
-    for (int c = 0; c < border_count_; ++c) borderOf(k)[c] = Column{};
-  for (const BorderEntry& entry : entries_)
-    for (int side = 0; side < 2; ++side) {
-      const int k = entry.node - side;
-      if (k < 0) continue;
-      const Node& node = nodes_[static_cast<std::size_t>(k)];
+    for (int c = 0; c < border_count_; ++c)
+      if (reaches(c, k)) borderOf(k)[c] = Column{};
+  for (const BorderEntry& entry : entries_) {
+    const double per_mass = per_mass_[entry.lane], per_inertia = per_inertia_[entry.lane];
+    double scaled[6];
+    for (int i = 0; i < 6; ++i) scaled[i] = (i < 3 ? per_mass : per_inertia) * entry.jacobian[i];
+    for (int k = entry.node; k >= 0 && k >= entry.node - 1; --k) {
+      const auto& jacobian = nodes_[static_cast<std::size_t>(k)].jacobian[entry.node - k];
       Column& column = borderOf(k)[entry.column];
-      for (int row = 0; row < 6; ++row)
-        for (int i = 0; i < 6; ++i)
-          column.value[row][entry.lane] += node.jacobian[side][row][i][entry.lane] * inertia(i)[entry.lane] * entry.jacobian[i];
+      for (int row = 0; row < 6; ++row) {
+        double sum = 0;
+        for (int i = 0; i < 6; ++i) sum += jacobian[row][i][entry.lane] * scaled[i];
+        column.value[row][entry.lane] += sum;
+      }
     }
+  }
   const auto count = static_cast<std::size_t>(border_count_);
-  for (std::size_t i = 0; i < count * (count + 1) / 2; ++i) border_block_[i].value = both(0);
-  for (std::size_t i = 0; i < count; ++i) border_right_[i].value = border_force_[i].value = both(0);
+  for (std::size_t i = 0; i < count * (count + 1) / 2; ++i) border_block_[i].value = all(0);
+  for (std::size_t i = 0; i < count; ++i) border_right_[i].value = border_force_[i].value = all(0);
 }
 
 }  // namespace musclesim::chain

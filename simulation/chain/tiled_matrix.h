@@ -1,0 +1,70 @@
+/// Symmetric systems of some ten to some hundred rows, most of whose entries are 0.
+///
+/// The lower part is cut into tiles of eight by eight entries; only tiles in which something stands exist. A = L D L^T, without exchange of
+/// rows. Where the rows of one kind are positive definite among themselves and those of the other negative definite (a quasi-definite
+/// matrix) this exists in any order of the rows; the order decides how many tiles are filled in.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "wide.h"
+
+namespace musclesim::chain {
+
+class TiledMatrix {
+ public:
+  /// Memory for that many rows.
+  void reserve(int size);
+  /// Sets all entries to 0.
+  void reset(int size);
+  int size() const { return size_; }
+  /// Adds to the entry and its mirror image, which are one here.
+  void add(int row, int column, double value) { row >= column ? at(row, column) += value : at(column, row) += value; }
+
+  /// The same for entries (index, first), (index, first + 1), ..., all on one side of the diagonal.
+  void addRun(int index, int first, const double* values, int count) {
+    for (int i = 0; i < count;) {
+      const int end = std::min(count, (first + i) / tile_width * tile_width + tile_width - first);
+      const bool in_row = index >= first;
+      double* entry = in_row ? &at(index, first + i) : &at(first + i, index);
+      for (; i < end; ++i, entry += in_row ? tile_width : 1) *entry += values[i];
+    }
+  }
+
+  void factorise();
+  /// x <- A^-1 x, after factorise(). x must have paddedSize() entries; those behind size() are used.
+  void solve(double* x) const;
+  int paddedSize() const { return tile_width * tile_count_; }
+  /// Number of tiles that exist.
+  int tileCount() const { return used_; }
+
+ private:
+  /// An entry of the lower part; its tile is made if there is none.
+  double& at(int row, int column) {
+    const auto r = static_cast<unsigned>(row), c = static_cast<unsigned>(column);
+    return tile(makeTile(static_cast<int>(r / tile_width), static_cast<int>(c / tile_width)))[c % tile_width * tile_width + r % tile_width];
+  }
+  int& number(int tile_row, int tile_column) { return numbers_[static_cast<std::size_t>(tile_column * tile_count_ + tile_row)]; }
+  int number(int tile_row, int tile_column) const { return numbers_[static_cast<std::size_t>(tile_column * tile_count_ + tile_row)]; }
+  int makeTile(int tile_row, int tile_column) {
+    const int known = number(tile_row, tile_column);
+    return known >= 0 ? known : addTile(tile_row, tile_column);
+  }
+  int addTile(int tile_row, int tile_column);
+  double* tile(int number) { return entries_.data() + static_cast<std::size_t>(number) * tile_size; }
+  const double* tile(int number) const { return entries_.data() + static_cast<std::size_t>(number) * tile_size; }
+  void listColumn(int tile_column) const;
+  void eliminate(int tile_column);
+
+  int size_ = 0, tile_count_ = 0, used_ = 0;
+  std::vector<int> numbers_;               ///< of the tiles, by tile column, then tile row; -1: there is none
+  std::vector<double> entries_;            ///< tile after tile, each by columns
+  std::vector<double> pivots_;             ///< D
+  std::vector<double> scaled_;             ///< L D of one tile column
+  mutable std::vector<int> rows_;          ///< tile rows below the diagonal of one tile column
+  mutable std::vector<int> column_tiles_;  ///< their tiles
+  std::vector<double*> targets_;
+};
+
+}  // namespace musclesim::chain
