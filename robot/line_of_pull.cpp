@@ -59,27 +59,33 @@ Vector LineOfPull::velocityOf(const Point& point) {
   return fromOde(dBodyGetLinearVel(point.body)) + fromOde(dBodyGetAngularVel(point.body)).cross(rotationOf(point.body) * point.place);
 }
 
+void LineOfPull::locate() const {
+  positions_.clear();
+  for (const Point& point : points_) positions_.push_back(positionOf(point));
+}
+
 double LineOfPull::lengthMm() const {
+  locate();
   double sum_mm = 0;
-  for (std::size_t i = 0; i + 1 < points_.size(); ++i) sum_mm += (positionOf(points_[i + 1]) - positionOf(points_[i])).norm();
+  for (std::size_t i = 0; i + 1 < positions_.size(); ++i) sum_mm += (positions_[i + 1] - positions_[i]).norm();
   return sum_mm;
 }
 
 std::vector<Vector> LineOfPull::pointsMm() const {
-  std::vector<Vector> positions;
-  for (const Point& point : points_) positions.push_back(positionOf(point));
-  return positions;
+  locate();
+  return positions_;
 }
 
 Vector LineOfPull::gradient(std::size_t i) const {
-  const Vector here = positionOf(points_[i]);
+  const Vector& here = positions_[i];
   Vector sum = Vector::Zero();
-  if (i > 0) sum += (here - positionOf(points_[i - 1])).stableNormalized();
-  if (i + 1 < points_.size()) sum -= (positionOf(points_[i + 1]) - here).stableNormalized();
+  if (i > 0) sum += (here - positions_[i - 1]).stableNormalized();
+  if (i + 1 < points_.size()) sum -= (positions_[i + 1] - here).stableNormalized();
   return sum;
 }
 
 double LineOfPull::speedMmPerS() const {
+  locate();
   double speed = 0;
   for (std::size_t i = 0; i < points_.size(); ++i) speed += gradient(i).dot(velocityOf(points_[i]));
   return speed;
@@ -96,15 +102,17 @@ double LineOfPull::totalForceN(double tension_N, double maximum_length_mm, const
 
 void LineOfPull::pull(double force) const {
   if (!points_.front().connected || !points_.back().connected) return;
+  locate();
   for (std::size_t i = 0; i < points_.size(); ++i) {
     if (!points_[i].body) continue;
-    const Vector f = -force * gradient(i), x = positionOf(points_[i]);
+    const Vector f = -force * gradient(i), &x = positions_[i];
     dBodyAddForceAtPos(points_[i].body, f.x(), f.y(), f.z(), x.x(), x.y(), x.z());
   }
 }
 
 std::vector<LineOfPull::Push> LineOfPull::pushes() const {
   std::vector<Push> result;
+  locate();
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const dBodyID body = points_[i].body;
     if (!body || isFixed(body)) continue;

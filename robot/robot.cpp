@@ -10,6 +10,8 @@
 #include "musclesim/robot/elbow.h"
 #include "musclesim/robot/rig.h"
 #include "musclesim/robot/robotic_arm.h"
+#include "musclesim/robot/spring_bench.h"
+#include "musclesim/robot/wrist.h"
 #include "musclesim/simulation/simulation.h"
 
 namespace musclesim {
@@ -21,6 +23,9 @@ std::map<std::string, Robot::Registered>& Robot::registry() {
         [](Simulation& s) { return std::make_unique<RoboticArm>(s); }}},
       {"rig", {"the paper's load frame: one hanging muscle with a load", [](Simulation& s) { return std::make_unique<Rig>(s); }}},
       {"elbow", {"an antagonistic pair of muscles on one hinge", [](Simulation& s) { return std::make_unique<Elbow>(s); }}},
+      {"wrist", {"an antagonistic wrist between two stops", [](Simulation& s) { return std::make_unique<Wrist>(s); }}},
+      {"spring_bench",
+       {"one muscle that pulls a carriage against a spring", [](Simulation& s) { return std::make_unique<SpringBench>(s); }}},
   };
   return robots;
 }

@@ -36,6 +36,7 @@ CommandLine::CommandLine()
   };
   add("replay", "Plays a recording's commands through the model and compares",
       [&](CLI::App& command) { return addReplay(command, model_); });
+  add("import", "Turns a table of measurements into a recording", addImport);
   add("effects", "Lists the effects that a clean model leaves out, or describes one", addEffects);
   add("fit", "Fits force laws to measured static points", addFit);
   add("experiment", "The paper's load-frame experiment in the simulator",

@@ -29,6 +29,8 @@ Action addReplay(CLI::App& command, ModelOptions& model);
 Action addDiagnose(CLI::App& command, ModelOptions& model);
 /// `effects`: the catalogue of effects.
 Action addEffects(CLI::App& command);
+/// `import`: foreign tables become recordings.
+Action addImport(CLI::App& command);
 /// `experiment`: the load frame of the paper in the simulator.
 Action addExperiment(CLI::App& command, ModelOptions& model);
 /// `fit`: force laws from measured static points.

@@ -62,10 +62,13 @@ class LineOfPull {
   static Point pointOn(Primitive* primitive, const Vector& point_mm);
   static Vector positionOf(const Point& point);
   static Vector velocityOf(const Point& point);
-  /// d l / d x_i
+  /// Works out positions_ for the bodies' present poses.
+  void locate() const;
+  /// d l / d x_i, after locate().
   Vector gradient(std::size_t i) const;
 
   std::vector<Point> points_;
+  mutable std::vector<Vector> positions_;  ///< of the points; kept only to save memory requests
 };
 
 }  // namespace musclesim

@@ -1,0 +1,32 @@
+/// A test bench: one muscle pulls a carriage against a spring and a constant load.
+#pragma once
+
+#include "musclesim/robot/robot.h"
+
+namespace musclesim {
+
+/// The muscle lies along +x from the origin to a carriage on a frictionless slider; at its other side the carriage is pulled with
+///     R = max(0, load_N + spring_N_per_mm (reference_length_mm - l)),   l length of the muscle.
+/// The force law's rest length is rest_length_mm.
+/// Parameters: spring_bench.load_N 20, spring_bench.spring_N_per_mm 5, spring_bench.reference_length_mm 250,
+/// spring_bench.rest_length_mm 250, spring_bench.minimum_length_mm 150, spring_bench.maximum_length_mm 300,
+/// spring_bench.carriage_kg 0.5.
+class SpringBench : public Robot {
+ public:
+  explicit SpringBench(Simulation& simulation);
+  /// Frictionless equilibrium F(p, l) = R(l) between the muscle's stops; with all effects.
+  void settle(const Action& first_command) override;
+  std::string initialState() const override { return "settled"; }
+
+ private:
+  void placeCarriage(double length_mm);
+  double springN(double length_mm) const;
+
+  double load_N_, spring_N_per_mm_, reference_mm_;
+  Vector start_mm_, anchor_mm_;
+  Actuator* muscle_;
+  Actuator* spring_;
+  Primitive* carriage_;
+};
+
+}  // namespace musclesim

@@ -1,0 +1,41 @@
+/// `musclesim import`: a foreign table becomes a recording.
+#include "musclesim/log/import.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "commands.h"
+
+namespace musclesim::program {
+
+namespace {
+
+struct ImportArguments {
+  std::string table, mapping, out;
+  bool quiet = false;
+};
+
+int importCommand(const ImportArguments& arguments) {
+  const Recording recording = importTable(arguments.table, readImportMapping(arguments.mapping));
+  if (!arguments.quiet)
+    for (const auto& note : recording.notes) std::fprintf(stderr, "musclesim: %s\n", note.c_str());
+  writeRecording(recording, arguments.out);
+  std::vector<std::string> names;
+  for (const Signal& signal : recording.signals) names.push_back(signal.name);
+  fmt::print("{}: {} rows over {:.3g} s, robot {}: {}\n", arguments.out, recording.time_s.size(),
+             recording.time_s.back() - recording.time_s.front(), recording.info.robot, fmt::join(names, ", "));
+  return done;
+}
+
+}  // namespace
+
+Action addImport(CLI::App& command) {
+  auto arguments = std::make_shared<ImportArguments>();
+  command.add_option("table", arguments->table, "Table of measurements: DATA.csv, one header row")->required();
+  command.add_option("mapping", arguments->mapping, "What its columns are: MAPPING.toml; docs/recordings.md describes it")->required();
+  command.add_option("out", arguments->out, "Recording to write: OUT.csv, with OUT.json beside it")->required();
+  command.add_flag("--quiet", arguments->quiet, "No messages on standard error except errors");
+  return [arguments] { return importCommand(*arguments); };
+}
+
+}  // namespace musclesim::program

@@ -1,0 +1,46 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "musclesim/log/recording.h"
+#include "src/program.h"
+#include "support/support.h"
+
+namespace musclesim {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ImportCommand : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("musclesim_import_command_test_" + std::to_string(getpid()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    std::ofstream(folder_ / "table.csv") << "t,u,l\n0,0.2,240\n0.5,0.2,240\n1,0.6,230\n";
+    std::ofstream(folder_ / "map.toml") << "robot = \"rig\"\n[columns]\ntime_s = \"t\"\ncommand_0 = \"u\"\nlength_0_mm = \"l\"\n";
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  fs::path folder_;
+};
+
+TEST_F(ImportCommand, MakesARecordingThatReplays) {
+  const ProgramResult made = runProgram({"import", "table.csv", "map.toml", "out.csv"}, folder_);
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_TRUE(contains(made.out, "out.csv: 3 rows over 1 s, robot rig: command_0, length_0_mm"));
+  EXPECT_EQ(readRecording((folder_ / "out.csv").string()).find("command_0")->values, (std::vector<double>{0.2, 0.2, 0.6}));
+  EXPECT_EQ(runProgram({"replay", "out.csv", "--quiet"}, folder_).status, 0);
+}
+
+TEST_F(ImportCommand, EndsWithStatus3ForABadTableAndWritesNothing) {
+  std::ofstream(folder_ / "table.csv") << "t,v\n0,0.2\n";
+  const ProgramResult made = runProgram({"import", "table.csv", "map.toml", "out.csv"}, folder_);
+  EXPECT_EQ(made.status, 3);
+  EXPECT_TRUE(contains(made.err, "has no column \"u\""));
+  EXPECT_FALSE(fs::exists(folder_ / "out.csv"));
+}
+
+}  // namespace
+}  // namespace musclesim
