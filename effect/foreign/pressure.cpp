@@ -1,6 +1,7 @@
-/// Foreign laws of the pressure stage: two lags in a row, an orifice with choked and subsonic flow (ISO 6358), a leak through an orifice, a
-/// tank that empties, the volume of an ideal braid (Chou and Hannaford 1996), a bowed calibration.
+/// Foreign laws of the pressure stage: three lags in a row, an orifice with choked and subsonic flow (ISO 6358), a leak through an orifice,
+/// a tank that empties, the volume of an ideal braid (Chou and Hannaford 1996), a bowed calibration.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "foreign.h"
@@ -12,23 +13,28 @@ namespace {
 
 constexpr double atmosphere_ratio = 0.17;
 
-/// Two lags in a row, each with half of the time constant.
-class TwoLags final : public MuscleRatioEffect {
+/// Three lags in a row: a half, a third and a sixth of the time constant.
+class ThreeLags final : public MuscleRatioEffect {
  public:
-  explicit TwoLags(const EffectValues& v) : fill_s_(v["fill_time_constant_s"] / 2), vent_s_(v["vent_time_constant_s"] / 2) {}
+  explicit ThreeLags(const EffectValues& v) : fill_s_(v["fill_time_constant_s"]), vent_s_(v["vent_time_constant_s"]) {}
 
  private:
-  static double follow(double from, double to, double tau_s, double h_s) {
-    return tau_s > 0 ? to + (from - to) * std::exp(-h_s / tau_s) : to;
-  }
   double output(double input, const Moment& moment) override {
-    first_ = follow(first_, input, input > first_ ? fill_s_ : vent_s_, moment.h_s);
-    second_ = follow(second_, first_, first_ > second_ ? fill_s_ : vent_s_, moment.h_s);
-    return second_;
+    constexpr std::array<double, 3> shares = {1.0 / 2, 1.0 / 3, 1.0 / 6};
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+      const double tau_s = shares[i] * (input > lags_[i] ? fill_s_ : vent_s_);
+      lags_[i] = tau_s > 0 ? input + (lags_[i] - input) * std::exp(-moment.h_s / tau_s) : input;
+      input = lags_[i];
+    }
+    return input;
   }
-  double settled(double input) override { return first_ = second_ = input; }
+  double settled(double input) override {
+    lags_.fill(input);
+    return input;
+  }
 
-  double fill_s_, vent_s_, first_ = 0, second_ = 0;
+  double fill_s_, vent_s_;
+  std::array<double, 3> lags_{};
 };
 
 /// Flow over largest flow through an orifice by the ratio of absolute pressures; choked below 0.3.
@@ -135,10 +141,10 @@ class BowedCalibration final : public MuscleRatioEffect {
 std::vector<ForeignEffect> pressureLaws() {
   const std::vector<ComponentKind> muscle = {ComponentKind::muscle};
   return {
-      {entry("two_lags", Stage::pressure, muscle, "two first-order lags in a row, each with half of the time constant",
-             {{"fill_time_constant_s", "s", 0, 0, 5, 0.02, 0.2, "of both together"},
-              {"vent_time_constant_s", "s", 0, 0, 5, 0.02, 0.2, "of both together"}},
-             [](const EffectValues& v) { return std::make_unique<TwoLags>(v); }),
+      {entry("three_lags", Stage::pressure, muscle, "first-order lags of tau / 2, tau / 3 and tau / 6 in a row",
+             {{"fill_time_constant_s", "s", 0, 0, 5, 0.02, 0.2, "tau, of all together"},
+              {"vent_time_constant_s", "s", 0, 0, 5, 0.02, 0.2, "tau, of all together"}},
+             [](const EffectValues& v) { return std::make_unique<ThreeLags>(v); }),
        "valve_lag"},
       {entry("orifice", Stage::pressure, muscle, "dp/dt = rate psi(pressure ratio) sat((u - p) / 0.03), psi of ISO 6358",
              {{"fill_rate_per_s", "1/s", INFINITY, 0.01, INFINITY, 0.3, 2, "choked filling"},

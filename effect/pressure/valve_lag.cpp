@@ -9,20 +9,28 @@ EffectInfo ValveLag::info() {
           .stage = Stage::pressure,
           .acts_on = {ComponentKind::muscle},
           .summary = "the valve fills and vents the muscle with a lag",
-          .equation = "dp/dt = (u - p) / tau    u delivered, p actual; tau by the sign of u - p",
+          .equation = "(1 - s) tau dv/dt = u - v, s tau dp/dt = v - p    u delivered, p actual; tau by the direction; s = second_lag_share",
           .signature = "roll-off that scales with amplitude; gone when measured pressure is fed in",
           .source = "first-order lag of valve and volume; 0.05 and 0.084 s, 0.126 and 0.089 s measured",
           .parameters = {{"fill_time_constant_s", "s", 0, 0, 5, 0.01, 0.2, "tau while u > p"},
-                         {"vent_time_constant_s", "s", 0, 0, 5, 0.01, 0.2, "tau otherwise"}},
+                         {"vent_time_constant_s", "s", 0, 0, 5, 0.01, 0.2, "tau otherwise"},
+                         {"second_lag_share", "", 0, 0, 0.5, 0, 0.5, "share of tau that is a second lag in a row", true}},
           .make = [](const EffectValues& values) {
-            return std::make_unique<ValveLag>(values["fill_time_constant_s"], values["vent_time_constant_s"]);
+            return std::make_unique<ValveLag>(values["fill_time_constant_s"], values["vent_time_constant_s"], values["second_lag_share"]);
           }};
 }
 
 double ValveLag::output(double input, const Moment& moment) {
-  const double tau_s = input > pressure_ ? fill_s_ : vent_s_;
-  pressure_ = tau_s > 0 ? input + (pressure_ - input) * std::exp(-moment.h_s / tau_s) : input;
-  return pressure_;
+  constexpr double equal = 1e-6;
+  const double first_s = (1 - share_) * (input > valve_ ? fill_s_ : vent_s_);
+  const double first_left = first_s > 0 ? std::exp(-moment.h_s / first_s) : 0, valve_off = valve_ - input;
+  valve_ = input + valve_off * first_left;
+  const double second_s = share_ * (valve_ > pressure_ ? fill_s_ : vent_s_);
+  if (second_s <= 0) return pressure_ = valve_;
+  const double second_left = std::exp(-moment.h_s / second_s), off = pressure_ - input;
+  if (std::abs(first_s - second_s) < equal * second_s) return pressure_ = input + (off + valve_off * moment.h_s / second_s) * second_left;
+  const double shared = valve_off * first_s / (first_s - second_s);
+  return pressure_ = input + shared * first_left + (off - shared) * second_left;
 }
 
 }  // namespace musclesim

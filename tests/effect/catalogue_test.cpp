@@ -30,9 +30,9 @@ TEST(Catalogue, NamesTheNearestId) {
 
 TEST(Catalogue, MissingParametersAreNeutral) {
   const EffectInfo info = effectInfo("valve_lag");
-  EXPECT_EQ(effectValues(info, {"valve_lag", "all", {{"vent_time_constant_s", 0.1}}}), (std::vector<double>{0, 0.1}));
-  EXPECT_TRUE(isNeutral(info, {0, 0}));
-  EXPECT_FALSE(isNeutral(info, {0, 0.1}));
+  EXPECT_EQ(effectValues(info, {"valve_lag", "all", {{"vent_time_constant_s", 0.1}}}), (std::vector<double>{0, 0.1, 0}));
+  EXPECT_TRUE(isNeutral(info, {0, 0, 0}));
+  EXPECT_FALSE(isNeutral(info, {0, 0.1, 0}));
 }
 
 TEST(Catalogue, RefusesUnknownParametersAndNamesThem) {

@@ -21,6 +21,13 @@ TEST(CommandQuantisation, RoundsToItsLevels) {
     EXPECT_DOUBLE_EQ(valuesOf(run, "pressure_0")[row], std::round(commands.signals[0].values[row] * 15) / 15);
 }
 
+TEST(CommandQuantisation, TruncatesToTheLevelBelow) {
+  const Recording commands = wavesFor("rig", 0.3);
+  const ReplayResult run = replayWith(commands, {{"command_quantisation", "all", {{"bits", 4.0}, {"rounding_point", 1.0}}}});
+  for (std::size_t row = 0; row < commands.time_s.size(); ++row)
+    EXPECT_DOUBLE_EQ(valuesOf(run, "pressure_0")[row], std::floor(commands.signals[0].values[row] * 15) / 15);
+}
+
 TEST(CommandDeadBand, LeavesSmallCommandsAtZero) {
   const Recording commands = commandsFor("rig", 0.3, [](double t) { return Action{0.5 * t}; });
   const ReplayResult run = replayWith(commands, {{"command_dead_band", "all", {{"threshold", 0.1}}}});

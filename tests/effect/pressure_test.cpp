@@ -22,6 +22,22 @@ TEST(ValveLag, AnswersAStepExponentially) {
   }
 }
 
+/// p = u (1 - (tau1 e^(-t / tau1) - tau2 e^(-t / tau2)) / (tau1 - tau2)); equal lags: u (1 - (1 + t / tau1) e^(-t / tau1)).
+TEST(ValveLag, MayBeTwoLagsInARow) {
+  const double tau_s = 0.12;
+  for (const double share : {0.25, 0.5}) {
+    const ReplayResult run =
+        replayWith(stepOf("rig", {0.3}, {0.5}), {{"valve_lag", "all", {{"fill_time_constant_s", tau_s}, {"second_lag_share", share}}}});
+    const double first_s = (1 - share) * tau_s, second_s = share * tau_s;
+    for (std::size_t row = 0; row < run.simulated.time_s.size(); ++row) {
+      const double t = sinceStep(run.simulated.time_s[row]);
+      const double left = share == 0.5 ? (1 + t / first_s) * std::exp(-t / first_s)
+                                       : (first_s * std::exp(-t / first_s) - second_s * std::exp(-t / second_s)) / (first_s - second_s);
+      EXPECT_NEAR(valuesOf(run, "pressure_0")[row], 0.5 - 0.2 * left, 1e-12);
+    }
+  }
+}
+
 TEST(FlowLimit, IsARampByDirection) {
   const std::vector<ActiveEffect> limit = {{"flow_limit", "all", {{"fill_rate_per_s", 1.0}, {"vent_rate_per_s", 0.5}}}};
   const ReplayResult filling = replayWith(stepOf("rig", {0.3}, {0.5}), limit), venting = replayWith(stepOf("rig", {0.5}, {0.3}), limit);
@@ -48,6 +64,12 @@ TEST(FlowLimit, IsALagWithinItsBand) {
     const double expected = t < 0.15 ? 0.3 + t : 0.5 - 0.05 * std::exp(-(t - 0.15) / 0.05);
     EXPECT_NEAR(valuesOf(run, "pressure_0")[row], expected, 1e-12);
   }
+}
+
+TEST(Leak, KnowsOtherRegulators) {
+  const ReplayResult run =
+      replayWith(stepOf("rig", {0.3}, {0.3}), {{"leak", "all", {{"leak_per_s", 2.0}, {"regulator_time_constant_s", 0.1}}}});
+  for (const double p : valuesOf(run, "pressure_0")) EXPECT_NEAR(p, 0.3 / 1.2, 1e-12);
 }
 
 TEST(Leak, HoldsLessAndFollowsItsRegulator) {
