@@ -13,12 +13,14 @@ namespace musclesim {
 
 namespace {
 
-constexpr int look_rows = 1500;          ///< the look's stretches have that many rows together
-constexpr std::size_t look_count = 3;    ///< recordings that are looked at
-constexpr std::size_t single_count = 9;  ///< suspects that are fitted
-constexpr std::size_t pair_count = 6;    ///< second effects that are fitted beside the best
-constexpr double worth_a_pair = 0.15;    ///< log misfit per affected cell above which a second effect is looked for
+constexpr int look_rows = 1500;           ///< the look's stretches have that many rows together
+constexpr std::size_t look_count = 3;     ///< recordings that are looked at
+constexpr std::size_t single_count = 14;  ///< suspects that are fitted
+constexpr std::size_t pair_count = 6;     ///< further effects that are fitted beside the best
+constexpr double worth_a_pair = 0.15;     ///< log misfit per affected cell above which a further effect is looked for
+constexpr int few_effects = 2;            ///< up to that many, the first look serves for all of them
 constexpr int first_rounds = 2, more_rounds = 6, last_rounds = 2;
+constexpr int many_rounds = 12;  ///< in place of the last rounds where many effects act together
 /// A fit goes on while its log misfit per affected cell is within that of the best: on the look, on all recordings.
 struct Reach {
   double on_look, on_all;
@@ -59,9 +61,12 @@ void Attributor::look() {
   const Eigen::VectorXd nominal = look_.predicted(Model{});
   if (!nominal.size()) throw Diverged(0, plant_.robot(), "the model without further effects cannot follow the recordings");
   look_residual_ = look_.measured() - nominal;
-  nominal_residual_ = fit_.measured() - fit_.predicted(Model{});
+  const Eigen::VectorXd everywhere = fit_.predicted(Model{});
+  nominal_residual_ = fit_.measured() - everywhere;
+  look_.goCoarse(nominal);
+  fit_.goCoarse(everywhere);
   result_.suspects = suspects(plant_, options_);
-  result_.signatures = screen(look_, result_.suspects, nominal, options_.job_count, on_simulation_);
+  result_.signatures = screen(look_, result_.suspects, nominal, Model{}, options_.job_count, on_simulation_);
 }
 
 Model Attributor::modelOf(const Explanation& explanation) const {
@@ -72,6 +77,7 @@ Model Attributor::modelOf(const Explanation& explanation) const {
     model.effects.push_back(suspect.at(explanation.z.segment(first, suspect.coordinateCount())));
     first += suspect.coordinateCount();
   }
+  model.parameters = plant_.tunedAt(explanation.tuning);
   return model;
 }
 
@@ -85,10 +91,15 @@ Eigen::VectorXd Attributor::startOf(std::size_t index, const Signature& signatur
   return z;
 }
 
-void Attributor::refit(Explanation& explanation, const Comparison& comparison, int rounds) const {
+/// The effects' coordinates and those of the numbers of the model that nobody measured, fitted together: either could stand in for the
+/// other.
+void Attributor::refit(Explanation& explanation, const Comparison& comparison, int rounds, Fidelity fidelity) const {
   const std::vector<std::size_t>& members = explanation.suspects;
+  const Eigen::Index effect_count = explanation.z.size(), tuned_count = plant_.tunedCount();
+  if (explanation.tuning.size() == 0) explanation.tuning = Eigen::VectorXd::Zero(tuned_count);
   FitProblem problem;
-  problem.start = explanation.z;
+  problem.start.resize(effect_count + tuned_count);
+  problem.start << explanation.z, explanation.tuning;
   problem.clamped = [&](const Eigen::VectorXd& z) {
     Eigen::VectorXd result = z;
     Eigen::Index first = 0;
@@ -97,21 +108,28 @@ void Attributor::refit(Explanation& explanation, const Comparison& comparison, i
       result.segment(first, count) = result_.suspects[index].clamped(z.segment(first, count));
       first += count;
     }
+    result.tail(tuned_count) = Plant::clampedTuning(z.tail(tuned_count));
     return result;
   };
   problem.predicted = [&](const Eigen::VectorXd& z) {
     on_simulation_();
-    return comparison.predicted(modelOf({members, z, {}, {}, 0, 0, 0}));
+    const Model model = modelOf({members, z.head(effect_count), {}, {}, 0, 0, 0, z.tail(tuned_count)});
+    return fidelity == Fidelity::fine ? comparison.predicted(model, fidelity) : comparison.predicted(model);
   };
   const FitResult result = fit(comparison, problem, rounds);
-  explanation.z = result.z;
-  if (rounds > 0 || explanation.half_width.size() == 0) explanation.half_width = result.half_width;
+  explanation.z = result.z.head(effect_count);
+  explanation.tuning = result.z.tail(tuned_count);
+  if (rounds > 0 || explanation.half_width.size() == 0) {
+    explanation.half_width = result.half_width.head(effect_count);
+    explanation.tuning_half_width = result.half_width.tail(tuned_count);
+  }
   explanation.residual = result.residual;
   explanation.log_misfit = result.log_misfit / comparison.affectedCells(&comparison == &fit_ ? nominal_residual_ : look_residual_);
 }
 
 /// In three rounds, each for those that the round before left within reach of the best: a few steps on the look, more steps, all
-/// recordings. Those out of reach keep what they had, with their misfit on all recordings.
+/// recordings in fine steps (coarse ones blur what lasts some milliseconds). Those out of reach keep what they had, with their misfit on
+/// all recordings.
 void Attributor::fitTogether(std::vector<Explanation> candidates, double on_look, double on_all) {
   auto forEach = [&](const std::function<bool(const Explanation&)>& chosen, const std::function<void(Explanation&)>& work) {
     parallelFor(static_cast<int>(candidates.size()), options_.job_count, [&](int i) {
@@ -124,11 +142,12 @@ void Attributor::fitTogether(std::vector<Explanation> candidates, double on_look
     for (const Explanation& candidate : candidates) best = std::min(best, candidate.log_misfit);
     return [limit = best + reach](const Explanation& candidate) { return candidate.log_misfit <= limit; };
   };
-  forEach([](const Explanation&) { return true; }, [&](Explanation& candidate) { refit(candidate, look_, first_rounds); });
-  forEach(within(on_look), [&](Explanation& candidate) { refit(candidate, look_, more_rounds); });
-  const auto is_close = within(on_all);
-  forEach([](const Explanation&) { return true; },
-          [&](Explanation& candidate) { refit(candidate, fit_, is_close(candidate) ? last_rounds : 0); });
+  const int rounds = options_.max_effects > few_effects ? many_rounds : last_rounds;
+  auto all = [](const Explanation&) { return true; };
+  forEach(all, [&](Explanation& candidate) { refit(candidate, look_, first_rounds, Fidelity::coarse); });
+  forEach(within(on_look), [&](Explanation& candidate) { refit(candidate, look_, more_rounds, Fidelity::coarse); });
+  forEach(all, [&](Explanation& candidate) { refit(candidate, fit_, 0, Fidelity::coarse); });
+  forEach(within(on_all), [&](Explanation& candidate) { refit(candidate, fit_, rounds, Fidelity::fine); });
   for (Explanation& candidate : candidates)
     if (candidate.residual.size() == fit_.size()) result_.explanations.push_back(std::move(candidate));
 }
@@ -162,29 +181,37 @@ void Attributor::fitSingles() {
   fitTogether(std::move(candidates), single_reach.on_look, single_reach.on_all);
 }
 
-/// Second effects are looked for with the first look's signatures on what the best single effect leaves.
-void Attributor::fitPairs() {
-  if (result_.explanations.empty() || result_.explanations.front().log_misfit < worth_a_pair) return;
-  const Explanation best = result_.explanations.front();
+/// A further effect is looked for beside the likeliest explanation of `count` - 1 effects, with the first look's signatures on what that
+/// one leaves. Returns whether there was anything to look for.
+bool Attributor::fitFurther(std::size_t count) {
+  const auto found =
+      std::ranges::find_if(result_.explanations, [&](const Explanation& explanation) { return explanation.suspects.size() + 1 == count; });
+  if (found == result_.explanations.end() || found->log_misfit < worth_a_pair) return false;
+  const Explanation best = *found;
   const Eigen::VectorXd predicted = look_.predicted(modelOf(best));
-  if (!predicted.size()) return;
+  if (!predicted.size()) return false;
   const Eigen::VectorXd left = look_.measured() - predicted;
-  std::vector<Signature> signatures = result_.signatures;
+  // Where many effects act, what one changes depends on the others: they are looked at again beside what has been found.
+  const bool again = options_.max_effects > few_effects;
+  std::vector<Signature> signatures =
+      again ? screen(look_, result_.suspects, predicted, modelOf(best), options_.job_count, on_simulation_) : result_.signatures;
   std::vector<double> log_misfit;
   for (std::size_t s = 0; s < signatures.size(); ++s) {
-    explain(look_, result_.suspects[s], left, signatures[s]);
-    const bool same = result_.suspects[s].info().id == result_.suspects[best.suspects.front()].info().id;
+    if (!again) explain(look_, result_.suspects[s], left, signatures[s]);
+    const bool same = std::ranges::any_of(
+        best.suspects, [&](std::size_t member) { return result_.suspects[s].info().id == result_.suspects[member].info().id; });
     log_misfit.push_back(same ? std::numeric_limits<double>::infinity() : signatures[s].log_misfit);
   }
-  const std::vector<std::size_t> chosen = survivors(log_misfit, pair_count, false);
   std::vector<Explanation> candidates;
-  for (const std::size_t index : chosen) {
-    const Eigen::VectorXd second = startOf(index, signatures[index]);
-    Eigen::VectorXd start(best.z.size() + second.size());
-    start << best.z, second;
-    candidates.push_back({{best.suspects.front(), index}, start, {}, {}, 0, 0, 0});
+  for (const std::size_t index : survivors(log_misfit, pair_count, false)) {
+    const Eigen::VectorXd further = startOf(index, signatures[index]);
+    Explanation candidate{best.suspects, Eigen::VectorXd(best.z.size() + further.size()), {}, {}, 0, 0, 0, best.tuning};
+    candidate.suspects.push_back(index);
+    candidate.z << best.z, further;
+    candidates.push_back(std::move(candidate));
   }
   fitTogether(std::move(candidates), pair_reach.on_look, pair_reach.on_all);
+  return true;
 }
 
 void Attributor::sort() {
@@ -192,47 +219,48 @@ void Attributor::sort() {
 }
 
 /// Mean over affected cells of ln(RMS / floor), where floor^2 = noise floor^2 + (mismatch * RMS without any effect)^2.
-double Attributor::weighedMisfit(const std::function<double(const Comparison::Cell&)>& mean_square, double mismatch) const {
+double Attributor::weighedMisfit(const Eigen::VectorXd& residual, double mismatch) const {
   double sum = 0;
   for (const Comparison::Cell& cell : fit_.cells()) {
     const double square = mismatch * mismatch * fit_.meanSquare(cell, nominal_residual_);
-    sum += 0.5 * std::log(std::max(1.0, mean_square(cell) / (cell.floor * cell.floor + square)));
+    sum += 0.5 * std::log(std::max(1.0, fit_.meanSquare(cell, residual) / (cell.floor * cell.floor + square)));
   }
   return sum / fit_.affectedCells(nominal_residual_);
 }
 
-double Attributor::weighedMisfit(const Eigen::VectorXd& residual, double mismatch) const {
-  return weighedMisfit([&](const Comparison::Cell& cell) { return fit_.meanSquare(cell, residual); }, mismatch);
-}
-
-/// Of a pair: what its first effect leaves alone, less what the second one gains where a wrong law is forgiven more.
+/// Of several effects: what all but the last leave, less what the last one gains where a wrong law is forgiven more.
 double Attributor::weighedMisfit(const Explanation& explanation) const {
   if (explanation.suspects.size() < 2) return weighedMisfit(explanation.residual, weighing_.law_mismatch);
-  const auto first = std::ranges::find_if(result_.explanations, [&](const Explanation& other) {
-    return other.suspects.size() == 1 && other.suspects.front() == explanation.suspects.front();
+  const auto before = std::ranges::find_if(result_.explanations, [&](const Explanation& other) {
+    return other.suspects.size() + 1 == explanation.suspects.size() &&
+           std::equal(other.suspects.begin(), other.suspects.end(), explanation.suspects.begin());
   });
-  return weighedMisfit(first->residual, weighing_.law_mismatch) - weighedMisfit(first->residual, weighing_.second_mismatch) +
+  return weighedMisfit(*before) - weighedMisfit(before->residual, weighing_.second_mismatch) +
          weighedMisfit(explanation.residual, weighing_.second_mismatch);
 }
 
-/// odds = exp(-per_misfit * weighed misfit - costs); "none of these" and "no effect" are explanations like any other.
+/// What speaks against an explanation before its misfit is looked at.
+double Attributor::priorLogOdds(const Explanation& explanation) const {
+  double odds = -weighing_.per_parameter * static_cast<double>(explanation.z.size()) -
+                weighing_.per_effect * (static_cast<double>(explanation.suspects.size()) - 1);
+  Eigen::Index first = 0;
+  for (const std::size_t index : explanation.suspects) {
+    const Suspect& suspect = result_.suspects[index];
+    odds -= weighing_.per_excess * suspect.excess(explanation.z.segment(first, suspect.coordinateCount()));
+    if (suspect.info().stage == Stage::sensor && suspect.component() == "all") odds -= weighing_.shared_sensor;
+    first += suspect.coordinateCount();
+  }
+  return odds;
+}
+
+/// odds = exp(-per_misfit * weighed misfit) * prior odds; "none of these" and "no effect" are explanations like any other.
 void Attributor::weigh() {
-  auto logOdds = [&](double misfit, Eigen::Index parameters, std::size_t effects) {
-    return -weighing_.per_misfit * misfit - weighing_.per_parameter * static_cast<double>(parameters) -
-           weighing_.per_effect * (static_cast<double>(effects) - 1);
-  };
   const double no_effect = weighedMisfit(nominal_residual_, weighing_.law_mismatch);
-  const double none = weighedMisfit(
-      [&](const Comparison::Cell& cell) {
-        const double before = std::sqrt(fit_.meanSquare(cell, nominal_residual_)), least = weighing_.none_floor_ratio * cell.floor;
-        const double after = before > least ? std::max(least, weighing_.none_ratio * before) : before;
-        return after * after;
-      },
-      weighing_.law_mismatch);
-  std::vector<double> odds = {logOdds(no_effect, 0, 1), logOdds(none, 1, 1)};
+  std::vector<double> odds = {-weighing_.per_misfit * no_effect,
+                              -weighing_.per_misfit * weighing_.none_share * no_effect - weighing_.per_parameter};
   for (Explanation& explanation : result_.explanations) {
     explanation.weighed_misfit = weighedMisfit(explanation);
-    odds.push_back(logOdds(explanation.weighed_misfit, explanation.z.size(), explanation.suspects.size()));
+    odds.push_back(-weighing_.per_misfit * explanation.weighed_misfit + priorLogOdds(explanation));
   }
   const double largest = *std::ranges::max_element(odds);
   double sum = 0;
@@ -242,12 +270,19 @@ void Attributor::weigh() {
   for (std::size_t i = 0; i < result_.explanations.size(); ++i) result_.explanations[i].probability = odds[i + 2] / sum;
 }
 
+/// The explanation that leaves least, where every effect must be worth its while.
+const Explanation& Attributor::nearest() const {
+  constexpr double worth_an_effect = 0.05;  // log misfit per affected cell
+  return *std::ranges::min_element(result_.explanations, {}, [](const Explanation& explanation) {
+    return explanation.log_misfit + worth_an_effect * static_cast<double>(explanation.suspects.size());
+  });
+}
+
 void Attributor::decide() {
   fitSingles();
   weigh();
   sort();
-  if (options_.max_effects >= 2) {
-    fitPairs();
+  for (int count = 2; count <= options_.max_effects && fitFurther(static_cast<std::size_t>(count)); ++count) {
     weigh();
     sort();
   }

@@ -21,17 +21,20 @@ struct Explanation {
   double log_misfit = 0;      ///< per affected cell
   double weighed_misfit = 0;  ///< the same with the mismatch of laws taken for noise
   double probability = 0;
+  Eigen::VectorXd tuning = {};             ///< coordinates of the numbers of the model that are fitted together with the effects
+  Eigen::VectorXd tuning_half_width = {};  ///< Plant::tunedAt tells the values
 };
 
-/// How answers are weighed. Found on practice cases with odd numbers; docs/diagnosing.md has the numbers.
+/// How answers are weighed; docs/diagnosing.md says on which cases the numbers were found.
 struct Weighing {
-  double per_misfit = 10;         ///< ln of the odds per unit of log misfit per affected cell
-  double per_parameter = 1;       ///< ln of the odds that a further parameter costs
-  double per_effect = 3.5;        ///< ln of the odds that a second effect costs
-  double law_mismatch = 0.05;     ///< share of the residual that the right cause may leave since its law is not quite ours
-  double second_mismatch = 0.15;  ///< the same where a second effect is asked for: it must explain more than the first one's wrong law
-  double none_ratio = 0.15;       ///< "none of these" stands for a cause that would leave this share of the residual,
-  double none_floor_ratio = 1.5;  ///< but not less than this multiple of the floor
+  double per_misfit = 14;         ///< ln of the odds per unit of log misfit per affected cell
+  double per_parameter = 0.35;    ///< ln of the odds that a further parameter costs
+  double per_effect = 2.2;        ///< ln of the odds that a second effect costs
+  double per_excess = 0.6;        ///< ln of the odds per e-fold by which a parameter is beyond its usual range
+  double shared_sensor = 2.5;     ///< ln of the odds of one sensor's fault against one that all sensors share
+  double law_mismatch = 0.01;     ///< share of the residual that the right cause may leave since its law is not quite ours
+  double second_mismatch = 0.13;  ///< the same where a second effect is asked for: it must explain more than the first one's wrong law
+  double none_share = 0.78;       ///< "none of these" stands for a cause that would leave this share of the log misfit without effects
 };
 
 struct Attribution {
@@ -56,17 +59,18 @@ class Attributor {
   const Eigen::VectorXd& lookResidual() const { return look_residual_; }
   const Attribution& result() const { return result_; }
   Model modelOf(const Explanation& explanation) const;
+  const Explanation& nearest() const;
 
  private:
-  void refit(Explanation& explanation, const Comparison& comparison, int rounds) const;
+  void refit(Explanation& explanation, const Comparison& comparison, int rounds, Fidelity fidelity) const;
   void fitTogether(std::vector<Explanation> candidates, double on_look, double on_all);
   std::vector<std::size_t> survivors(const std::vector<double>& log_misfit, std::size_t count, bool from_every_stage) const;
   Eigen::VectorXd startOf(std::size_t index, const Signature& signature) const;
   void fitSingles();
-  void fitPairs();
-  double weighedMisfit(const std::function<double(const Comparison::Cell&)>& mean_square, double mismatch) const;
+  bool fitFurther(std::size_t count);
   double weighedMisfit(const Eigen::VectorXd& residual, double mismatch) const;
   double weighedMisfit(const Explanation& explanation) const;
+  double priorLogOdds(const Explanation& explanation) const;
   void weigh();
   void sort();
 

@@ -25,13 +25,33 @@ Comparison::Comparison(const Plant& plant, std::vector<Stretch> stretches) : pla
   }
 }
 
+void Comparison::goCoarse(const Eigen::VectorXd& nominal) {
+  const Eigen::VectorXd coarse = predicted(Model{}, Fidelity::coarse);
+  if (coarse.size() != nominal.size() || !coarse.allFinite()) return;
+  correction_ = nominal - coarse;
+  fidelity_ = Fidelity::coarse;
+}
+
 Eigen::VectorXd Comparison::predicted(const Model& model) const {
+  if (fidelity_ == Fidelity::fine) return predicted(model, Fidelity::fine);
+  const Eigen::VectorXd coarse = predicted(model, Fidelity::coarse);
+  if (!coarse.size() || !coarse.allFinite()) return predicted(model, Fidelity::fine);
+  return coarse + correction_;
+}
+
+Eigen::VectorXd Comparison::predicted(const Model& model, Fidelity fidelity) const {
   std::vector<Prediction> predictions;
-  for (const Stretch& stretch : stretches_) predictions.push_back(plant_.predict(stretch.recording, model, stretch.end_row));
-  return predicted(predictions);
+  for (const Stretch& stretch : stretches_) predictions.push_back(plant_.predict(stretch.recording, model, stretch.end_row, fidelity));
+  return gathered(predictions);
 }
 
 Eigen::VectorXd Comparison::predicted(const std::vector<Prediction>& per_stretch) const {
+  Eigen::VectorXd result = gathered(per_stretch);
+  if (result.size() && fidelity_ == Fidelity::coarse) result += correction_;
+  return result;
+}
+
+Eigen::VectorXd Comparison::gathered(const std::vector<Prediction>& per_stretch) const {
   for (const Prediction& prediction : per_stretch)
     if (prediction.diverged) return {};
   Eigen::VectorXd result(size_);

@@ -26,8 +26,15 @@ class Comparison {
   const std::vector<Cell>& cells() const { return cells_; }
   Eigen::Index size() const { return size_; }
 
+  /// From here on predictions are coarse, corrected by what coarse steps change in the model without effects. A model that diverges in
+  /// coarse steps is simulated in fine ones. `nominal` is the fine prediction of that model.
+  void goCoarse(const Eigen::VectorXd& nominal);
+  Fidelity fidelity() const { return fidelity_; }
+
   /// What a model predicts at the compared rows; empty if it diverges on one of the stretches.
   Eigen::VectorXd predicted(const Model& model) const;
+  Eigen::VectorXd predicted(const Model& model, Fidelity fidelity) const;
+  /// The same from simulations made elsewhere with fidelity().
   Eigen::VectorXd predicted(const std::vector<Prediction>& per_stretch) const;
   const Eigen::VectorXd& measured() const { return measured_; }
 
@@ -43,7 +50,11 @@ class Comparison {
   int affectedCells(const Eigen::VectorXd& residual) const;
 
  private:
+  Eigen::VectorXd gathered(const std::vector<Prediction>& per_stretch) const;
+
   const Plant& plant_;
+  Fidelity fidelity_ = Fidelity::fine;
+  Eigen::VectorXd correction_;  ///< fine minus coarse
   std::vector<Stretch> stretches_;
   std::vector<Cell> cells_;
   Eigen::Index size_ = 0;

@@ -1,10 +1,12 @@
 #include "data_checks.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "musclesim/error.h"
 
@@ -69,12 +71,13 @@ std::vector<std::string> dataNotes(const std::vector<Recording>& recordings) {
   std::vector<std::string> notes;
   for (const Recording& recording : recordings) {
     std::ranges::move(gapNotes(recording), std::back_inserter(notes));
-    for (const Signal& signal : recording.signals) {
-      const auto missing = std::ranges::count_if(signal.values, [](double value) { return !std::isfinite(value); });
-      if (missing > 0)
-        notes.push_back(fmt::format("{}: {} of {} rows have no number for {}; they are left out", recording.file, missing,
-                                    signal.values.size(), signal.name));
-    }
+    std::map<std::ptrdiff_t, std::vector<std::string>> missing;  // signals by the number of rows without one
+    for (const Signal& signal : recording.signals)
+      missing[std::ranges::count_if(signal.values, [](double value) { return !std::isfinite(value); })].push_back(signal.name);
+    for (const auto& [count, names] : missing)
+      if (count > 0)
+        notes.push_back(fmt::format("{}: {} of {} rows have no number for {}; they are left out", recording.file, count,
+                                    recording.time_s.size(), fmt::join(names, ", ")));
   }
   return notes;
 }

@@ -12,6 +12,7 @@
 #include "plant.h"
 #include "regimes.h"
 #include "shrink.h"
+#include "tune.h"
 
 namespace musclesim {
 
@@ -19,7 +20,7 @@ namespace {
 
 constexpr double listed = 0.01;           ///< least probability that is listed
 constexpr double named = 0.5;             ///< least probability of none_of_these that makes the verdict `unexplained`
-constexpr double as_good = 0.1;           ///< log misfit per affected cell within which two explanations cannot be told apart
+constexpr double as_good = 0.1;           ///< share of the best explanation's probability from which on one cannot be told from it
 constexpr double excited = 1;             ///< a typical effect must change some signal by that many floors
 constexpr double clear_gain_percent = 5;  ///< by which an effect must beat nominal refit and sham
 
@@ -120,7 +121,9 @@ class Run {
     diagnosis_.where = location.places;
     diagnosis_.where_method = location.method;
     for (std::size_t i = 0; i < attribution.suspects.size(); ++i)
-      if (attribution.signatures[i].excitation_ratio < excited) diagnosis_.not_excited.push_back(attribution.suspects[i].label());
+      if (attribution.signatures[i].excitation_ratio < excited &&
+          std::ranges::find(diagnosis_.not_excited, attribution.suspects[i].label()) == diagnosis_.not_excited.end())
+        diagnosis_.not_excited.push_back(attribution.suspects[i].label());
     monitor_.phase("fitting the likely ones", 600);
     attributor_.decide();
     choose();
@@ -132,7 +135,8 @@ class Run {
   void choose() {
     const Attribution& attribution = attributor_.result();
     if (attribution.explanations.empty() || attribution.no_effect > named) return;
-    const Explanation& best = attribution.explanations.front();
+    const bool none = attribution.none_of_these > named;
+    const Explanation& best = none ? attributor_.nearest() : attribution.explanations.front();
     const Model model = attributor_.modelOf(best);
     const Eigen::VectorXd predicted = held_out_.predicted(model);
     if (!predicted.size()) return;
@@ -148,19 +152,34 @@ class Run {
     };
     diagnosis_.nominal_refit_shrink_percent = shrinkOf(nominal);
     diagnosis_.sham_shrink_percent = shrinkOf(sham);
-    const double shrink = shrinkOf(after);
-    const bool none = attribution.none_of_these > named;
-    const bool beats = shrink > std::max(diagnosis_.nominal_refit_shrink_percent, diagnosis_.sham_shrink_percent) + clear_gain_percent;
-    if (none || !beats) return;
-    diagnosis_.verdict = Verdict::effects_found;
-    diagnosis_.after = gap_after;
-    diagnosis_.chosen_effects = model.effects;
-    for (const ActiveEffect& effect : model.effects) diagnosis_.chosen.push_back(effect.id + "@" + effect.component);
     const Estimate interval = shrinkInterval(held_out_, before_residual_, after, options_.seed);
-    diagnosis_.shrink_percent = shrink;
-    diagnosis_.shrink_low_percent = interval.low;
-    diagnosis_.shrink_high_percent = interval.high;
+    const Attempt attempt{labelsOf(model), model.effects, gap_after, shrinkOf(after), interval.low, interval.high};
+    const bool beats =
+        attempt.shrink_percent > std::max(diagnosis_.nominal_refit_shrink_percent, diagnosis_.sham_shrink_percent) + clear_gain_percent;
+    const bool found = !none && beats;
+    if (!found && attempt.shrink_percent <= 0) return;  // it does not hold beyond what it was fitted to
+    diagnosis_.tuned = tunedParameters(plant_, best.tuning, best.tuning_half_width);
     after_residual_ = after;
+    if (found)
+      accept(attempt);
+    else
+      diagnosis_.attempt = attempt;
+  }
+
+  void accept(const Attempt& attempt) {
+    diagnosis_.verdict = Verdict::effects_found;
+    diagnosis_.after = attempt.after;
+    diagnosis_.chosen = attempt.effects;
+    diagnosis_.chosen_effects = attempt.active_effects;
+    diagnosis_.shrink_percent = attempt.shrink_percent;
+    diagnosis_.shrink_low_percent = attempt.shrink_low_percent;
+    diagnosis_.shrink_high_percent = attempt.shrink_high_percent;
+  }
+
+  static std::vector<std::string> labelsOf(const Model& model) {
+    std::vector<std::string> labels;
+    for (const ActiveEffect& effect : model.effects) labels.push_back(effect.id + "@" + effect.component);
+    return labels;
   }
 
   std::string labelOf(std::size_t suspect) const { return attributor_.result().suspects[suspect].label(); }
@@ -216,8 +235,15 @@ class Run {
           {plant_.recordings()[recording].file, plant_.signals()[static_cast<std::size_t>(cell.signal)].name, cell.floor, before[i]});
     }
     for (const Explanation& explanation : attribution.explanations) {
-      Trial trial{{}, static_cast<int>(explanation.z.size()), rmsOf(explanation.residual)};
-      for (const std::size_t index : explanation.suspects) trial.effects.push_back(labelOf(index));
+      Trial trial{{}, static_cast<int>(explanation.z.size()), rmsOf(explanation.residual), {}};
+      Eigen::Index first = 0;
+      for (const std::size_t index : explanation.suspects) {
+        const Suspect& suspect = attribution.suspects[index];
+        trial.effects.push_back(suspect.label());
+        auto& values = trial.values.emplace_back();
+        for (const auto& [name, value] : suspect.valuesAt(explanation.z.segment(first, suspect.coordinateCount()))) values[name] = value;
+        first += suspect.coordinateCount();
+      }
       diagnosis_.trials.push_back(std::move(trial));
     }
   }
@@ -233,13 +259,13 @@ class Run {
     return result;
   }
 
-  /// Explanations with as many effects as the best whose misfit is within the noise of the best's.
+  /// Explanations with as many effects as the best that are not much less probable.
   void ambiguity() {
     const Attribution& attribution = attributor_.result();
     if (attribution.explanations.empty()) return;
     const Explanation& best = attribution.explanations.front();
     for (const Explanation& explanation : attribution.explanations) {
-      if (explanation.suspects.size() != best.suspects.size() || explanation.weighed_misfit > best.weighed_misfit + as_good) continue;
+      if (explanation.suspects.size() != best.suspects.size() || explanation.probability < as_good * best.probability) continue;
       for (const std::size_t index : explanation.suspects)
         if (std::ranges::find(diagnosis_.ambiguity_set, labelOf(index)) == diagnosis_.ambiguity_set.end())
           diagnosis_.ambiguity_set.push_back(labelOf(index));
@@ -334,7 +360,20 @@ std::string nameOf(Verdict verdict) {
 }
 
 Diagnosis diagnose(std::vector<Recording> recordings, const DiagnosisOptions& options) {
-  return Run(std::move(recordings), options).diagnose();
+  if (options.tune.empty()) return Run(std::move(recordings), options).diagnose();
+  DiagnosisOptions with_tuned = options;
+  const Tuning tuning = tune(recordings, with_tuned);
+  Diagnosis diagnosis = Run(std::move(recordings), with_tuned).diagnose();
+  std::vector<TunedParameter> with_all;
+  for (std::size_t i = 0; i < tuning.parameters.size(); ++i) {
+    const Estimate with_effects = diagnosis.tuned.empty() ? tuning.parameters[i].fitted : diagnosis.tuned[i].with_effects;
+    with_all.push_back(tuning.parameters[i]);
+    with_all.back().with_effects = with_effects;
+  }
+  diagnosis.tuned = with_all;
+  diagnosis.simulation_count += tuning.simulation_count;
+  diagnosis.simulated_s += tuning.simulated_s;
+  return diagnosis;
 }
 
 }  // namespace musclesim

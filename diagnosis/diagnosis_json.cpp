@@ -42,6 +42,16 @@ Json toJson(const Place& place) {
   return json;
 }
 
+Json toJson(const TunedParameter& parameter) {
+  return {{"name", parameter.name},
+          {"unit", parameter.unit},
+          {"start", parameter.start},
+          {"value", parameter.fitted.value},
+          {"ci95", {parameter.fitted.low, parameter.fitted.high}},
+          {"value_with_effects", parameter.with_effects.value},
+          {"ci95_with_effects", {parameter.with_effects.low, parameter.with_effects.high}}};
+}
+
 template <class Value>
 Json listOf(const std::vector<Value>& values) {
   Json list = Json::array();
@@ -67,7 +77,8 @@ Json fittedJson(const Diagnosis& d) {
     json["cells"].push_back(
         {{"recording", cell.recording}, {"signal", cell.signal}, {"floor", cell.floor}, {"rms_before", cell.rms_before}});
   for (const Trial& trial : d.trials)
-    json["trials"].push_back({{"effects", trial.effects}, {"parameters", trial.parameter_count}, {"rms", trial.rms}});
+    json["trials"].push_back(
+        {{"effects", trial.effects}, {"parameters", trial.parameter_count}, {"rms", trial.rms}, {"values", trial.values}});
   return json;
 }
 
@@ -84,10 +95,20 @@ std::string diagnosisJson(const Diagnosis& d, const std::string& schedule_file) 
   json["chosen"] = d.chosen;
   json["ambiguity_set"] = d.ambiguity_set;
   json["gap"] = gapJson(d);
+  if (!d.attempt.effects.empty())
+    json["attempt"] = {{"effects", d.attempt.effects},
+                       {"after", toJson(d.attempt.after)},
+                       {"shrink_percent", d.attempt.shrink_percent},
+                       {"shrink_ci95_percent", {d.attempt.shrink_low_percent, d.attempt.shrink_high_percent}}};
+  if (!d.tuned.empty()) json["tuned"] = listOf(d.tuned);
   json["unexplained_percent"] = d.unexplained_percent;
   json["not_excited"] = d.not_excited;
   if (!d.next_experiment.commands.empty())
-    json["next_experiment"] = {{"separates", d.next_experiment.separates}, {"why", d.next_experiment.why}, {"schedule", schedule_file}};
+    json["next_experiment"] = {{"separates", d.next_experiment.separates},
+                               {"name", d.next_experiment.schedule},
+                               {"amplitude", d.next_experiment.amplitude},
+                               {"why", d.next_experiment.why},
+                               {"schedule", schedule_file}};
   json["fitted"] = fittedJson(d);
   json["notes"] = d.notes;
   json["where_method"] = d.where_method;
@@ -99,6 +120,7 @@ std::string diagnosisJson(const Diagnosis& d, const std::string& schedule_file) 
 std::string diagnosisSummary(const Diagnosis& d) {
   std::string text = verdictSentence(d) + "\n";
   if (d.partial) text = "Interrupted: what follows is only what was known by then.\n" + text;
+  if (!d.tuned.empty()) text += fmt::format("tuned     {} numbers of the model first, see nominal.toml\n", d.tuned.size());
   if (!d.where.empty()) text += fmt::format("where     {}\n", whereSentence(d));
   for (std::size_t i = 0; i < std::min<std::size_t>(3, d.effects.size()); ++i)
     text += fmt::format("{:<9} {:>4.0f} %  {}\n", i == 0 ? "which" : "", 100 * d.effects[i].probability, effectSentence(d.effects[i]));

@@ -80,7 +80,7 @@ Eigen::VectorXd residualUnderMeasuredPressures(const Comparison& comparison) {
         commands[row][static_cast<std::size_t>(muscle)] = last;
       }
     }
-    predictions.push_back(plant.predict(stretch.recording, Model{}, commands, stretch.end_row));
+    predictions.push_back(plant.predict(stretch.recording, Model{}, commands, stretch.end_row, comparison.fidelity()));
   }
   const Eigen::VectorXd predicted = comparison.predicted(predictions);
   if (!predicted.size()) return {};
@@ -191,7 +191,9 @@ Location locate(const Comparison& comparison, const std::vector<Suspect>& suspec
           fmt::format("with the measured pressures in place of the simulated ones {:.0f} % of the log gap of the motion vanishes",
                       100 * (1 - after / before)));
     } else if (before > 0.1) {
-      reasons.push_back("pressures differ from the predicted ones, but most of the motion's gap stays when they are put in their place");
+      reasons.push_back(
+          "pressures differ from the predicted ones, but most of the motion's gap stays when they are put in their place: there is more "
+          "than one cause, and shares say how much typical disturbances of each stage resemble the whole gap");
     }
   }
   if (const auto ratio = tensionRatio(comparison)) {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "musclesim/error.h"
 #include "parallel.h"
 
 namespace musclesim {
@@ -16,10 +17,10 @@ namespace {
 
 constexpr double duration_s = 12, step_s = 0.01;
 
-/// A schedule: the command of a muscle at a time.
+/// A schedule: -1..1 for each muscle at a time, of the range that its command has in the recordings.
 struct Excitation {
   std::string name, why;
-  std::function<double(double time_s, int muscle)> command;
+  std::function<double(double time_s, int muscle)> shape;
 };
 
 double triangle(double time_s, double period_s) {
@@ -31,35 +32,53 @@ double sign(int muscle) {
   return muscle % 2 == 0 ? 1 : -1;
 }
 
-/// Commands around 0.45; muscles with even and odd numbers move against each other unless the schedule is a co-contraction.
-std::vector<Excitation> bank() {
-  return {
+/// Muscles with even and odd numbers move against each other unless the schedule is a co-contraction.
+const std::vector<Excitation>& bank() {
+  static const std::vector<Excitation> excitations = {
       {"slow reversals", "loops that do not depend on speed stay, those that do vanish",
-       [](double t, int m) { return 0.45 + sign(m) * 0.3 * triangle(t, 6); }},
+       [](double t, int m) { return sign(m) * triangle(t, 6); }},
       {"three speeds", "the same path at three speeds separates what depends on speed",
        [](double t, int m) {
-         return 0.45 + sign(m) * 0.3 * triangle(t, t < 6 ? 6 : t < 9 ? 1.5 : 0.5);
+         return sign(m) * triangle(t, t < 6 ? 6 : t < 9 ? 1.5 : 0.5);
        }},
       {"steps of two sizes", "a rate limit shows at large steps only, a lag at all",
-       [](double t, int m) { return 0.45 + sign(m) * (t < 6 ? 0.08 : 0.35) * (std::fmod(t, 3) < 1.5 ? 1 : -1); }},
-      {"co-contraction", "pressure changes while the pose hardly does", [](double t, int) { return 0.45 + 0.35 * triangle(t, 6); }},
+       [](double t, int m) { return sign(m) * (t < 6 ? 0.25 : 1) * (std::fmod(t, 3) < 1.5 ? 1 : -1); }},
+      {"co-contraction", "pressure changes while the pose hardly does", [](double t, int) { return triangle(t, 6); }},
       {"vent and hold", "what creeps or leaks goes on while the command rests",
-       [](double t, int m) { return t < 1   ? 0.5
-                                    : t < 6 ? (m % 2 == 0 ? 0.0 : 0.8)
-                                            : (m % 2 == 0 ? 0.8 : 0.0); }},
+       [](double t, int m) { return t < 1   ? 0.0
+                                    : t < 6 ? (m % 2 == 0 ? -1.0 : 1.0)
+                                            : (m % 2 == 0 ? 1.0 : -1.0); }},
       {"one muscle at a time", "what one muscle's command does to the others' signals",
-       [](double t, int m) { return 0.4 + (static_cast<int>(t / 2) % 2 == m % 2 ? 0.3 * std::sin(std::numbers::pi * t) : 0.0); }},
+       [](double t, int m) { return static_cast<int>(t / 2) % 2 == m % 2 ? std::sin(std::numbers::pi * t) : 0.0; }},
   };
+  return excitations;
 }
 
-Recording scheduled(const Plant& plant, const Excitation& excitation) {
+struct CommandRange {
+  double low = 1, high = 0;
+};
+
+/// The range of a muscle's command over all recordings: where the plant is known to go.
+CommandRange rangeOf(const std::vector<Recording>& recordings, int muscle) {
+  CommandRange range;
+  for (const Recording& recording : recordings)
+    for (const double u : recording.find(fmt::format("command_{}", muscle))->values) {
+      range.low = std::min(range.low, u);
+      range.high = std::max(range.high, u);
+    }
+  return range;
+}
+
+Recording scheduled(const std::vector<Recording>& recordings, const Excitation& excitation, double amplitude) {
   Recording recording;
-  recording.info = plant.recordings().front().info;
+  recording.info = recordings.front().info;
   recording.info.trial = excitation.name;
   for (int row = 0; row * step_s < duration_s; ++row) recording.time_s.push_back(row * step_s);
-  for (int muscle = 0; muscle < plant.muscleCount(); ++muscle) {
+  for (int muscle = 0; muscle < recordings.front().muscleCount(); ++muscle) {
+    const CommandRange range = rangeOf(recordings, muscle);
     Signal signal{fmt::format("command_{}", muscle), {}};
-    for (const double t : recording.time_s) signal.values.push_back(std::clamp(excitation.command(t, muscle), 0.0, 1.0));
+    for (const double t : recording.time_s)
+      signal.values.push_back((range.low + range.high) / 2 + amplitude * (range.high - range.low) / 2 * excitation.shape(t, muscle));
     recording.signals.push_back(std::move(signal));
   }
   return recording;
@@ -82,15 +101,47 @@ double difference(const Plant& plant, const Prediction& a, const Prediction& b) 
   return count ? std::sqrt(sum / static_cast<double>(count)) : 0;
 }
 
+/// Whether a predicted signal stays where the plant has been, give or take a quarter of the range that it had there: beyond may be a stop.
+bool staysInReach(const Plant& plant, const Prediction& prediction) {
+  constexpr double further = 0.25;
+  for (std::size_t s = 0; s < plant.signals().size(); ++s) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (std::size_t i = 0; i < plant.recordings().size(); ++i)
+      for (const double y : plant.measured(static_cast<int>(i), static_cast<int>(s)))
+        if (std::isfinite(y)) low = std::min(low, y), high = std::max(high, y);
+    const double room = further * (high - low) + 4 * plant.signals()[s].floor.value;
+    for (const double y : prediction.values[s])
+      if (!(y > low - room && y < high + room)) return false;
+  }
+  return true;
+}
+
+/// The largest of a few shares of the commands' ranges with which the schedule stays in reach; the smallest if none does.
+double safeAmplitude(const Plant& plant, const Excitation& excitation, const Model& model, const OnSimulation& on_simulation) {
+  constexpr double smaller = 0.7, smallest = 0.2;
+  double amplitude = 1;
+  for (; amplitude * smaller > smallest; amplitude *= smaller) {
+    on_simulation();
+    const Prediction prediction = plant.predictSchedule(scheduled(plant.recordings(), excitation, amplitude), model);
+    if (!prediction.diverged && staysInReach(plant, prediction)) break;
+  }
+  return amplitude;
+}
+
 }  // namespace
 
 Experiment nextExperiment(const Plant& plant, const std::vector<std::string>& labels, const std::vector<Model>& models, int job_count,
                           const OnSimulation& on_simulation) {
   Experiment best;
   if (models.size() < 2) return best;
-  const std::vector<Excitation> excitations = bank();
-  std::vector<Recording> recordings;
-  for (const Excitation& excitation : excitations) recordings.push_back(scheduled(plant, excitation));
+  const std::vector<Excitation>& excitations = bank();
+  std::vector<double> amplitudes(excitations.size());
+  std::vector<Recording> recordings(excitations.size());
+  parallelFor(static_cast<int>(excitations.size()), job_count, [&](int i) {
+    const auto index = static_cast<std::size_t>(i);
+    amplitudes[index] = safeAmplitude(plant, excitations[index], models.front(), on_simulation);
+    recordings[index] = scheduled(plant.recordings(), excitations[index], amplitudes[index]);
+  });
   std::vector<Prediction> predictions(excitations.size() * models.size());
   parallelFor(static_cast<int>(predictions.size()), job_count, [&](int i) {
     const auto index = static_cast<std::size_t>(i);
@@ -104,6 +155,8 @@ Experiment nextExperiment(const Plant& plant, const std::vector<std::string>& la
         smallest = std::min(smallest, difference(plant, predictions[e * models.size() + a], predictions[e * models.size() + b]));
     if (smallest <= best.difference) continue;
     best.difference = smallest;
+    best.schedule = excitations[e].name;
+    best.amplitude = amplitudes[e];
     best.separates = labels;
     best.why = fmt::format("{}: {}; the predictions that are most alike differ by {:.1f} times the noise", excitations[e].name,
                            excitations[e].why, smallest);
@@ -113,6 +166,12 @@ Experiment nextExperiment(const Plant& plant, const std::vector<std::string>& la
       for (std::size_t row = 0; row < best.commands.size(); ++row) best.commands[row].push_back(signal.values[row]);
   }
   return best;
+}
+
+Recording experimentSchedule(const std::string& name, double amplitude, const std::vector<Recording>& recordings) {
+  const auto found = std::ranges::find(bank(), name, &Excitation::name);
+  if (found == bank().end()) throw BadParameter("schedule", name, "be one that a diagnosis proposed");
+  return scheduled(recordings, *found, amplitude);
 }
 
 }  // namespace musclesim

@@ -64,16 +64,18 @@ std::optional<double> fromSidecars(const std::vector<Recording>& recordings, con
   return sum / count;
 }
 
-/// Second differences of the rows whose neighbourhood moves least: a straight line leaves only the noise.
+/// Second differences of the rows whose neighbourhood moves least: a straight line leaves only the noise. Rows without a number are passed
+/// over: a signal may have been read less often than others.
 std::vector<double> quietSecondDifferences(const Recording& recording, const std::string& name) {
   constexpr std::size_t reach = 10;
   const Signal* signal = recording.find(name);
   if (!signal) return {};
-  const std::vector<double>& y = signal->values;
+  std::vector<double> y = signal->values;
+  std::erase_if(y, [](double value) { return !std::isfinite(value); });
   std::vector<std::pair<double, double>> by_speed;
   for (std::size_t i = reach; i + reach < y.size(); ++i) {
     const double difference = y[i - 1] - 2 * y[i] + y[i + 1], speed = std::abs(y[i + reach] - y[i - reach]);
-    if (std::isfinite(difference) && std::isfinite(speed)) by_speed.emplace_back(speed, difference);
+    by_speed.emplace_back(speed, difference);
   }
   std::sort(by_speed.begin(), by_speed.end());
   std::vector<double> result;

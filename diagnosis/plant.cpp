@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include "../effect/components.h"
@@ -17,6 +18,8 @@ namespace {
 
 constexpr int fewest_rows = 20;
 constexpr double ms_per_s = 1000;
+constexpr int fewest_to_coarsen = 8;  ///< with fewer internal steps than that a simulation is cheap and as coarse as it can be
+constexpr int coarse_ratio = 4;       ///< internal steps that a coarse simulation makes one of
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* held_effect = "sensor_dropout";
 /// Friction within the muscles and the curvature of Eq. 1.
@@ -40,6 +43,11 @@ void requireDiagnosable(const std::vector<Recording>& recordings) {
   }
 }
 
+/// Without its folder.
+std::string nameOf(const Recording& recording) {
+  return std::filesystem::path(recording.file).filename().string();
+}
+
 /// With several recordings the last is held out; with one, the last two fifths of its rows.
 Split splitOf(const std::vector<Recording>& recordings) {
   Split split;
@@ -49,12 +57,12 @@ Split splitOf(const std::vector<Recording>& recordings) {
     const int border = rows(0) * 3 / 5;
     split.fit = {{0, 0, border}};
     split.held_out = {{0, border, rows(0)}};
-    split.held_out_words = fmt::format("the last two fifths of {}", recordings[0].file);
+    split.held_out_words = fmt::format("the last two fifths of {}", nameOf(recordings[0]));
     return split;
   }
   for (int i = 0; i + 1 < count; ++i) split.fit.push_back({i, 0, rows(i)});
   split.held_out = {{count - 1, 0, rows(count - 1)}};
-  split.held_out_words = fmt::format("{}, which neither fitting nor choosing has seen", recordings.back().file);
+  split.held_out_words = fmt::format("{}, which neither fitting nor choosing has seen", nameOf(recordings.back()));
   return split;
 }
 
@@ -74,8 +82,10 @@ Plant::Plant(std::vector<Recording> recordings, const DiagnosisOptions& options)
   reference_->build(info.robot);
   reference_->parameters().requireAllKnown();
   for (const Parameter& parameter : reference_->parameters().declared())
-    if (std::ranges::find(nominal_names, parameter.name) != std::end(nominal_names))
+    if (std::ranges::find(nominal_names, parameter.name) != std::end(nominal_names) ||
+        std::ranges::find(options.tune, parameter.name) != options.tune.end())
       nominal_.emplace_back(parameter.name, std::get<double>(parameter.value));
+  for (const std::string& name : options.tune) tuned_.push_back(numberNamed(name));
   compareSignals();
 }
 
@@ -127,6 +137,31 @@ Plant::MuscleRange Plant::muscleRange(int muscle) const {
   return {actuator.minimumLengthMm(), actuator.maximumLengthMm()};
 }
 
+/// Throws BadParameter with the nearest name if the model has no such number, and for one that a factor cannot change.
+Parameter Plant::numberNamed(const std::string& name) const {
+  std::vector<std::string> names;
+  for (const Parameter& parameter : reference_->parameters().declared()) {
+    if (!std::holds_alternative<double>(parameter.value) || parameter.integer) continue;
+    names.push_back(parameter.name);
+    if (parameter.name != name) continue;
+    if (std::get<double>(parameter.value) != 0) return parameter;
+    throw BadParameter("--tune " + name, "0", "begin at another value: it is changed by a factor");
+  }
+  const std::string nearest = nearestName(name, names);
+  throw BadParameter(fmt::format("--tune: the model of {} has no number \"{}\"{}", robot(), name,
+                                 nearest.empty() ? "" : ", did you mean \"" + nearest + "\"?"));
+}
+
+std::vector<std::pair<std::string, double>> Plant::tunedAt(const Eigen::VectorXd& z) const {
+  std::vector<std::pair<std::string, double>> values;
+  for (Eigen::Index i = 0; i < z.size(); ++i) {
+    const Parameter& parameter = tuned_[static_cast<std::size_t>(i)];
+    values.emplace_back(parameter.name,
+                        std::clamp(std::get<double>(parameter.value) * std::exp(z[i]), parameter.minimum, parameter.maximum));
+  }
+  return values;
+}
+
 double Plant::tensionN(int muscle, double pressure_ratio, double length_mm) const {
   return reference_->actuators()[static_cast<std::size_t>(muscle)]->calculateForce(pressure_ratio, length_mm);
 }
@@ -135,33 +170,43 @@ RobotDrawing Plant::drawing() const {
   return drawingOf(*reference_);
 }
 
-Prediction Plant::predict(int recording, const Model& model, int end_row) const {
-  Prediction prediction = replay(recordings_[static_cast<std::size_t>(recording)], model, end_row);
+Prediction Plant::predict(int recording, const Model& model, int end_row, Fidelity fidelity) const {
+  Prediction prediction = replay(recordings_[static_cast<std::size_t>(recording)], model, end_row, fidelity);
   holdWhereMeasured(recording, model, prediction);
   return prediction;
 }
 
-Prediction Plant::predict(int recording, const Model& model, const std::vector<std::vector<double>>& commands, int end_row) const {
+Prediction Plant::predict(int recording, const Model& model, const std::vector<std::vector<double>>& commands, int end_row,
+                          Fidelity fidelity) const {
   Recording changed = recordings_[static_cast<std::size_t>(recording)];
   for (Signal& signal : changed.signals)
     if (signal.name.starts_with("command_")) {
       const auto muscle = static_cast<std::size_t>(std::stoi(signal.name.substr(8)));
       for (std::size_t row = 0; row < commands.size(); ++row) signal.values[row] = commands[row][muscle];
     }
-  return replay(std::move(changed), model, end_row);
+  return replay(std::move(changed), model, end_row, fidelity);
 }
 
-Prediction Plant::replay(Recording recording, const Model& model, int end_row) const {
+Prediction Plant::replay(Recording recording, const Model& model, int end_row, Fidelity fidelity) const {
   const std::size_t all_rows = recording.time_s.size();
   if (end_row > 0 && static_cast<std::size_t>(end_row) < all_rows) {
     recording.time_s.resize(static_cast<std::size_t>(end_row));
     for (Signal& signal : recording.signals) signal.values.resize(static_cast<std::size_t>(end_row));
   }
   ReplayOptions options = options_.model;
+  if (fidelity == Fidelity::coarse && reference_->substeps() >= fewest_to_coarsen)
+    options.substeps = std::max(1, (reference_->substeps() + coarse_ratio - 1) / coarse_ratio);
   for (const ActiveEffect& effect : model.effects)
     if (effect.id != held_effect) options.effects.push_back(effect);
   for (const auto& [name, value] : model.parameters) options.parameters.set(name, value, "diagnosis");
-  const ReplayResult result = replayRecording(recording, options);
+  ReplayResult result;
+  try {
+    result = replayRecording(recording, options);
+  } catch (const BadParameter&) {
+    // Such an effect cannot act on this plant, for example a payload that takes away more than there is.
+    if (model.effects.empty() && model.parameters.empty()) throw;
+    return {std::vector<std::vector<double>>(signals_.size(), std::vector<double>(all_rows, nan)), true};
+  }
   ++simulation_count_;
   simulated_ms_ += std::lround((recording.time_s.back() - recording.time_s.front()) * ms_per_s);
 

@@ -1,6 +1,7 @@
 /// The recordings of one plant and the model that is compared with them.
 #pragma once
 
+#include <Eigen/Core>
 #include <atomic>
 #include <memory>
 #include <string>
@@ -36,6 +37,10 @@ struct Prediction {
   bool diverged = false;
 };
 
+/// How finely a simulation steps. A coarse one takes steps that are four times as long, which costs little; what it differs by is
+/// nearly the same for all models of one plant, so that differences between coarse predictions hold (Comparison corrects for the rest).
+enum class Fidelity { fine, coarse };
+
 /// A model: further effects and changed parameters beside the user's own.
 struct Model {
   std::vector<ActiveEffect> effects;
@@ -68,15 +73,22 @@ class Plant {
   MuscleRange muscleRange(int muscle) const;
   /// Numbers of the model itself that no effect of the catalogue stands for, with the values in force: what the nominal refit re-tunes.
   const std::vector<std::pair<std::string, double>>& nominalParameters() const { return nominal_; }
+  /// The numbers of the model that nobody measured (DiagnosisOptions::tune), with the values in force, units and ranges.
+  const std::vector<Parameter>& tuned() const { return tuned_; }
+  Eigen::Index tunedCount() const { return static_cast<Eigen::Index>(tuned_.size()); }
+  /// Their values at coordinates: value in force * exp(z), within the range; none for no coordinates.
+  std::vector<std::pair<std::string, double>> tunedAt(const Eigen::VectorXd& z) const;
+  static Eigen::VectorXd clampedTuning(const Eigen::VectorXd& z) { return z.cwiseMax(-farthest_tuning).cwiseMin(farthest_tuning); }
   /// What the model's force law gives for a muscle at a pressure and a length, N.
   double tensionN(int muscle, double pressure_ratio, double length_mm) const;
 
   /// Simulates up to the end of the stretches that are asked for (`end_row`; 0: all rows). May be called from several threads.
-  Prediction predict(int recording, const Model& model, int end_row = 0) const;
+  Prediction predict(int recording, const Model& model, int end_row = 0, Fidelity fidelity = Fidelity::fine) const;
   /// The same with other commands in place of the recorded ones; `commands[row][muscle]`.
-  Prediction predict(int recording, const Model& model, const std::vector<std::vector<double>>& commands, int end_row = 0) const;
-  /// The same for a schedule that was never recorded.
-  Prediction predictSchedule(const Recording& schedule, const Model& model) const { return replay(schedule, model, 0); }
+  Prediction predict(int recording, const Model& model, const std::vector<std::vector<double>>& commands, int end_row,
+                     Fidelity fidelity) const;
+  /// The same for a schedule that was never recorded, coarsely.
+  Prediction predictSchedule(const Recording& schedule, const Model& model) const { return replay(schedule, model, 0, Fidelity::coarse); }
 
   /// The robot as built.
   RobotDrawing drawing() const;
@@ -86,8 +98,11 @@ class Plant {
   bool interrupted() const { return options_.interrupted && options_.interrupted(); }
 
  private:
+  static constexpr double farthest_tuning = 4;  ///< bound of |ln(value / value in force)|
+
   void compareSignals();
-  Prediction replay(Recording recording, const Model& model, int end_row) const;
+  Parameter numberNamed(const std::string& name) const;
+  Prediction replay(Recording recording, const Model& model, int end_row, Fidelity fidelity) const;
   void holdWhereMeasured(int recording, const Model& model, Prediction& prediction) const;
 
   std::vector<Recording> recordings_;
@@ -98,6 +113,7 @@ class Plant {
   Split split_;
   std::unique_ptr<Simulation> reference_;  ///< the model as built; asked about its parts, never stepped
   std::vector<std::pair<std::string, double>> nominal_;
+  std::vector<Parameter> tuned_;
   mutable std::atomic<long> simulation_count_{0}, simulated_ms_{0};
 };
 

@@ -82,10 +82,10 @@ std::string robotFigure(const RobotDrawing& drawing, const Place& place) {
   Eigen::AlignedBox2d box;
   for (const RobotDrawing::Line& line : drawing.lines)
     for (const Eigen::Vector2d& point : line.points_mm) box.extend(point);
-  constexpr double height = 300, margin = 34, most_width = 640;
+  constexpr double most_height = 300, margin = 34, most_width = 640;
   const Eigen::Vector2d extent = box.sizes().cwiseMax(1.0);
-  const double scale = std::min((height - 2 * margin) / extent.y(), (most_width - 2 * margin) / extent.x());
-  const double width = std::max(220.0, extent.x() * scale + 2 * margin);
+  const double scale = std::min((most_height - 2 * margin) / extent.y(), (most_width - 2 * margin) / extent.x());
+  const double width = std::max(220.0, extent.x() * scale + 2 * margin), height = std::max(110.0, extent.y() * scale + 2 * margin);
   auto pixel = [&](const Eigen::Vector2d& p) {
     return SvgPoint{width / 2 + (p.x() - box.center().x()) * scale, height / 2 - (p.y() - box.center().y()) * scale};
   };
@@ -110,8 +110,8 @@ std::string robotFigure(const RobotDrawing& drawing, const Place& place) {
                  : "#dcdcdc",
         std::max(2.0, line.width_mm * scale) + (guilty ? 2 : 0), muscle ? line.component : "bone");
     if (guilty && !all_muscles) {
-      const SvgPoint middle = points[points.size() / 2];
-      labels += label({middle.x + 14, middle.y}, line.component);
+      const SvgPoint before = points[(points.size() - 1) / 2], behind = points[points.size() / 2];
+      labels += label({0.5 * (before.x + behind.x) + 14, 0.5 * (before.y + behind.y) - 12}, line.component);
     }
   }
   for (const RobotDrawing::Point& point : drawing.points) {

@@ -112,12 +112,14 @@ namespace {
 
 /// What the probes change, empty where the model diverged.
 std::vector<Eigen::VectorXd> changesBy(const Comparison& comparison, const std::vector<Probe>& probes, const Eigen::VectorXd& nominal,
-                                       int job_count, const OnSimulation& on_simulation) {
+                                       const Model& base, int job_count, const OnSimulation& on_simulation) {
   std::vector<Eigen::VectorXd> changes(probes.size());
   parallelFor(static_cast<int>(probes.size()), job_count, [&](int i) {
     if (comparison.plant().interrupted()) return;
     const auto index = static_cast<std::size_t>(i);
-    const Eigen::VectorXd predicted = comparison.predicted(probes[index].model);
+    Model model = base;
+    model.effects.insert(model.effects.end(), probes[index].model.effects.begin(), probes[index].model.effects.end());
+    const Eigen::VectorXd predicted = comparison.predicted(model);
     if (predicted.size() == nominal.size() && predicted.allFinite()) changes[index] = predicted - nominal;
     on_simulation();
   });
@@ -143,11 +145,11 @@ std::vector<Probe> strongerProbes(const Comparison& comparison, const std::vecto
 }  // namespace
 
 std::vector<Signature> screen(const Comparison& comparison, const std::vector<Suspect>& suspects, const Eigen::VectorXd& nominal,
-                              int job_count, const OnSimulation& on_simulation) {
+                              const Model& base, int job_count, const OnSimulation& on_simulation) {
   std::vector<Signature> result(suspects.size());
   for (std::size_t s = 0; s < suspects.size(); ++s) result[s].per_strength.resize(std::max<std::size_t>(1, suspects[s].strengths().size()));
   auto look = [&](const std::vector<Probe>& probes, double strength) {
-    const std::vector<Eigen::VectorXd> changes = changesBy(comparison, probes, nominal, job_count, on_simulation);
+    const std::vector<Eigen::VectorXd> changes = changesBy(comparison, probes, nominal, base, job_count, on_simulation);
     for (std::size_t i = 0; i < probes.size(); ++i)
       for (const Probe::Target& target : probes[i].targets)
         if (changes[i].size())

@@ -24,9 +24,9 @@ struct Signature {
 using OnSimulation = std::function<void()>;
 
 /// One or a few simulations per suspect on the comparison's stretches; sensor effects of one id on different signals share theirs.
-/// `nominal` is the prediction without any effect.
+/// `nominal` is the prediction of `base`, the model beside which the suspects are tried.
 std::vector<Signature> screen(const Comparison& comparison, const std::vector<Suspect>& suspects, const Eigen::VectorXd& nominal,
-                              int job_count, const OnSimulation& on_simulation);
+                              const Model& base, int job_count, const OnSimulation& on_simulation);
 
 /// The amounts of a signature that remove most of a residual, by least squares weighted anew three times. Amounts of unsigned strengths
 /// stay positive. Sets amount, explained and log_misfit.

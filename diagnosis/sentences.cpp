@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cmath>
 
 namespace musclesim {
 
@@ -20,6 +22,15 @@ std::string effectSentence(const FoundEffect& effect) {
 std::string percentWords(double percent) {
   constexpr double nearly_all = 99.95;
   return percent > nearly_all && percent < 100 ? "more than 99.9 %" : fmt::format("{:.1f} %", percent);
+}
+
+std::string leftWords(double percent) {
+  return percent < 0.1 ? "less than 0.1 %" : fmt::format("{:.3g} %", percent);
+}
+
+std::string probabilityWords(double probability) {
+  constexpr double nearly_certain = 0.995;
+  return probability > nearly_certain ? "over 99 %" : fmt::format("{:.0f} %", 100 * probability);
 }
 
 std::string shrinkWords(const Diagnosis& d) {
@@ -43,12 +54,17 @@ std::string whereSentence(const Diagnosis& d) {
 
 namespace {
 
-std::string effectWords(const Diagnosis& d, const std::string& label) {
-  const auto found = std::ranges::find_if(d.effects, [&](const FoundEffect& effect) { return effect.label() == label; });
+/// "valve lag on muscle 1".
+std::string labelWords(const std::string& label) {
   std::string words = label.substr(0, label.find('@'));
   std::ranges::replace(words, '_', ' ');
-  words += " on " + componentWords(label.substr(label.find('@') + 1));
-  if (found == d.effects.end() || d.chosen.size() > 1) return words;
+  return words + " on " + componentWords(label.substr(label.find('@') + 1));
+}
+
+std::string effectWords(const Diagnosis& d, const std::string& label) {
+  const auto found = std::ranges::find_if(d.effects, [&](const FoundEffect& effect) { return effect.label() == label; });
+  std::string words = labelWords(label);
+  if (found == d.effects.end() || d.chosen.size() != 1) return words;
   std::string parameters;
   for (const auto& [name, estimate] : found->parameters)
     parameters +=
@@ -62,13 +78,22 @@ std::string listWords(const Diagnosis& d, const std::vector<std::string>& labels
   return fmt::format("{}", fmt::join(words, link));
 }
 
+/// What no explanation should hide: a rest that stands far out of the noise. RMS / floor = sqrt(1 + normalised gap).
+std::string remainder(const Diagnosis& d) {
+  constexpr double stands_out = 2;
+  const double over_floor = std::sqrt(1 + d.after.normalised);
+  if (over_floor < stands_out) return "";
+  return fmt::format(" What is left is still {:.1f} times the noise: something else acts too, or acts by another law.", over_floor);
+}
+
 /// What else would do, and how to find out.
 std::string otherwise(const Diagnosis& d) {
   std::vector<std::string> others;
   for (const std::string& label : d.ambiguity_set)
-    if (std::ranges::find(d.chosen, label) == d.chosen.end()) others.push_back(label);
+    if (std::ranges::find(d.chosen, label) == d.chosen.end()) others.push_back(labelWords(label));
   if (others.empty()) return "";
-  const std::string place = d.chosen.size() > 1 ? " in place of " + d.chosen.back() : "";
+  const std::string place = d.chosen.size() > 1 ? " in place of " + labelWords(d.chosen.back()) : "";
+  others.front().front() = static_cast<char>(std::toupper(static_cast<unsigned char>(others.front().front())));
   return fmt::format(" {} would explain it as well{}{}.", fmt::join(others, " or "), place,
                      d.next_experiment.commands.empty() ? "" : "; record the schedule in next.csv to tell them apart");
 }
@@ -84,19 +109,25 @@ std::string verdictSentence(const Diagnosis& d) {
     case Verdict::unexplained: {
       std::string text = "There is a gap that I cannot explain";
       if (!d.effects.empty())
-        text += fmt::format(": the best candidate, {}, has a probability of {:.0f} %", d.effects.front().label(),
+        text += fmt::format(": the best candidate, {}, has a probability of {:.0f} %", labelWords(d.effects.front().label()),
                             100 * d.effects.front().probability);
-      return text + ".";
+      text += ".";
+      if (!d.attempt.effects.empty())
+        text += fmt::format(
+            " What comes nearest, {}, removes {} of the gap on data that neither fitting nor choosing had seen; attempt.json holds it, to "
+            "build on, not to believe.",
+            listWords(d, d.attempt.effects, " together with "), percentWords(d.attempt.shrink_percent));
+      return text;
     }
     case Verdict::effects_found: {
       std::string text = d.where.empty() ? "" : whereSentence(d) + ". ";
       const auto& first = std::ranges::find_if(d.effects, [&](const FoundEffect& effect) { return effect.label() == d.chosen.front(); });
       text += fmt::format(
-          "The best explanation ({:.0f} % likely) is {}; adding {} removes {} of the gap on data that neither "
+          "The best explanation ({} likely) is {}; adding {} removes {} of the gap on data that neither "
           "fitting nor choosing had seen.",
-          first == d.effects.end() ? 0 : 100 * first->probability, listWords(d, d.chosen, " together with "),
+          probabilityWords(first == d.effects.end() ? 0 : first->probability), listWords(d, d.chosen, " together with "),
           d.chosen.size() > 1 ? "them" : "it", shrinkWords(d));
-      return text + otherwise(d);
+      return text + remainder(d) + otherwise(d);
     }
   }
   return "";

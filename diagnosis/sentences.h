@@ -9,7 +9,16 @@ namespace musclesim {
 
 std::string verdictSentence(const Diagnosis& diagnosis);
 std::string whereSentence(const Diagnosis& diagnosis);
+/// "muscle 1" of "muscle_1", "all components" of "all".
+std::string componentWords(const std::string& component);
 /// "valve_lag@muscle_1: vent_time_constant_s = 0.081 (0.077 to 0.085)".
 std::string effectSentence(const FoundEffect& effect);
+
+/// "96.2 %"; "more than 99.9 %" rather than 100 % of what is nearly all.
+std::string percentWords(double percent);
+/// "3.8 %"; "less than 0.1 %" of what is nearly nothing.
+std::string leftWords(double percent);
+/// "93 %"; "over 99 %": nothing is certain.
+std::string probabilityWords(double probability);
 
 }  // namespace musclesim

@@ -123,8 +123,8 @@ Eigen::VectorXd shamResidual(const Comparison& fitted, const Comparison& held_ou
     std::vector<Prediction> predictions;
     for (const Stretch& stretch : comparison.stretches()) {
       const Recording& recording = comparison.plant().recordings()[static_cast<std::size_t>(stretch.recording)];
-      predictions.push_back(
-          comparison.plant().predict(stretch.recording, Model{}, disturbed(recording, sines, amplitude), stretch.end_row));
+      predictions.push_back(comparison.plant().predict(stretch.recording, Model{}, disturbed(recording, sines, amplitude), stretch.end_row,
+                                                       comparison.fidelity()));
     }
     return comparison.predicted(predictions);
   };

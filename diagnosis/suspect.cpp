@@ -171,23 +171,40 @@ ActiveEffect Suspect::at(const Eigen::VectorXd& z) const {
   return activeEffect(info_, component_, values);
 }
 
+double Suspect::excess(const Eigen::VectorXd& z) const {
+  double sum = 0;
+  for (const int strength : strengths_) {
+    const Coordinate& c = coordinates_[static_cast<std::size_t>(strength)];
+    const EffectParameter& p = info_.parameters[c.parameter];
+    if (p.unit == "unit of the signal" || info_.id == "force_law") continue;
+    const double value = std::clamp(valueOf(c, z[strength]), p.minimum, p.maximum);
+    const double ratio = std::isinf(p.neutral) ? p.usual_low / value
+                                               : std::abs(value - p.neutral) /
+                                                     std::max(std::abs(p.usual_low - p.neutral), std::abs(p.usual_high - p.neutral));
+    if (ratio > 1 && std::isfinite(ratio)) sum += std::log(ratio);
+  }
+  return sum;
+}
+
 Eigen::VectorXd Suspect::typical() const {
   Eigen::VectorXd z = Eigen::VectorXd::Zero(coordinateCount());
   for (const int strength : strengths_) z[strength] = 1;
   return z;
 }
 
-/// Levels are a matter of one or the other: whole numbers of bits are tried, nothing is fitted.
+/// Levels are a matter of one or the other: whole numbers of bits are tried, rounded and truncated, nothing is fitted.
 std::vector<Suspect> Suspect::numbersOfBits() const {
-  constexpr int fewest = 5, most = 11;
+  constexpr int fewest = 4, most = 10;
   std::vector<Suspect> result;
-  for (int bits = fewest; bits <= most; ++bits) {
-    Suspect variant = *this;
-    for (const Coordinate& c : coordinates_) variant.base_[c.parameter] = bits;
-    variant.coordinates_.clear();
-    variant.strengths_.clear();
-    result.push_back(std::move(variant));
-  }
+  for (int bits = fewest; bits <= most; ++bits)
+    for (const double rounding_point : {0.5, 1.0}) {
+      Suspect variant = *this;
+      for (std::size_t i = 0; i < info_.parameters.size(); ++i)
+        variant.base_[i] = info_.parameters[i].name == "bits" ? bits : rounding_point;
+      variant.coordinates_.clear();
+      variant.strengths_.clear();
+      result.push_back(std::move(variant));
+    }
   return result;
 }
 

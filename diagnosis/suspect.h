@@ -31,6 +31,9 @@ class Suspect {
   ActiveEffect at(const Eigen::VectorXd& z) const;
   /// Names and values of the parameters that z changes, and of those that are set to something else than neutral.
   std::vector<std::pair<std::string, double>> valuesAt(const Eigen::VectorXd& z) const;
+  /// How far strengths lie beyond their usual range: sum of ln(distance from neutral / largest usual one), 0 within the range. Strengths in
+  /// units of the signal have no usual range.
+  double excess(const Eigen::VectorXd& z) const;
   /// z with every coordinate between the bounds that the parameters' ranges give.
   Eigen::VectorXd clamped(Eigen::VectorXd z) const;
   /// All strengths 1, all shapes usual.

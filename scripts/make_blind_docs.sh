@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Writes docs/blind.md and three figures: makes cases with withheld causes from a seed, diagnoses them without the key, scores.
-# Resumable: the same call goes on with the diagnoses where it was stopped; making the cases, a matter of minutes, begins anew. A case on rig or elbow takes 2 to 3 CPU minutes; one on the arm is expected to take
-# half an hour. 132 cases: 5 to 7 hours on two free cores.
+# Resumable: the same call goes on with the diagnoses where it was stopped; making the cases, a matter of minutes, begins anew. A case on rig
+# or elbow takes a quarter to one CPU minute, and as much again to follow up on (FOLLOW=no leaves that out); one on the arm a quarter of an
+# hour. 132 cases: about two hours on two free cores.
 # Usage: scripts/make_blind_docs.sh SEED CASES KEYS [build folder] [options of `blind make`]
 #     SEED           of all draws; one that has not been used since the diagnosis was changed last
 #     CASES          folder for the cases; new, or of a call that was stopped
@@ -22,4 +23,5 @@ if [[ ! -e "$cases/seal.json" ]]; then
 fi
 key_file="$(sed -n 's/.*"key_file": "\([0-9a-f]*\.json\)".*/\1/p' "$cases/seal.json")"
 "$program" blind run "$cases" "${noted[@]}"
+[[ ${FOLLOW:-yes} == no ]] || "$program" blind follow "$cases" --keys "$keys/$key_file"
 "$program" blind score "$cases" --keys "$keys/$key_file" --docs docs

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Diagnoses the practice cases (recordings with a hidden cause, made by an independent program) and writes docs/practice.md.
+# Diagnoses the practice cases (recordings with a hidden cause, made by an independent program) and writes docs/practice_even.md or docs/practice_odd.md.
 #
 #     scripts/make_practice_docs.sh PRACTICE ANSWERS [even|odd] [build folder]
 #
@@ -19,6 +19,17 @@ answers=$(readlink -f "$2")
 which=${3:-even}
 program=$(readlink -f "${4:-$root/build/release}/musclesim")
 
+# Answers of one folder come from one program; its version is noted with the first of them.
+fingerprint=$(sha256sum "$program" | cut -d' ' -f1)
+if [[ ! -e $answers/version ]]; then
+  printf '%s %s\n' "$(git -C "$root" rev-parse --short HEAD)" "$fingerprint" >"$answers/version"
+fi
+read -r commit noted <"$answers/version"
+if [[ $noted != "$fingerprint" ]]; then
+  echo "make_practice_docs.sh: the answers in $answers are another program's; take a new folder" >&2
+  exit 1
+fi
+
 for folder in "$practice"/case*; do
   name=$(basename "$folder")
   number=$((10#${name#case}))
@@ -29,7 +40,6 @@ for folder in "$practice"/case*; do
   "$program" diagnose "$folder"/r?.csv --out "$answers/$name" --quiet || echo "$name failed" >&2
 done
 
-commit=$(git -C "$root" rev-parse --short HEAD)
 python3 - "$practice" "$answers" "$which" "$commit" >"$root/docs/practice_$which.md" <<'PYTHON'
 import json, math, os, subprocess, sys, tempfile
 practice, answers, which, commit = sys.argv[1:]

@@ -1,10 +1,11 @@
-/// `musclesim blind make`, `run` and `score`: the check of the diagnosis on withheld causes.
+/// `musclesim blind make`, `run`, `score` and `follow`: the check of the diagnosis on withheld causes.
 #include <fmt/format.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
+#include "diagnosis/blind/follow_up.h"
 #include "diagnosis/blind/make.h"
 #include "diagnosis/blind/page.h"
 #include "diagnosis/blind/run.h"
@@ -80,6 +81,32 @@ Action addRunCases(CLI::App& command) {
   return [arguments] { return runCases(*arguments); };
 }
 
+struct FollowArguments {
+  std::string folder, key;
+  blind::FollowUpOptions follow;
+  bool quiet = false;
+};
+
+int followCases(FollowArguments& arguments) {
+  CaseProgress progress(arguments.quiet);
+  arguments.follow.interrupted = [] { return interruptSignal() != 0; };
+  arguments.follow.progress = [&](int done, int count) { progress.show(done, count); };
+  blind::followUp(arguments.folder, arguments.key, arguments.follow);
+  fmt::print("{}\n", blind::followUpTotals(arguments.folder).dump(1));
+  return interruptSignal() != 0 ? interrupted_base + interruptSignal() : done;
+}
+
+Action addFollow(CLI::App& command) {
+  auto arguments = std::make_shared<FollowArguments>();
+  command.add_option("folder", arguments->folder, "Folder with cases and answers")->required();
+  command.add_option("--keys", arguments->key, "The key's file")->required();
+  command.add_option("--jobs", arguments->follow.job_count, "Cases at once (default: one per core); the results do not depend on it")
+      ->check(CLI::Range(1, 1024));
+  command.add_option("--candidates", arguments->follow.candidates, "Only these effects, by id")->delimiter(',');
+  command.add_flag("--quiet", arguments->quiet, "No progress line");
+  return [arguments] { return followCases(*arguments); };
+}
+
 struct ScoreArguments {
   std::string folder, key;
   std::optional<std::string> docs;
@@ -130,7 +157,9 @@ Action addBlind(CLI::App& command) {
   const Action run_action = addRunCases(*run);
   CLI::App* score = command.add_subcommand("score", "Checks the fingerprints, opens the key and counts");
   const Action score_action = addScore(*score);
-  return [=] { return make->parsed() ? make_action() : run->parsed() ? run_action() : score_action(); };
+  CLI::App* follow = command.add_subcommand("follow", "Acts on the answers: true effect left out, proposed experiment, fresh recording");
+  const Action follow_action = addFollow(*follow);
+  return [=] { return make->parsed() ? make_action() : run->parsed() ? run_action() : score->parsed() ? score_action() : follow_action(); };
 }
 
 }  // namespace musclesim::program

@@ -16,7 +16,7 @@ namespace musclesim::program {
 namespace {
 
 struct DiagnoseArguments {
-  std::vector<std::string> recordings, candidates, exclude, ignore_columns;
+  std::vector<std::string> recordings, candidates, exclude, ignore_columns, tune;
   std::optional<std::string> out, json;
   int jobs = 0, max_effects = 2;
 };
@@ -39,13 +39,23 @@ std::string scheduleText(const Experiment& experiment) {
   return text;
 }
 
-void writeAll(const Diagnosis& diagnosis, const std::filesystem::path& folder, const DiagnoseArguments& arguments) {
+/// With the effects that the model already had by --effects, so that the file can take that file's place.
+void writeWith(const std::vector<ActiveEffect>& found, std::vector<ActiveEffect> effects, const std::filesystem::path& file) {
+  effects.insert(effects.end(), found.begin(), found.end());
+  writeEffects(effects, file.string());
+}
+
+void writeAll(const Diagnosis& diagnosis, const std::filesystem::path& folder, const DiagnoseArguments& arguments,
+              const std::vector<ActiveEffect>& effects_of_user) {
   std::filesystem::create_directories(folder);
+  for (const char* of_an_earlier_run : {"attempt.json", "nominal.toml", "next.csv"}) std::filesystem::remove(folder / of_an_earlier_run);
   const std::string json = diagnosisJson(diagnosis);
   replaceFile((folder / "diagnosis.json").string(), json);
   if (arguments.json) replaceFile(*arguments.json, json);
   replaceFile((folder / "report.html").string(), diagnosisReport(diagnosis));
-  writeEffects(diagnosis.chosen_effects, (folder / "effects.json").string());
+  writeWith(diagnosis.chosen_effects, effects_of_user, folder / "effects.json");
+  if (!diagnosis.attempt.effects.empty()) writeWith(diagnosis.attempt.active_effects, effects_of_user, folder / "attempt.json");
+  if (!diagnosis.tuned.empty()) replaceFile((folder / "nominal.toml").string(), tunedToml(diagnosis.tuned));
   if (!diagnosis.next_experiment.commands.empty()) replaceFile((folder / "next.csv").string(), scheduleText(diagnosis.next_experiment));
 }
 
@@ -59,6 +69,7 @@ int diagnoseCommand(const ModelOptions& model, const DiagnoseArguments& argument
   options.model = replayOptionsFrom(model);
   options.candidates = arguments.candidates;
   options.exclude = arguments.exclude;
+  options.tune = arguments.tune;
   options.max_effects = arguments.max_effects;
   options.job_count = arguments.jobs;
   options.seed = model.seed;
@@ -67,7 +78,7 @@ int diagnoseCommand(const ModelOptions& model, const DiagnoseArguments& argument
   options.progress = [&](const DiagnosisProgress& now) { progress.show(now.phase, now.done, now.expected); };
   const Diagnosis diagnosis = diagnose(std::move(recordings), options);
   const std::filesystem::path folder = folderFor(arguments);
-  writeAll(diagnosis, folder, arguments);
+  writeAll(diagnosis, folder, arguments, options.model.effects);
   if (!model.quiet) fmt::print("{}report    {}\n", diagnosisSummary(diagnosis), (folder / "report.html").string());
   return diagnosis.partial ? interrupted_base + 2 : done;
 }
@@ -84,7 +95,12 @@ Action addDiagnose(CLI::App& command, ModelOptions& model) {
       ->check(CLI::Range(1, 1024));
   command.add_option("--candidates", arguments->candidates, "Only these effects, by id")->delimiter(',');
   command.add_option("--exclude", arguments->exclude, "All effects but these")->delimiter(',');
-  command.add_option("--max-effects", arguments->max_effects, "Effects at once (default 2)")->check(CLI::Range(0, 2));
+  command
+      .add_option("--tune", arguments->tune,
+                  "Numbers of the model that nobody measured, by name, separated by commas: fitted first, written to nominal.toml")
+      ->delimiter(',');
+  command.add_option("--max-effects", arguments->max_effects, "Effects at once, found one after the other (default 2)")
+      ->check(CLI::Range(0, 6));
   command.add_option("--ignore-columns", arguments->ignore_columns, "Columns to skip, separated by commas")->delimiter(',');
   addModelOptions(command, model);
   command.remove_option(command.get_option("--json"));

@@ -44,7 +44,7 @@ std::string introduction(const Score& score) {
 
 <!-- Made by scripts/make_blind_docs.sh; do not edit. -->
 
-`musclesim blind make` draws plants: a robot, a cause, a component, a size, excitations, sensors. The truth is simulated with another law than the catalogue's (two lags for one, Bouc-Wen for play, LuGre for Coulomb), with causes that the catalogue does not have, or with none; with half the internal step of the model (arm: the same step, because a finer one alone moves its hand by millimetres), other seeds and sensor noise. The key is sealed; `musclesim blind run` diagnoses without it and refuses to start if it can read it; `musclesim blind score` checks all fingerprints, then opens the key. [Diagnosing](diagnosing.md) explains the method that is tested here.
+`musclesim blind make` draws plants: a robot, a cause, a component, a size, excitations, sensors. The truth is simulated with another law than the catalogue's (three lags for one, Bouc-Wen for play, LuGre for Coulomb), with causes that the catalogue does not have, or with none; with half the internal step of the model (arm: the same step, because a finer one alone moves its hand by millimetres), other seeds and sensor noise. The key is sealed; `musclesim blind run` diagnoses without it and refuses to start if it can read it; `musclesim blind score` checks all fingerprints, then opens the key. [Diagnosing](diagnosing.md) explains the method that is tested here.
 
 | | |
 |---|---|
@@ -109,6 +109,24 @@ std::string groupTable(const std::string& title, const json& groups) {
   return text + "\n";
 }
 
+/// What came of the answers; empty if that was not tried.
+std::string followed(const json& totals) {
+  if (totals.empty()) return "";
+  std::string text = "## What came of the answers\n\nBy `musclesim blind follow`.\n\n| measure | aim | found |\n|---|---|---|\n";
+  auto row = [&](const char* what, const char* aim, const char* name) {
+    text += fmt::format("| {} | {} | {} |\n", what, aim, longRate(totals, name));
+  };
+  row("true effect not among the candidates: a wrong cause with more than 0.9", "<= 5 %", "left_out_confidently_wrong");
+  row("true effect not among the candidates: unexplained", "", "left_out_unexplained");
+  row("true effect not among the candidates: an acceptable look-alike first", "", "left_out_look_alike");
+  row("ambiguous answers: after recording the proposed schedule the truth is first", ">= 80 %", "experiment_truth_first");
+  row("ambiguous answers: after recording the proposed schedule one effect is left", "", "experiment_alone");
+  row("shrink by effects.json on a fresh recording within the reported interval", "", "fresh_within");
+  text += fmt::format("| median difference between that shrink and the reported one, points | | {} |\n",
+                      numberText(totals, "fresh_median_difference_points", "{:.2f}"));
+  return text + "\n";
+}
+
 /// Why a case counts as failed; empty if it does not.
 std::string failureOf(const Judgement& j) {
   if (j.kind == "null") return j.false_alarm.value_or(false) ? "false alarm" : "";
@@ -146,7 +164,7 @@ std::string pageText(const Score& score) {
          "![Share of causes found over the size of the gap](figures/blind_detectability.svg)\n\n"
          "![True stage against answered stage](figures/blind_confusion.svg)\n\n" +
          groupTable("kind", totals["by_kind"]) + groupTable("robot", totals["by_robot"]) + groupTable("size", totals["by_size"]) +
-         groupTable("effect", totals["by_effect"]) + failures(score);
+         groupTable("effect", totals["by_effect"]) + followed(totals.value("follow_up", json::object())) + failures(score);
 }
 
 void writePage(const Score& score, const fs::path& folder) {

@@ -9,6 +9,7 @@
 #include "../parallel.h"
 #include "musclesim/diagnosis/diagnosis.h"
 #include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effects_file.h"
 #include "musclesim/error.h"
 #include "musclesim/log/recording.h"
 #include "seal.h"
@@ -29,7 +30,12 @@ fs::path costOf(const fs::path& folder, const std::string& name) {
   return folder / "answers" / (name + ".cost.json");
 }
 
-/// Named relative to DIR, so that the answer does not depend on where DIR lies.
+}  // namespace
+
+fs::path effectsOf(const fs::path& folder, const std::string& name) {
+  return folder / "answers" / (name + ".effects.json");
+}
+
 std::vector<Recording> recordingsOf(const fs::path& folder, const std::string& name) {
   std::vector<Recording> recordings;
   for (const std::string& file : recordingFiles(folder)) {
@@ -40,6 +46,8 @@ std::vector<Recording> recordingsOf(const fs::path& folder, const std::string& n
   return recordings;
 }
 
+namespace {
+
 /// The answer; nothing if it was interrupted.
 std::optional<json> answered(const fs::path& folder, const std::string& name, const RunOptions& options) {
   DiagnosisOptions how;
@@ -49,6 +57,7 @@ std::optional<json> answered(const fs::path& folder, const std::string& name, co
   try {
     const Diagnosis diagnosis = diagnose(recordingsOf(folder, name), how);
     if (diagnosis.partial) return std::nullopt;
+    writeEffects(diagnosis.chosen_effects, effectsOf(folder, name).string());
     json answer = json::parse(diagnosisJson(diagnosis));
     answer["cost"].erase("wall_s");  // not the same twice
     return answer;

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "musclesim/log/recording.h"
+
 namespace musclesim::blind {
 
 struct RunOptions {
@@ -28,6 +30,12 @@ struct RunSummary {
 /// Throws BadParameter if the key is within reach, if other answers were made by another program or with other
 /// candidates, and for unknown candidates.
 RunSummary run(const std::filesystem::path& folder, const RunOptions& options);
+
+/// A case's recordings, named relative to DIR, so that an answer does not depend on where DIR lies.
+std::vector<Recording> recordingsOf(const std::filesystem::path& folder, const std::string& name);
+
+/// What was chosen, as a file for `--effects`.
+std::filesystem::path effectsOf(const std::filesystem::path& folder, const std::string& name);
 
 /// The answers relative to DIR, in the order of the cases.
 std::vector<std::string> answerFiles(const std::filesystem::path& folder);

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 
+#include "follow_up.h"
 #include "look_alikes.h"
 #include "musclesim/error.h"
 #include "run.h"
@@ -20,10 +21,6 @@ namespace {
 
 void requireSame(const std::string& expected, const std::string& found, const fs::path& file, const std::string& what) {
   if (expected != found) throw BadFile(file.string(), what + ": SHA-256 is " + found + ", sealed was " + expected);
-}
-
-json rateJson(const Rate& rate) {
-  return {{"hits", rate.hits}, {"count", rate.count}, {"value", rate.value()}, {"low", rate.low()}, {"high", rate.high()}};
 }
 
 using Cases = std::vector<Judgement>;
@@ -101,7 +98,7 @@ json binsJson(const Cases& cases) {
   return bins;
 }
 
-std::string effectsOf(const Judgement& j) {
+std::string causesOf(const Judgement& j) {
   return j.true_ids.empty() ? "none" : fmt::format("{}", fmt::join(j.true_ids, " + "));
 }
 
@@ -150,6 +147,10 @@ json caseJson(const Judgement& j) {
 
 }  // namespace
 
+json rateJson(const Rate& rate) {
+  return {{"hits", rate.hits}, {"count", rate.count}, {"value", rate.value()}, {"low", rate.low()}, {"high", rate.high()}};
+}
+
 json totalsOf(const Cases& cases) {
   json totals = {{"cases", cases.size()}};
   putRates(totals, cases);
@@ -179,9 +180,10 @@ Score score(const fs::path& folder, const fs::path& key_file) {
                    {"by_kind", grouped(result.cases, [](const Judgement& j) { return j.kind; })},
                    {"by_robot", grouped(result.cases, [](const Judgement& j) { return j.robot; })},
                    {"by_size", grouped(result.cases, [](const Judgement& j) { return j.size; })},
-                   {"by_effect", grouped(result.cases, effectsOf)},
+                   {"by_effect", grouped(result.cases, causesOf)},
                    {"confusion", confusionOf(result.cases)},
-                   {"reliability", binsJson(result.cases)}};
+                   {"reliability", binsJson(result.cases)},
+                   {"follow_up", followUpTotals(folder)}};
   return result;
 }
 

@@ -17,6 +17,9 @@ struct Score {
   nlohmann::json totals;  ///< see totalsOf, of all and by kind, robot, size, effect
 };
 
+/// {"hits", "count", "value", "low", "high"}.
+nlohmann::json rateJson(const Rate& rate);
+
 /// Rates as {"hits", "count", "value", "low", "high"}, means and medians as numbers; what no case has is absent.
 nlohmann::json totalsOf(const std::vector<Judgement>& cases);
 

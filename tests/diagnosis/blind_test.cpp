@@ -10,6 +10,7 @@
 
 #include "diagnosis/blind/cause.h"
 #include "diagnosis/blind/excitation.h"
+#include "diagnosis/blind/follow_up.h"
 #include "diagnosis/blind/make.h"
 #include "diagnosis/blind/run.h"
 #include "diagnosis/blind/score.h"
@@ -161,6 +162,37 @@ TEST_F(Blind, RefusesAKeyAndRecordingsThatWereChanged) {
   EXPECT_NO_THROW(score(cases(), key));
   append(cases() / "case001" / "r4.csv", "9,0.4\n");
   EXPECT_TRUE(contains(messageOf<BadFile>([&] { score(cases(), key); }), "recordings were changed"));
+}
+
+TEST_F(Blind, FollowsUpOnAnswersOnce) {
+  MakeOptions single = tiny({"single"}, 7);
+  single.duration_s = 2;
+  const fs::path key_file = make(cases(), keys(), single);
+  const std::string truth = readObject(key_file)["cases"]["case001"]["effects"][0]["id"];
+  RunOptions options = few();
+  options.candidates = {truth, truth == "payload" ? "sensor_bias" : "payload"};
+  run(cases(), options);
+  EXPECT_TRUE(followUpTotals(cases()).empty());
+  FollowUpOptions follow;
+  follow.job_count = 1;
+  follow.candidates = options.candidates;
+  followUp(cases(), key_file, follow);
+  const fs::path file = cases() / "follow_up" / "case001.json";
+  const nlohmann::json found = readObject(file);
+  EXPECT_EQ(followUpTotals(cases())["left_out_unexplained"]["count"], 1);
+  EXPECT_NE(found["left_out"]["top"].get<std::string>().substr(0, truth.size() + 1), truth + "@");
+  ASSERT_EQ(readObject(cases() / "answers" / "case001.json")["verdict"], "effects_found");
+  // What an effect gains under other commands is the study's question; here it must be a gain, and be compared as it says.
+  const double shrink = found["fresh"]["shrink_percent"];
+  const std::vector<double> interval = found["fresh"]["interval_percent"];
+  EXPECT_GT(shrink, 50);
+  EXPECT_EQ(found["fresh"]["within"].get<bool>(), interval[0] <= shrink && shrink <= interval[1]);
+  append(file, " ");
+  const std::string mark = sha256OfFile(file);
+  followUp(cases(), key_file, follow);
+  EXPECT_EQ(sha256OfFile(file), mark) << "a case was done again";
+  append(cases() / "answers" / "case001.json", " ");
+  EXPECT_TRUE(contains(messageOf<BadFile>([&] { followUp(cases(), key_file, follow); }), "answers were changed"));
 }
 
 TEST(BlindExcitation, StaysBetweenMinusOneAndOneAndRestsAtFirst) {

@@ -112,7 +112,7 @@ TEST_F(LoadedRig, FirstLookSeesThePayload) {
   const std::vector<Suspect> all = suspects(plant, options);
   const Eigen::VectorXd nominal = both.predicted(Model{});
   int simulations = 0;
-  const std::vector<Signature> looks = screen(both, all, nominal, 1, [&] { ++simulations; });
+  const std::vector<Signature> looks = screen(both, all, nominal, Model{}, 1, [&] { ++simulations; });
   EXPECT_GT(simulations, 1);
   const double before = both.logMisfit(both.measured() - nominal);
   for (std::size_t i = 0; i < all.size(); ++i) {

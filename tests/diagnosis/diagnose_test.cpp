@@ -138,6 +138,70 @@ TEST(Diagnose, SaysWhatRowsAreMissing) {
   EXPECT_TRUE(says("no rows between 1.990 and 2.500 s"));
 }
 
+TEST(Diagnose, FitsNumbersNobodyMeasuredTogetherWithTheEffect) {
+  // A load of 2.2 kg in place of 2 kg, and a valve that lags.
+  DiagnosisOptions options = few({"valve_lag", "transport_delay"});
+  options.tune = {"rig.load_kg"};
+  const Diagnosis found = diagnose(plant({{"payload", "hand", {{"mass_kg", 0.2}}},
+                                          {"valve_lag", "all", {{"fill_time_constant_s", 0.1}, {"vent_time_constant_s", 0.1}}}}),
+                                   options);
+  ASSERT_EQ(found.chosen, std::vector<std::string>{"valve_lag@muscle_0"}) << diagnosisSummary(found);
+  ASSERT_EQ(found.tuned.size(), 1U);
+  EXPECT_EQ(found.tuned[0].name, "rig.load_kg");
+  EXPECT_EQ(found.tuned[0].start, 2);
+  EXPECT_NEAR(found.tuned[0].with_effects.value, 2.2, 0.01);
+  EXPECT_LE(found.tuned[0].with_effects.low, found.tuned[0].with_effects.value);
+  EXPECT_TRUE(contains(tunedToml(found.tuned), "rig.load_kg = 2."));
+  EXPECT_TRUE(contains(diagnosisReport(found), "rig.<wbr>load_<wbr>kg"));
+}
+
+TEST(Diagnose, RefusesToTuneWhatIsNoNumberOfTheModel) {
+  DiagnosisOptions options = few({"payload"});
+  options.tune = {"rig.load"};
+  EXPECT_TRUE(contains(messageOf<BadParameter>([&] { diagnose(plant({}), options); }), "did you mean \"rig.load_kg\""));
+  options.tune = {"muscle.slider_friction_N"};
+  options.model.parameters.set("muscle.slider_friction_N", 0.0, "test");
+  EXPECT_TRUE(contains(messageOf<BadParameter>([&] { diagnose(plant({}), options); }), "begin at another value"));
+}
+
+TEST(Diagnose, FindsThreeEffectsOneBesideTheOther) {
+  DiagnosisOptions options = few({"payload", "transport_delay", "sensor_gain", "force_drift"});
+  options.max_effects = 3;
+  const Diagnosis found = diagnose(plant({{"payload", "hand", {{"mass_kg", 0.3}}},
+                                          {"transport_delay", "all", {{"delay_s", 0.06}}},
+                                          {"sensor_gain", "signal_length_0", {{"gain", 1.1}}}}),
+                                   options);
+  std::vector<std::string> told = found.chosen.empty() ? found.attempt.effects : found.chosen;
+  std::ranges::sort(told);
+  EXPECT_EQ(told, (std::vector<std::string>{"payload@hand", "sensor_gain@signal_length_0", "transport_delay@muscle_0"}))
+      << diagnosisSummary(found);
+}
+
+TEST(Diagnose, TellsWhatComesNearestWhereNothingDeservesBelief) {
+  const Diagnosis found = diagnose(plant({{"valve_lag", "all", {{"fill_time_constant_s", 0.15}, {"vent_time_constant_s", 0.15}}}}),
+                                   few({"sensor_backlash", "force_drift"}));
+  ASSERT_EQ(found.verdict, Verdict::unexplained) << diagnosisSummary(found);
+  EXPECT_TRUE(found.chosen.empty());
+  ASSERT_FALSE(found.attempt.effects.empty());
+  EXPECT_EQ(found.attempt.effects.size(), found.attempt.active_effects.size());
+  EXPECT_TRUE(contains(diagnosisJson(found), "\"attempt\""));
+  EXPECT_TRUE(contains(diagnosisSummary(found), "What comes nearest"));
+}
+
+TEST(Diagnose, EffectsThatThePlantCannotTakeAreNoCandidates) {
+  // A payload may be negative; the carriage has 0.5 kg.
+  Recording recording = recorded({}, 0.2, 1);
+  recording.info.robot = "spring_bench";
+  recording.info.robot_parameters = {{"muscle.model", "line"}};
+  recording.signals[0].values.assign(recording.time_s.size(), 0.2);
+  for (std::size_t row = 100; row < recording.time_s.size(); ++row) recording.signals[0].values[row] = 0.6;
+  ReplayOptions options;
+  recording.signals[1] = *replayRecording(recording, options).simulated.find("length_0_mm");
+  for (double& value : recording.signals[1].values) value += 3;
+  const Diagnosis found = diagnose({recording}, few({"payload", "sensor_bias"}));
+  EXPECT_EQ(found.chosen, std::vector<std::string>{"sensor_bias@signal_length_0"}) << diagnosisSummary(found);
+}
+
 TEST(Diagnose, RestingCommandsAreNotExcited) {
   std::vector<Recording> recordings = {recorded({}, 0, 1), recorded({}, 0, 2)};
   EXPECT_EQ(diagnose(recordings).verdict, Verdict::not_excited);

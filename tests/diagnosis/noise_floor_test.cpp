@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "musclesim/random.h"
 
@@ -45,6 +46,13 @@ TEST(NoiseFloor, ThenFromQuietRows) {
   const NoiseFloor floor = noiseFloor({noisyWave(3)}, "length_0_mm");
   EXPECT_EQ(floor.source, NoiseFloor::Source::quiet_rows);
   EXPECT_NEAR(floor.value, std_mm, 0.1 * std_mm);
+}
+
+TEST(NoiseFloor, OfASignalThatIsReadInEveryOtherRowIsThatOfItsReadings) {
+  std::vector<Recording> recordings = {noisyWave(3)};
+  for (std::size_t row = 1; row < recordings[0].time_s.size(); row += 2)
+    recordings[0].signals[1].values[row] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NEAR(noiseFloor(recordings, "length_0_mm").value, std_mm, 0.15 * std_mm);
 }
 
 TEST(NoiseFloor, IsNeverBelowTheResolutionOfTheValues) {

@@ -9,7 +9,7 @@ function(run)
 endfunction()
 
 file(REMOVE_RECURSE "${work}")
-run("${CMAKE_COMMAND}" --install "${build}" --prefix "${work}/prefix" --config RelWithDebInfo)
+run("${CMAKE_COMMAND}" --install "${build}" --prefix "${work}/prefix" --config "${configuration}")
 
 execute_process(COMMAND "${work}/prefix/bin/musclesim" --version OUTPUT_VARIABLE printed COMMAND_ERROR_IS_FATAL ANY)
 if(NOT printed STREQUAL "musclesim ${version}\n")

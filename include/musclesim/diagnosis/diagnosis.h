@@ -26,7 +26,8 @@ struct DiagnosisOptions {
   ReplayOptions model;                                     ///< the simulator as the user has it
   std::vector<std::string> candidates;                     ///< ids of effects to consider; empty: the whole catalogue
   std::vector<std::string> exclude;                        ///< ids not to consider
-  int max_effects = 2;                                     ///< how many effects an explanation may have, 0..3
+  std::vector<std::string> tune;                           ///< numbers of the model to fit first: those that nobody measured
+  int max_effects = 2;                                     ///< how many effects an explanation may have, 0..6
   int job_count = 0;                                       ///< threads; 0: one per core. The answer does not depend on it
   std::uint64_t seed = 1;                                  ///< of the bootstrap and the sham
   std::function<void(const DiagnosisProgress&)> progress;  ///< called from one thread at a time
@@ -73,7 +74,8 @@ struct Gap {
 
 struct Experiment {
   std::vector<std::string> separates;
-  std::string why;
+  std::string schedule, why;  ///< name of the schedule, and what it is good for
+  double amplitude = 1;       ///< of the commands' range in the recordings
   std::vector<double> time_s;
   std::vector<std::vector<double>> commands;  ///< per row, one per muscle; empty: there is nothing to tell apart
   double difference = 0;                      ///< RMS between the predictions, in units of the noise floor
@@ -90,6 +92,7 @@ struct Trial {
   std::vector<std::string> effects;
   int parameter_count = 0;
   std::vector<double> rms;
+  std::vector<std::map<std::string, double>> values;  ///< parameters of every effect
 };
 
 /// How much of the log misfit one effect would remove by the first look, of what there is, 0..1.
@@ -126,6 +129,22 @@ struct Trace {
   std::vector<double> time_s, measured, before, after;
 };
 
+/// A number of the model that was fitted to the recordings before the gap was asked about.
+struct TunedParameter {
+  std::string name, unit;
+  double start = 0;
+  Estimate fitted;        ///< without any effect
+  Estimate with_effects;  ///< together with the chosen effects; as `fitted` if none was chosen
+};
+
+/// What comes nearest where no explanation is good enough to be believed.
+struct Attempt {
+  std::vector<std::string> effects;          ///< "id@component"
+  std::vector<ActiveEffect> active_effects;  ///< with the fitted parameters
+  Gap after;
+  double shrink_percent = 0, shrink_low_percent = 0, shrink_high_percent = 0;
+};
+
 struct Diagnosis {
   std::string robot;
   std::vector<std::string> recordings;
@@ -138,10 +157,12 @@ struct Diagnosis {
   std::vector<std::string> chosen, ambiguity_set;
   std::vector<ActiveEffect> chosen_effects;
   Gap before, after;
+  Attempt attempt;       ///< of the verdict `unexplained`; without effects if there was nothing to try
   std::string held_out;  ///< what the gap was measured on, in words
   bool is_held_out = false;
   double shrink_percent = 0, shrink_low_percent = 0, shrink_high_percent = 0;
   double nominal_refit_shrink_percent = 0, sham_shrink_percent = 0, unexplained_percent = 0;
+  std::vector<TunedParameter> tuned;     ///< of DiagnosisOptions::tune; before and after are gaps of the model with these
   std::vector<std::string> not_excited;  ///< effects that these recordings could not have shown
   std::vector<std::string> notes;        ///< what the user should know about data and answer
   Experiment next_experiment;
@@ -166,6 +187,9 @@ std::string diagnosisJson(const Diagnosis& diagnosis, const std::string& schedul
 
 /// report.html: one page that needs no other file.
 std::string diagnosisReport(const Diagnosis& diagnosis);
+
+/// The tuned parameters as a file for --config.
+std::string tunedToml(const std::vector<TunedParameter>& parameters);
 
 /// What a person can read in ten seconds.
 std::string diagnosisSummary(const Diagnosis& diagnosis);

@@ -1,0 +1,57 @@
+#include "tune.h"
+
+#include <fmt/format.h>
+
+#include "comparison.h"
+#include "musclesim/error.h"
+#include "refit.h"
+
+namespace musclesim {
+
+namespace {
+
+constexpr int round_count = 20;
+
+}  // namespace
+
+Tuning tune(const std::vector<Recording>& recordings, DiagnosisOptions& options) {
+  const Plant plant(recordings, options);
+  const Comparison fitted(plant, plant.split().fit);
+  DiagnosisProgress progress{"fitting the model's own numbers", 0, round_count * static_cast<long>(plant.tunedCount() + 2)};
+  FitProblem problem;
+  problem.start = Eigen::VectorXd::Zero(plant.tunedCount());
+  problem.clamped = Plant::clampedTuning;
+  problem.predicted = [&](const Eigen::VectorXd& z) {
+    ++progress.done;
+    if (options.progress) options.progress(progress);
+    Model model;
+    model.parameters = plant.tunedAt(z);
+    return fitted.predicted(model);
+  };
+  const FitResult result = fit(fitted, problem, round_count);
+  if (!result.residual.size()) throw Diverged(0, plant.robot(), "the model without further effects cannot follow the recordings");
+  Tuning tuning{tunedParameters(plant, result.z, result.half_width), plant.simulationCount(), plant.simulatedS()};
+  for (const TunedParameter& parameter : tuning.parameters) options.model.parameters.set(parameter.name, parameter.fitted.value, "--tune");
+  return tuning;
+}
+
+std::vector<TunedParameter> tunedParameters(const Plant& plant, const Eigen::VectorXd& z, const Eigen::VectorXd& half_width) {
+  const auto at = plant.tunedAt(z), one = plant.tunedAt(z - half_width), other = plant.tunedAt(z + half_width);
+  std::vector<TunedParameter> result;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const Parameter& parameter = plant.tuned()[i];
+    const Estimate fitted = {at[i].second, std::min(one[i].second, other[i].second), std::max(one[i].second, other[i].second)};
+    result.push_back({parameter.name, parameter.unit, std::get<double>(parameter.value), fitted, fitted});
+  }
+  return result;
+}
+
+std::string tunedToml(const std::vector<TunedParameter>& parameters) {
+  std::string text = "# Numbers of the model that musclesim diagnose --tune fitted to recordings, together with what effects.json holds.\n";
+  for (const TunedParameter& parameter : parameters)
+    text += fmt::format("{} = {}  # {}; {:.4g} .. {:.4g}, from {:.4g}\n", parameter.name, parameter.with_effects.value, parameter.unit,
+                        parameter.with_effects.low, parameter.with_effects.high, parameter.start);
+  return text;
+}
+
+}  // namespace musclesim

@@ -1,0 +1,25 @@
+/// Numbers of the model itself that nobody measured, fitted before the gap is asked about.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "musclesim/diagnosis/diagnosis.h"
+#include "plant.h"
+
+namespace musclesim {
+
+struct Tuning {
+  std::vector<TunedParameter> parameters;
+  long simulation_count = 0;
+  double simulated_s = 0;
+};
+
+/// Fits options.tune to the fitting part of the recordings (never to what is held out) without any further effect, puts the values into
+/// options.model.parameters and returns them. Throws BadParameter for a name that is not a number of the model, or whose value is 0.
+Tuning tune(const std::vector<Recording>& recordings, DiagnosisOptions& options);
+
+/// The plant's tuned numbers at coordinates, with 95 % intervals from the half widths; `start` is the value in force.
+std::vector<TunedParameter> tunedParameters(const Plant& plant, const Eigen::VectorXd& z, const Eigen::VectorXd& half_width);
+
+}  // namespace musclesim

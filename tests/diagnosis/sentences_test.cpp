@@ -1,0 +1,64 @@
+// What a diagnosis says in words.
+#include "diagnosis/sentences.h"
+
+#include <gtest/gtest.h>
+
+#include "support/support.h"
+
+namespace musclesim {
+namespace {
+
+TEST(Words, NothingIsCertainOrComplete) {
+  EXPECT_EQ(percentWords(96.24), "96.2 %");
+  EXPECT_EQ(percentWords(99.97), "more than 99.9 %");
+  EXPECT_EQ(percentWords(-3), "-3.0 %");
+  EXPECT_EQ(leftWords(3.81), "3.81 %");
+  EXPECT_EQ(leftWords(0.0004), "less than 0.1 %");
+  EXPECT_EQ(probabilityWords(0.93), "93 %");
+  EXPECT_EQ(probabilityWords(1), "over 99 %");
+}
+
+Diagnosis lagFound() {
+  Diagnosis d;
+  d.verdict = Verdict::effects_found;
+  d.where = {{"pressure", "muscle_1", "venting", 0.81}};
+  d.effects = {{"valve_lag", "muscle_1", 0.931, {{"vent_time_constant_s", {0.081, 0.077, 0.085}}}, 96.2}};
+  d.chosen = {"valve_lag@muscle_1"};
+  d.ambiguity_set = {"valve_lag@muscle_1", "flow_limit@muscle_1"};
+  d.shrink_percent = 96.2;
+  d.shrink_low_percent = 94;
+  d.shrink_high_percent = 97.5;
+  return d;
+}
+
+TEST(VerdictSentence, SaysWhereWhichHowFarAndWhatElse) {
+  const std::string text = verdictSentence(lagFound());
+  for (const char* part : {"81 % of the gap is in the pressure stage (muscle 1), mostly while venting", "93 % likely",
+                           "valve lag on muscle 1 with vent_time_constant_s = 0.081 (0.077 to 0.085)", "96.2 % (94.0 to 97.5)",
+                           "Flow limit on muscle 1 would explain it as well"})
+    EXPECT_TRUE(contains(text, part)) << part << "\n" << text;
+}
+
+TEST(VerdictSentence, SaysWhatIsLeftWhereItStandsOut) {
+  Diagnosis d = lagFound();
+  d.after.normalised = 2;
+  EXPECT_FALSE(contains(verdictSentence(d), "What is left"));
+  d.after.normalised = 24;
+  EXPECT_TRUE(contains(verdictSentence(d), "What is left is still 5.0 times the noise"));
+}
+
+TEST(VerdictSentence, AdmitsWhatItCannotTell) {
+  Diagnosis d;
+  d.verdict = Verdict::no_gap;
+  EXPECT_TRUE(contains(verdictSentence(d), "No gap"));
+  d.verdict = Verdict::not_excited;
+  EXPECT_TRUE(contains(verdictSentence(d), "cannot tell"));
+  d.verdict = Verdict::unexplained;
+  EXPECT_TRUE(contains(verdictSentence(d), "cannot explain"));
+  d.effects = lagFound().effects;
+  d.effects.front().probability = 0.21;
+  EXPECT_TRUE(contains(verdictSentence(d), "valve lag on muscle 1, has a probability of 21 %"));
+}
+
+}  // namespace
+}  // namespace musclesim

@@ -1,0 +1,68 @@
+// Coordinates of suspects, and how coarse simulations stand in for fine ones.
+#include "diagnosis/suspect.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "diagnosis/comparison.h"
+#include "planted.h"
+
+namespace musclesim {
+namespace {
+
+class PlantedRig : public testing::Test {
+ protected:
+  Suspect suspect(const std::string& id, const std::string& component) const { return {effectInfo(id), component, plant_}; }
+
+  DiagnosisOptions options_;
+  Plant plant_{planted::plant({}), options_};
+};
+
+TEST_F(PlantedRig, ExcessIsTheLogarithmOfTheDistanceBeyondTheUsualRange) {
+  const Suspect payload = suspect("payload", "hand");
+  Eigen::VectorXd z = payload.typical();
+  EXPECT_EQ(payload.excess(z), 0);
+  const double typical_kg = payload.valuesAt(z).front().second, usual_kg = effectInfo("payload").parameters.front().usual_high;
+  z[0] = std::exp(0.7) * usual_kg / typical_kg;
+  EXPECT_NEAR(payload.excess(z), 0.7, 1e-9);
+
+  const Suspect limit = suspect("flow_limit", "muscle_0");
+  z = limit.typical();
+  EXPECT_EQ(limit.excess(z), 0);
+  z[0] = limit.typical()[0] * std::exp(3);  // slower: the rate is the typical one over z
+  EXPECT_GT(limit.excess(z), 1);
+  z[0] = 1e-3;  // nearly unlimited
+  EXPECT_EQ(limit.excess(z), 0);
+}
+
+TEST_F(PlantedRig, WhatHasNoUsualRangeHasNoExcess) {
+  const Suspect bias = suspect("sensor_bias", "signal_length_0");
+  EXPECT_EQ(bias.excess(Eigen::VectorXd::Constant(bias.coordinateCount(), 40)), 0);
+}
+
+TEST_F(PlantedRig, BitsAreRoundedAndTruncated) {
+  const std::vector<Suspect> variants = suspect("command_quantisation", "muscle_0").variants(plant_);
+  EXPECT_EQ(variants.size(), 14U);
+  for (const Suspect& variant : variants) EXPECT_EQ(variant.coordinateCount(), 0);
+  EXPECT_NE(variants[0].at({}), variants[1].at({}));
+}
+
+/// Coarse predictions are exact without effects, and close to fine ones with them.
+TEST_F(PlantedRig, CoarseStepsAreCorrected) {
+  Comparison comparison(plant_, plant_.split().fit);
+  const Model payload{{{"payload", "hand", {{"mass_kg", 0.3}}}}, {}};
+  const Eigen::VectorXd fine = comparison.predicted(Model{}), with = comparison.predicted(payload);
+  const Eigen::VectorXd uncorrected = comparison.predicted(payload, Fidelity::coarse);
+  comparison.goCoarse(fine);
+  EXPECT_EQ(comparison.fidelity(), Fidelity::coarse);
+  EXPECT_LT((comparison.predicted(Model{}) - fine).cwiseAbs().maxCoeff(), 1e-12);
+  auto rms = [](const Eigen::VectorXd& v) { return std::sqrt(v.squaredNorm() / static_cast<double>(v.size())); };
+  EXPECT_GT(rms(uncorrected - with), 0) << "coarse steps are not coarse";
+  const double error = rms(comparison.predicted(payload) - with);
+  EXPECT_LT(error, 0.7 * rms(uncorrected - with));
+  EXPECT_LT(error, 0.02 * rms(with - fine)) << "of the payload's own change";
+}
+
+}  // namespace
+}  // namespace musclesim
