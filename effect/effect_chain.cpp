@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "../robot/ode_vector.h"
 #include "components.h"
@@ -11,6 +12,7 @@
 #include "musclesim/error.h"
 #include "musclesim/robot/robot.h"
 #include "musclesim/simulation/simulation.h"
+#include "musclesim/units.h"
 #include "sensor_stage.h"
 
 namespace musclesim {
@@ -206,11 +208,16 @@ bool EffectChain::has(const std::string& id) const {
   return std::any_of(planned_.begin(), planned_.end(), [&](const Planned& planned) { return planned.info.id == id; });
 }
 
-double EffectChain::sumOf(const std::string& id, const std::string& component, const std::string& parameter) const {
-  double sum = 0;
-  for (const Planned& planned : planned_)
-    if (planned.info.id == id && (planned.component == component || planned.component == "all"))
-      sum += EffectValues(planned.info.parameters, planned.values)[parameter];
+Vector EffectChain::startOffsetMm(int muscle, const Vector& lever) const {
+  Vector sum = Vector::Zero();
+  const Vector up = Vector::UnitY() - lever.y() * lever;
+  for (const Planned& planned : planned_) {
+    if (!planned.info.start_turn_deg || (planned.component != "all" && planned.component != fmt::format("muscle_{}", muscle))) continue;
+    const double turn_rad = *planned.info.start_turn_deg * rad_per_deg, norm = up.norm();
+    Vector direction = lever;
+    if (turn_rad != 0 && norm > 0) direction = std::cos(turn_rad) * lever + std::sin(turn_rad) / norm * up;
+    sum += EffectValues(planned.info.parameters, planned.values)["offset_mm"] * direction;
+  }
   return sum;
 }
 

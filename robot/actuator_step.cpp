@@ -54,11 +54,6 @@ double Actuator::fastestSwayRadPerS() const {
   return std::sqrt(largest);
 }
 
-/// What a line muscle pulls with: tension, friction of its length, and a spring beyond its longest length.
-double Actuator::lineForceN() const {
-  return line_->totalForceN(std::max(0.0, tension_N_), maximum_length_mm_, settings_, simulation_.physics());
-}
-
 /// Where a joint is at a stop before the step, ODE lets the motor press into the stop; viscous friction then rests.
 void Actuator::setViscousMotors() {
   for (const Link& link : links_) {
@@ -75,7 +70,7 @@ void Actuator::setViscousMotors() {
 }
 
 void Actuator::applyForces() {
-  if (line_) return line_->pull(lineForceN() * simulation_.physics().force_per_N);
+  if (line_) return line_->pull(std::max(0.0, tension_N_), maximum_length_mm_, settings_, simulation_.physics());
   if (settings_.viscous) setViscousMotors();
   const double force = tension_N_ * simulation_.physics().force_per_N;
   for (const Link& link : links_) dJointAddSliderForce(link.slider->id(), force);

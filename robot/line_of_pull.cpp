@@ -50,25 +50,25 @@ void LineOfPull::addViaPoint(Primitive* primitive, const Vector& point_mm) {
   points_.insert(points_.end() - 1, pointOn(primitive, point_mm));
 }
 
-Vector LineOfPull::positionOf(const Point& point) {
-  return point.body ? Vector(musclesim::positionOf(point.body) + rotationOf(point.body) * point.place) : point.place;
-}
-
-Vector LineOfPull::velocityOf(const Point& point) {
-  if (!point.body) return Vector::Zero();
-  return fromOde(dBodyGetLinearVel(point.body)) + fromOde(dBodyGetAngularVel(point.body)).cross(rotationOf(point.body) * point.place);
-}
-
 void LineOfPull::locate() const {
+  arms_.clear();
   positions_.clear();
-  for (const Point& point : points_) positions_.push_back(positionOf(point));
+  directions_.clear();
+  length_mm_ = 0;
+  for (const Point& point : points_) {
+    arms_.push_back(point.body ? Vector(rotationOf(point.body) * point.place) : point.place);
+    positions_.push_back(point.body ? Vector(musclesim::positionOf(point.body) + arms_.back()) : point.place);
+    if (positions_.size() < 2) continue;
+    const Vector segment = positions_.back() - positions_[positions_.size() - 2];
+    const double segment_mm = segment.norm();
+    directions_.push_back(segment_mm > 0 ? Vector(segment / segment_mm) : segment);
+    length_mm_ += segment_mm;
+  }
 }
 
 double LineOfPull::lengthMm() const {
   locate();
-  double sum_mm = 0;
-  for (std::size_t i = 0; i + 1 < positions_.size(); ++i) sum_mm += (positions_[i + 1] - positions_[i]).norm();
-  return sum_mm;
+  return length_mm_;
 }
 
 std::vector<Vector> LineOfPull::pointsMm() const {
@@ -77,32 +77,34 @@ std::vector<Vector> LineOfPull::pointsMm() const {
 }
 
 Vector LineOfPull::gradient(std::size_t i) const {
-  const Vector& here = positions_[i];
   Vector sum = Vector::Zero();
-  if (i > 0) sum += (here - positions_[i - 1]).stableNormalized();
-  if (i + 1 < points_.size()) sum -= (positions_[i + 1] - here).stableNormalized();
+  if (i > 0) sum += directions_[i - 1];
+  if (i < directions_.size()) sum -= directions_[i];
   return sum;
 }
 
-double LineOfPull::speedMmPerS() const {
-  locate();
-  double speed = 0;
-  for (std::size_t i = 0; i < points_.size(); ++i) speed += gradient(i).dot(velocityOf(points_[i]));
-  return speed;
+double LineOfPull::speed() const {
+  double sum = 0;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const dBodyID body = points_[i].body;
+    if (!body) continue;
+    sum += gradient(i).dot(fromOde(dBodyGetLinearVel(body)) + fromOde(dBodyGetAngularVel(body)).cross(arms_[i]));
+  }
+  return sum;
 }
 
 double LineOfPull::totalForceN(double tension_N, double maximum_length_mm, const MuscleSettings& settings,
                                const PhysicsSettings& physics) const {
-  const double speed = speedMmPerS() / speedRatio(physics);
-  const double friction_N = settings.slider_friction_N *
-                            (settings.viscous ? speed / settings.slider_viscous_speed_mm_per_s : std::tanh(speed / dry_speed_mm_per_s));
-  const double excess_mm = lengthMm() - maximum_length_mm;
+  const double speed_mm_per_s = speed() / speedRatio(physics);
+  const double friction_N = settings.slider_friction_N * (settings.viscous ? speed_mm_per_s / settings.slider_viscous_speed_mm_per_s
+                                                                           : std::tanh(speed_mm_per_s / dry_speed_mm_per_s));
+  const double excess_mm = length_mm_ - maximum_length_mm;
   return tension_N + friction_N + (excess_mm > 0 ? stop_stiffness_N_per_mm * excess_mm : 0);
 }
 
-void LineOfPull::pull(double force) const {
+void LineOfPull::pull(double tension_N, double maximum_length_mm, const MuscleSettings& settings, const PhysicsSettings& physics) const {
   if (!points_.front().connected || !points_.back().connected) return;
-  locate();
+  const double force = totalForceN(tension_N, maximum_length_mm, settings, physics) * physics.force_per_N;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     if (!points_[i].body) continue;
     const Vector f = -force * gradient(i), &x = positions_[i];
@@ -117,7 +119,7 @@ std::vector<LineOfPull::Push> LineOfPull::pushes() const {
     const dBodyID body = points_[i].body;
     if (!body || isFixed(body)) continue;
     const Vector force = gradient(i);
-    result.push_back({body, force, (rotationOf(body) * points_[i].place).cross(force)});
+    result.push_back({body, force, arms_[i].cross(force)});
   }
   return result;
 }

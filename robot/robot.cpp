@@ -114,8 +114,7 @@ void Robot::loadHand(double mass_g) {
 Vector Robot::mountedStart(const Vector& start_mm, const Vector& lever) {
   const int muscle = actuatorCount();
   offset_muscles_.insert(muscle);
-  const double offset_mm = simulation_.effects().sumOf("attachment_offset", fmt::format("muscle_{}", muscle), "offset_mm");
-  return offset_mm == 0 ? start_mm : Vector(start_mm + offset_mm * lever.normalized());
+  return start_mm + simulation_.effects().startOffsetMm(muscle, lever.normalized());
 }
 
 Vector Robot::handMm() const {

@@ -3,7 +3,7 @@
 namespace musclesim {
 
 Contacts::Contacts(dWorldID world, dSpaceID space, double friction_limit)
-    : world_(world), space_(space), friction_limit_(friction_limit), joints_(dJointGroupCreate(0)) {
+    : world_(world), near_(space), friction_limit_(friction_limit), joints_(dJointGroupCreate(0)) {
   surface_.mu = friction_limit_;
 }
 
@@ -20,7 +20,7 @@ void Contacts::soften(double error_reduction, double softness) {
 void Contacts::collide() {
   dJointGroupEmpty(joints_);
   points_.clear();
-  dSpaceCollide(space_, this, &Contacts::onNear);
+  near_.collide(this, &Contacts::onNear);
 }
 
 void Contacts::onNear(void* contacts, dGeomID first, dGeomID second) {

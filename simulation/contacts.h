@@ -5,6 +5,8 @@
 
 #include <vector>
 
+#include "near_pairs.h"
+
 namespace musclesim {
 
 /// One contact of this step: bodies (null: the environment), and a normal that points into the first.
@@ -36,7 +38,7 @@ class Contacts {
   void add(dGeomID first, dGeomID second);
 
   dWorldID world_;
-  dSpaceID space_;
+  NearPairs near_;
   double friction_limit_;
   dSurfaceParameters surface_ = {};
   dJointGroupID joints_;

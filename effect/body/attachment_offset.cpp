@@ -14,7 +14,8 @@ EffectInfo AttachmentOffset::info() {
           .signature = "torque and length errors of one muscle, tied together by the angle",
           .source = "definition",
           .parameters = {{"offset_mm", "mm", 0, -200, 200, -8, 8, "d"}},
-          .make = [](const EffectValues&) { return std::make_unique<AttachmentOffset>(); }};
+          .make = [](const EffectValues&) { return std::make_unique<AttachmentOffset>(); },
+          .start_turn_deg = 0};
 }
 
 void AttachmentOffset::attach(const EffectPlace& place) {

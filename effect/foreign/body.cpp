@@ -1,14 +1,13 @@
 /// Foreign laws of the body stage: LuGre friction with Stribeck curve (Canudas de Wit et al. 1995), damping that grows with speed, a
-/// hardening spring, a payload that is held back by the air, a base that sways, a lever arm without its change of length, stops of rubber,
+/// hardening spring, a payload that is held back by the air, a base that sways, a start displaced in a slanting direction, stops of rubber,
 /// a force from a weak spring, contact after Hunt and Crossley (1975).
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "../body/attachment_offset.h"
 #include "foreign.h"
-#include "musclesim/error.h"
-#include "musclesim/robot/actuator.h"
 #include "musclesim/robot/robot.h"
 #include "musclesim/simulation/simulation.h"
 #include "musclesim/units.h"
@@ -110,27 +109,6 @@ class SwayingBase final : public BodyEffect {
   Vector upright_;
 };
 
-/// The start as displaced, on a bracket that gives way: the muscle's pull moves the start back along the lever.
-///     torque on the joint that moves the reported angle: c d F
-class LooseBracket final : public BodyEffect {
- public:
-  explicit LooseBracket(const EffectValues& v) : offset_mm_(v["offset_mm"]) {}
-  void attach(const EffectPlace& place) override {
-    muscle_ = place.robot.actuators()[static_cast<std::size_t>(place.muscle)];
-    if (place.robot.angles().empty()) throw BadParameter("foreign.loose_bracket: the robot has no joint");
-    joint_ = place.robot.angles().front().joint;
-    // Which way the muscle turns the joint: on an antagonistic pair the first one forward.
-    sign_ = place.muscle % 2 == 0 ? 1 : -1;
-    force_per_N_ = place.simulation.physics().force_per_N;
-  }
-  void apply(const Moment&) override { dJointAddHingeTorque(joint_->id(), sign_ * offset_mm_ * muscle_->tensionN() * force_per_N_); }
-
- private:
-  double offset_mm_, sign_ = 1, force_per_N_ = 0;
-  const Actuator* muscle_ = nullptr;
-  const Joint* joint_ = nullptr;
-};
-
 /// Rubber before both stops: torque = -t exp((q - high) / 2 deg) + t exp((low - q) / 2 deg), stops shifted by d.
 class RubberStops final : public JointEffect {
  public:
@@ -183,6 +161,15 @@ class HuntCrossley final : public JointEffect {
   double stiffness_, plane_deg_;
 };
 
+/// The start beside its place in a direction between the lever arm and the muscle's line.
+EffectInfo turnedAttachment() {
+  EffectInfo info =
+      entry("turned_attachment", Stage::body, {ComponentKind::muscle}, "start' = start + d (e cos 25 deg + up sin 25 deg)",
+            {{"offset_mm", "mm", 0, -200, 200, -8, 8, "d"}}, [](const EffectValues&) { return std::make_unique<AttachmentOffset>(); });
+  info.start_turn_deg = 25;
+  return info;
+}
+
 }  // namespace
 
 std::vector<ForeignEffect> bodyLaws() {
@@ -210,9 +197,7 @@ std::vector<ForeignEffect> bodyLaws() {
               {"frequency_Hz", "Hz", 1.7, 0, 100, 0.5, 4, "f", true}},
              [](const EffectValues& v) { return std::make_unique<SwayingBase>(v); }),
        "base_tilt"},
-      {entry("loose_bracket", Stage::body, {ComponentKind::muscle}, "torque d F on the first joint, length unchanged",
-             {{"offset_mm", "mm", 0, -200, 200, -6, 6, "d"}}, [](const EffectValues& v) { return std::make_unique<LooseBracket>(v); }),
-       "attachment_offset"},
+      {turnedAttachment(), "attachment_offset"},
       {entry("rubber_stops", Stage::body, joint, "exponential bumpers at shifted stops",
              {{"offset_deg", "deg", 0, -90, 90, -60, 60, "shift"}}, [](const EffectValues& v) { return std::make_unique<RubberStops>(v); }),
        "joint_stop_offset"},

@@ -1,6 +1,6 @@
 /// Foreign laws of the force stage: Bouc-Wen hysteresis (Bouc 1967, Wen 1976), a power law of speed, two Kelvin elements, a threshold that
-/// sets in softly, a gain that changes over the length, a stretched scale of length, a tendon that stiffens, a warm-up that ends, Eq. 1
-/// bent by a parabola.
+/// sets in softly, a gain that changes over the length, an offset that grows with the length, a tendon that stiffens, a warm-up that ends,
+/// Eq. 1 bent by a parabola.
 #include <algorithm>
 #include <cmath>
 
@@ -110,13 +110,13 @@ class BentForce final : public ForceEffect {
   double gain_, slope_, curvature_;
 };
 
-/// F' = F(p, l_min + (1 + d / (l_max - l_min)) (l - l_min))
-class StretchedLength final : public ForceEffect {
+/// F' = F(p, l + d (3 + 2 r) / 4): an end that straightens as the muscle is stretched
+class BendingEnd final : public ForceEffect {
  public:
-  explicit StretchedLength(const EffectValues& v) : offset_mm_(v["offset_mm"]) {}
+  explicit BendingEnd(const EffectValues& v) : offset_mm_(v["offset_mm"]) {}
   double tensionN(const MuscleInput& input, const ForceBelow& below) const override {
     MuscleInput inside = input;
-    inside.length_mm += 2 * offset_mm_ * lengthRatio(actuator(), input.length_mm);
+    inside.length_mm += offset_mm_ * (3 + 2 * lengthRatio(actuator(), input.length_mm)) / 4;
     return below(inside);
   }
 
@@ -190,8 +190,8 @@ std::vector<ForeignEffect> forceLaws() {
              {{"gain", "", 1, 0, 10, 0.75, 1.25, "g"}, {"slope", "", 0, -5, 5, -0.1, 0.1, "s"}},
              [](const EffectValues& v) { return std::make_unique<BentForce>(v["gain"], v["slope"], 0); }),
        "force_gain"},
-      {entry("stretched_length", Stage::force, muscle, "F' = F(p, l + 2 d r)", {{"offset_mm", "mm", 0, -500, 500, -15, 15, "d"}},
-             [](const EffectValues& v) { return std::make_unique<StretchedLength>(v); }),
+      {entry("bending_end", Stage::force, muscle, "F' = F(p, l + d (3 + 2 r) / 4)", {{"offset_mm", "mm", 0, -500, 500, -15, 15, "d"}},
+             [](const EffectValues& v) { return std::make_unique<BendingEnd>(v); }),
        "length_offset"},
       {entry("stiffening_tendon", Stage::force, muscle, "F' = F(p, l - x) = k s (exp(x / s) - 1), s = 4 mm",
              {{"stiffness_N_per_mm", "N/mm", INFINITY, 0.01, INFINITY, 1, 20, "k, of small stretch"}},

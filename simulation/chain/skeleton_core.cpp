@@ -13,6 +13,8 @@ void SkeletonCore::reserve(std::size_t bones, std::size_t rows) {
   bones_.resize(std::max(bones_.size(), bones));
   place_.resize(bones_.size() * stride_);
   products_.resize(stride_);
+  places_.resize(stride_);
+  run_lengths_.resize(stride_);
   const std::size_t unknowns = stride_ + 6 * bones_.size();
   solution_.resize(unknowns + tile_width);
   matrix_.reserve(static_cast<int>(unknowns));
@@ -70,11 +72,14 @@ void SkeletonCore::couple(int row, int bone, const double jacobian[6]) {
   for (std::size_t i = 0; i < 6; ++i) target[i * stride_] = jacobian[i] + (is_new ? 0 : target[i * stride_]);
 }
 
-/// M = L L^T in place.
-void SkeletonCore::factorise(BoneSystem& bone) const {
+/// M = L L^T in place. Where no chain ends on the bone, nothing couples its first three unknowns, and what is 0 is left out.
+void SkeletonCore::factorise(BoneSystem& bone) {
   Matrix6& m = bone.mass;
-  for (int j = 0; j < 6; ++j) {
-    for (int k = 0; k < j; ++k)
+  const bool alone = (m.bottomLeftCorner<3, 3>().array() == 0).all() && m(1, 0) == 0 && m(2, 0) == 0 && m(2, 1) == 0;
+  bone.first_coupled = alone ? 3 : 0;
+  for (int j = 0; j < bone.first_coupled; ++j) m(j, j) *= 1 / std::sqrt(m(j, j));
+  for (int j = bone.first_coupled; j < 6; ++j) {
+    for (int k = bone.first_coupled; k < j; ++k)
       for (int i = j; i < 6; ++i) m(i, j) -= m(i, k) * m(j, k);
     const double per_root = 1 / std::sqrt(m(j, j));
     for (int i = j; i < 6; ++i) m(i, j) *= per_root;
@@ -86,40 +91,55 @@ void SkeletonCore::reduce(BoneSystem& bone) {
   factorise(bone);
   for (int i = 0; i < 6; ++i) {
     double sum = bone.velocity[i];
-    for (int j = 0; j < i; ++j) sum -= bone.mass(i, j) * bone.reduced[j];
+    for (int j = bone.first_coupled; j < i; ++j) sum -= bone.mass(i, j) * bone.reduced[j];
     bone.reduced[i] = sum / bone.mass(i, i);
   }
   const std::size_t count = bone.rows.size();
   if (count == 0) return;
-  for (std::size_t i = 0; i < 6; ++i) {
-    double* __restrict target = bone.jacobian.data() + i * stride_;
-    const auto row = static_cast<Eigen::Index>(i);
-    for (std::size_t j = 0; j < i; ++j) {
-      const double factor = bone.mass(row, static_cast<Eigen::Index>(j));
-      const double* __restrict earlier = bone.jacobian.data() + j * stride_;
+  for (int i = 0; i < 6; ++i) {
+    double* __restrict target = bone.jacobian.data() + static_cast<std::size_t>(i) * stride_;
+    for (int j = bone.first_coupled; j < i; ++j) {
+      const double factor = bone.mass(i, j);
+      const double* __restrict earlier = bone.jacobian.data() + static_cast<std::size_t>(j) * stride_;
       for (std::size_t c = 0; c < count; ++c) target[c] -= factor * earlier[c];
     }
-    const double per_pivot = 1 / bone.mass(row, row);
+    const double per_pivot = 1 / bone.mass(i, i);
     for (std::size_t c = 0; c < count; ++c) target[c] *= per_pivot;
   }
   addProducts(bone);
 }
 
+/// Where each of the bone's rows stands in the matrix, and how many in a row stand one behind the other from there.
+void SkeletonCore::listRuns(const BoneSystem& bone) {
+  const std::size_t count = bone.rows.size();
+  for (std::size_t c = count; c-- > 0;) {
+    places_[c] = place(bone.rows[c]);
+    run_lengths_[c] = c + 1 < count && places_[c + 1] == places_[c] + 1 ? run_lengths_[c + 1] + 1 : 1;
+  }
+}
+
 /// D += J M^-1 J^T,  r -= J M^-1 g
 void SkeletonCore::addProducts(const BoneSystem& bone) {
+  listRuns(bone);
   const double* y[6];
   for (std::size_t i = 0; i < 6; ++i) y[i] = bone.jacobian.data() + i * stride_;
-  double* products = products_.data();
-  for (std::size_t c = 0; c < bone.rows.size(); ++c) {
+  const int count = static_cast<int>(bone.rows.size());
+  for (int c = 0; c < count; ++c) {
     double f[6], right = 0;
     for (int i = 0; i < 6; ++i) {
       f[i] = y[i][c];
       right += f[i] * bone.reduced[i];
     }
-    combineSixRows(products, y, f, static_cast<int>(c) + 1);
-    const int row = bone.rows[c];
-    addRight(row, -right);
-    for (std::size_t d = 0; d <= c; ++d) addBlock(row, bone.rows[d], products[d]);
+    const double* behind[6];
+    for (int i = 0; i < 6; ++i) behind[i] = y[i] + c;
+    combineSixRows(products_.data(), behind, f, count - c);
+    const int row = places_[static_cast<std::size_t>(c)];
+    solution_[static_cast<std::size_t>(row)] -= right;
+    for (int d = c; d < count;) {
+      const auto at = static_cast<std::size_t>(d);
+      matrix_.addRun(row, places_[at], products_.data() + d - c, run_lengths_[at]);
+      d += run_lengths_[at];
+    }
   }
 }
 

@@ -44,6 +44,7 @@ class SkeletonCore {
   struct BoneSystem {
     int kept_place = -1;  ///< where a kept bone's six unknowns stand
     Matrix6 mass;         ///< then its Cholesky factor L
+    int first_coupled;    ///< columns before it stand alone in M and L
     Vector6 velocity;     ///< first g, then u
     Vector6 reduced;      ///< L^-1 g
     std::vector<int> rows;
@@ -51,18 +52,20 @@ class SkeletonCore {
   };
   int place(int row) const { return row < band_ ? row : row + kept_unknowns_; }
   void reserve(std::size_t bones, std::size_t rows);
-  void factorise(BoneSystem& bone) const;
+  static void factorise(BoneSystem& bone);
   void reduce(BoneSystem& bone);
   void addProducts(const BoneSystem& bone);
+  void listRuns(const BoneSystem& bone);
   void enter(const BoneSystem& bone);
   void substitute(BoneSystem& bone) const;
 
   int band_ = 0, kept_unknowns_ = 0;
   std::vector<BoneSystem> bones_;
   int bone_count_ = 0;
-  std::size_t stride_ = 0;        ///< of the bones' Jacobians
-  std::vector<int> place_;        ///< of a row among a bone's rows, bone * stride + row; -1: it does not act there
-  std::vector<double> products_;  ///< of one row with all rows before it
+  std::size_t stride_ = 0;                 ///< of the bones' Jacobians
+  std::vector<int> place_;                 ///< of a row among a bone's rows, bone * stride + row; -1: it does not act there
+  std::vector<double> products_;           ///< of one row with itself and all behind it
+  std::vector<int> places_, run_lengths_;  ///< of one bone's rows
   TiledMatrix matrix_;
   std::vector<double> solution_;  ///< first (r, -g), then (y, u); filled up to whole tiles
 };

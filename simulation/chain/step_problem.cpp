@@ -12,13 +12,14 @@ namespace {
 /// Least share of a contact's softness in its diagonal of A that makes it a soft one.
 constexpr double least_softness_ratio = 1e-3;
 
-/// Torque of Lacoursiere's implicit gyroscopic term as ODE adds it: (I (I - h [L]x)^-1 - 1) L / h, L = I w.
+/// Torque of Lacoursiere's implicit gyroscopic term as ODE adds it: I (I - h [L]x)^-1 L / h - L / h, L = I w.
 Vector gyroscopicTorque(const Eigen::Matrix3d& inertia, const Vector& spin, double h_s) {
   const Vector l = inertia * spin;
   Eigen::Matrix3d cross;
   cross << 0, -l.z(), l.y(), l.z(), 0, -l.x(), -l.y(), l.x(), 0;
   const Eigen::Matrix3d effective = inertia - h_s * cross;
-  return (inertia * effective.inverse() - Eigen::Matrix3d::Identity()) * (l / h_s);
+  const Vector rate = l / h_s;
+  return inertia * (effective.inverse() * rate) - rate;
 }
 
 /// ODE's motors may rest at stops from a step that dWorldStep did.
@@ -93,14 +94,15 @@ bool StepProblem::begin(const Conditions& conditions, const std::vector<ContactP
   return true;
 }
 
-/// Gravity, and for bones the gyroscopic torque.
+/// Gravity, and for bones inertia in the frame of the world and the gyroscopic torque.
 void StepProblem::addLoads() {
   for (int i = 0; i < model_.boneCount(); ++i) {
     const Bone& bone = model_.bones[static_cast<std::size_t>(i)];
     BodyMotion& motion = model_.bodies[i];
+    Eigen::Matrix3d& inertia = bones_[static_cast<std::size_t>(i)].inertia;
+    inertia = motion.rotation * bone.inertia * motion.rotation.transpose();
     if (bone.gravity) motion.force += bone.mass_g * conditions_.gravity;
-    if (bone.gyroscopic)
-      motion.torque += gyroscopicTorque(motion.rotation * bone.inertia * motion.rotation.transpose(), motion.spin, conditions_.h_s);
+    if (bone.gyroscopic) motion.torque += gyroscopicTorque(inertia, motion.spin, conditions_.h_s);
   }
   for (const Chain& chain : model_.chains)
     for (int bead = 0; bead < chain.beadCount(); ++bead)
@@ -189,7 +191,7 @@ void StepProblem::setUpBones() {
     const Bone& bone = model_.bones[static_cast<std::size_t>(i)];
     const BodyMotion& motion = model_.bodies[i];
     BoneState& state = bones_[static_cast<std::size_t>(i)];
-    const Eigen::Matrix3d inertia = motion.rotation * bone.inertia * motion.rotation.transpose();
+    const Eigen::Matrix3d& inertia = state.inertia;
     state.mass.setZero();
     state.mass.topLeftCorner<3, 3>().diagonal().setConstant(bone.mass_g);
     state.mass.bottomRightCorner<3, 3>() = inertia;

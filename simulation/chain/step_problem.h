@@ -70,8 +70,9 @@ class StepProblem final : public BoxProblem {
     Eigen::Matrix3d start_block;  ///< J S J^T + cfm/h of the ball at the start
   };
   struct BoneState {
-    Matrix6 mass;      ///< with what a fixation adds
-    Vector6 momentum;  ///< M v/h + f
+    Eigen::Matrix3d inertia;  ///< in the frame of the world
+    Matrix6 mass;             ///< with what a fixation adds
+    Vector6 momentum;         ///< M v/h + f
     double per_mass, per_inertia;
   };
 

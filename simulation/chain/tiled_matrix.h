@@ -26,7 +26,7 @@ class TiledMatrix {
   void addRun(int index, int first, const double* values, int count) {
     for (int i = 0; i < count;) {
       const int end = std::min(count, (first + i) / tile_width * tile_width + tile_width - first);
-      const bool in_row = index >= first;
+      const bool in_row = index > first;
       double* entry = in_row ? &at(index, first + i) : &at(first + i, index);
       for (; i < end; ++i, entry += in_row ? tile_width : 1) *entry += values[i];
     }

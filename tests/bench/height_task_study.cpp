@@ -1,5 +1,6 @@
 /// How soon controllers bring the hand to the target, and how long they keep it there: ASM on the height task, AASM on the reaching task,
-/// random pressures on both. Resumable: every run is a line of a CSV file, and runs that are there are not repeated.
+/// random pressures on both. Resumable: every run is a line of a CSV file, and runs that are there are not repeated. A run that diverges is
+/// listed; the time that it lacks counts as time away from the target.
 /// Usage: height_task_study RUNS.csv [--seeds 1-20] [--duration 300] [--physics original] [--controllers asm,random,aasm]
 ///                          [--document docs/controlling.md --figure docs/figures/controllers.svg] [name=value ...]
 #include <fmt/format.h>
@@ -34,27 +35,26 @@ struct Run {
   std::string physics, controller;
   int seed = 0;
   double duration_s = 0, reached_s = -1, held_ratio = 0, near_ratio = 0;  ///< reached_s < 0: never
+  double ended_s = 0;                                                     ///< before duration_s: it diverged
 };
 
 /// Counts how long the hand is near a target.
 class Near {
  public:
   Near(const Settings& settings, const std::string& name, int seed, const Vector& target)
-      : reach_(name == "aasm" || name == "random-reach"),
-        target_(target),
-        run_{settings.physics, name, seed, settings.duration_s, -1, 0, 0} {}
+      : reach_(name == "aasm" || name == "random-reach"), target_(target), run_{settings.physics, name, seed, settings.duration_s} {}
 
   void look(double time_s, const Vector& hand) {
     const double error_mm = reach_ ? (hand - target_).norm() : std::abs(hand.y() - target_.y());
     const bool is_near = error_mm <= near_mm;
     if (is_near && run_.reached_s < 0) run_.reached_s = time_s;
-    ++count_, near_ += is_near;
-    if (run_.reached_s >= 0) ++since_;
+    if (is_near) near_s_ += time_s - run_.ended_s;
+    run_.ended_s = time_s;
   }
   Run result() const {
     Run run = run_;
-    run.near_ratio = static_cast<double>(near_) / static_cast<double>(count_);
-    run.held_ratio = since_ ? static_cast<double>(near_) / static_cast<double>(since_) : 0;
+    run.near_ratio = near_s_ / run.duration_s;
+    run.held_ratio = run.reached_s >= 0 ? std::min(1.0, near_s_ / (run.duration_s - run.reached_s)) : 0;
     return run;
   }
 
@@ -62,7 +62,7 @@ class Near {
   bool reach_;
   Vector target_;
   Run run_;
-  long count_ = 0, near_ = 0, since_ = 0;
+  double near_s_ = 0;
 };
 
 /// One run of a controller; random pressures are looked at with both tasks' targets.
@@ -83,10 +83,14 @@ std::vector<Run> simulate(const Settings& settings, const std::string& name, int
   if (name == "random") near.emplace_back(settings, "random-reach", seed, *Controller::make("aasm", reach)->targetMm());
   if (name == "aasm") near.emplace_back(settings, name, seed, *Controller::make("aasm", reach)->targetMm());
   Controller& controller = simulation.control(Controller::make(name, name == "aasm" ? reach : height));
-  while (simulation.time_s() < settings.duration_s - 1e-9) {
-    robot.step(controller.output(robot.getState()));
-    simulation.step();
-    for (Near& one : near) one.look(simulation.time_s(), *robot.getState().hand_mm);
+  try {
+    while (simulation.time_s() < settings.duration_s - 1e-9) {
+      robot.step(controller.output(robot.getState()));
+      simulation.step();
+      for (Near& one : near) one.look(simulation.time_s(), *robot.getState().hand_mm);
+    }
+  } catch (const Diverged& divergence) {
+    fmt::print(stderr, "{} {}, seed {}: {}\n", settings.physics, name, seed, divergence.what());
   }
   std::vector<Run> runs;
   for (const Near& one : near) runs.push_back(one.result());
@@ -99,10 +103,10 @@ std::vector<Run> readRuns(const std::string& file) {
   std::string line;
   while (std::getline(in, line)) {
     std::stringstream cells(line);
-    std::string c[7];
+    std::string c[8];
     for (auto& one : c) std::getline(cells, one, ',');
-    if (c[0] == "physics" || c[6].empty()) continue;
-    runs.push_back({c[0], c[1], std::stoi(c[2]), std::stod(c[3]), std::stod(c[4]), std::stod(c[5]), std::stod(c[6])});
+    if (c[0] == "physics" || c[7].empty()) continue;
+    runs.push_back({c[0], c[1], std::stoi(c[2]), std::stod(c[3]), std::stod(c[4]), std::stod(c[5]), std::stod(c[6]), std::stod(c[7])});
   }
   return runs;
 }
@@ -110,9 +114,9 @@ std::vector<Run> readRuns(const std::string& file) {
 void appendRun(const std::string& file, const Run& run) {
   const bool fresh = !std::filesystem::exists(file);
   std::ofstream out(file, std::ios::app);
-  if (fresh) out << "physics,controller,seed,duration_s,reached_s,held_ratio,near_ratio\n";
-  out << fmt::format("{},{},{},{:g},{:.2f},{:.4f},{:.4f}\n", run.physics, run.controller, run.seed, run.duration_s, run.reached_s,
-                     run.held_ratio, run.near_ratio);
+  if (fresh) out << "physics,controller,seed,duration_s,reached_s,held_ratio,near_ratio,ended_s\n";
+  out << fmt::format("{},{},{},{:g},{:.2f},{:.4f},{:.4f},{:.2f}\n", run.physics, run.controller, run.seed, run.duration_s, run.reached_s,
+                     run.held_ratio, run.near_ratio, run.ended_s);
 }
 
 double medianOf(std::vector<double> values) {
@@ -132,21 +136,22 @@ using Groups = std::map<std::pair<std::string, std::string>, std::vector<Run>>;
 std::string tableOf(const Groups& groups) {
   std::string table =
       "| physics | controller, task | runs x s | reached | time to reach s: median | worst | share of time held afterwards: median | mean "
-      "| "
-      "share of all time near: mean |\n|---|---|---|---|---|---|---|---|---|\n";
+      "| share of all time near: mean | diverged |\n|---|---|---|---|---|---|---|---|---|---|\n";
   for (const auto& [key, runs] : groups) {
     std::vector<double> reached, held;
     double held_sum = 0, near_sum = 0;
+    int diverged = 0;
     for (const Run& run : runs) {
       if (run.reached_s >= 0) reached.push_back(run.reached_s);
       held.push_back(run.held_ratio);
       held_sum += run.held_ratio, near_sum += run.near_ratio;
+      diverged += run.ended_s < run.duration_s - 0.1;
     }
     const auto count = static_cast<double>(runs.size());
-    table += fmt::format("| `{}` | {} | {} x {:g} | {} | {:.1f} | {:.1f} | {:.0f} % | {:.0f} % | {:.0f} % |\n", key.first,
+    table += fmt::format("| `{}` | {} | {} x {:g} | {} | {:.1f} | {:.1f} | {:.0f} % | {:.0f} % | {:.0f} % | {} |\n", key.first,
                          titles.at(key.second), runs.size(), runs.front().duration_s, reached.size(), medianOf(reached),
                          reached.empty() ? std::nan("") : *std::max_element(reached.begin(), reached.end()), 100 * medianOf(held),
-                         100 * held_sum / count, 100 * near_sum / count);
+                         100 * held_sum / count, 100 * near_sum / count, diverged);
   }
   return table;
 }
@@ -214,7 +219,12 @@ Settings parse(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   const Settings settings = parse(argc, argv);
-  if (settings.runs_file.empty()) return 2;
+  if (settings.runs_file.empty() || settings.runs_file.starts_with('-')) {
+    fmt::print(stderr,
+               "usage: height_task_study RUNS.csv [--seeds 1-20] [--duration 300] [--physics original] [--controllers asm,random,aasm] "
+               "[--document PAGE.md] [--figure FIGURE.svg] [name=value ...]\n");
+    return 2;
+  }
   std::vector<Run> runs = readRuns(settings.runs_file);
   for (int seed = settings.first_seed; seed <= settings.last_seed; ++seed)
     for (const std::string& controller : settings.controllers) {

@@ -132,6 +132,10 @@ nlohmann::json Session::press(const std::string& key, int times) {
   return stateAfter(before + static_cast<std::size_t>(times));
 }
 
+void Session::runUntil(double time_s) {
+  waitUntil(std::to_string(time_s) + " s of the run", [&] { return press("0")["time_s"] > time_s; });
+}
+
 void Session::requestClose() const {
   ::Display* display = XOpenDisplay(display_.c_str());
   if (!display) throw std::runtime_error("cannot connect to " + display_);

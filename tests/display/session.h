@@ -43,6 +43,8 @@ class Session {
   /// Waits until the window's log has so many lines and returns the last.
   nlohmann::json stateAfter(std::size_t line_count) const;
   std::size_t lineCount() const;
+  /// Presses a key without effect on the run until its clock shows more than that; before, a run may still be settling.
+  void runUntil(double time_s);
   /// As a window manager asks for it.
   void requestClose() const;
   void signal(int number) const;

@@ -223,7 +223,7 @@ TEST_F(WindowTest, MouseRotatesZoomsAndSelects) {
 
 TEST_F(WindowTest, ClosingTheWindowEndsTheRunWithCompleteFiles) {
   Session session(*server_, folder_, small_arm);
-  session.press("1");
+  session.runUntil(0.1);
   session.requestClose();
   ASSERT_EQ(session.exitStatus(), 0);
   EXPECT_EQ(sidecar().at("complete"), true);
@@ -244,18 +244,21 @@ TEST_F(WindowTest, ClosingTheWindowBeforeTheEndIsSaid) {
 TEST_F(WindowTest, LossOfTheDisplayEndsTheRunWithReadableFilesThatAreNotComplete) {
   XServer own;
   Session session(own, folder_, small_arm);
+  session.runUntil(0.1);
   own.kill();
   expectWindowLost(session, "the connection to the display is lost");
 }
 
 TEST_F(WindowTest, KilledConnectionEndsTheRunLikewise) {
   Session session(*server_, folder_, small_arm);
+  session.runUntil(0.1);
   session.xdotool("search --name musclesim: windowkill");
   expectWindowLost(session, "the connection to the display is lost");
 }
 
 TEST_F(WindowTest, XErrorEndsTheRunLikewise) {
   Session session(*server_, folder_, small_arm);
+  session.runUntil(0.1);
   session.xdotool("search --name musclesim: windowclose");  // destroys it
   expectWindowLost(session, "X error in request");
 }

@@ -23,7 +23,6 @@ const ReplayResult& cleanRun(const std::string& robot) {
 }
 
 std::vector<std::string> componentsOf(const EffectInfo& info, const std::string& robot) {
-  if (info.id == "foreign.loose_bracket" && robot == "rig") return {};  // it needs a joint
   Simulation simulation;
   return componentsFor(info, simulation.build(robot));
 }

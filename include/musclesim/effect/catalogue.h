@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,9 @@ struct EffectInfo {
   std::string source;
   std::vector<EffectParameter> parameters;
   std::function<std::unique_ptr<Effect>(const EffectValues&)> make;
+  /// Given: the robot builds the muscle's start `offset_mm` beside its place, in the direction of the lever arm turned by so much to the
+  /// vertical.
+  std::optional<double> start_turn_deg = {};
 };
 
 /// All effects in the order in which they act within their stages: those of the library, then registered ones.

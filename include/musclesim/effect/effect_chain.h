@@ -59,8 +59,8 @@ class EffectChain {
   double lengthRateMmPerS(std::size_t muscle) const;
   /// Whether an effect of that id acts on anything.
   bool has(const std::string& id) const;
-  /// Sum of one parameter over the given effects of that id on a component or on all; for effects that the robot builds in.
-  double sumOf(const std::string& id, const std::string& component, const std::string& parameter) const;
+  /// How far beside its place a muscle starts, mm; `lever`: unit vector along its lever arm.
+  Vector startOffsetMm(int muscle, const Vector& lever) const;
 
  private:
   struct Muscle;

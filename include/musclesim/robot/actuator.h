@@ -134,7 +134,6 @@ class Actuator {
 
  private:
   double beadInertia() const;
-  double lineForceN() const;
   void setViscousMotors();
   void setFriction(dJointID joint, double force, double speed) const;
   void buildLinks(dSpaceID beads, const std::vector<Vector>& points);

@@ -29,18 +29,15 @@ class LineOfPull {
   void addViaPoint(Primitive* primitive, const Vector& point_mm);
 
   double lengthMm() const;
-  /// dl/dt in world units, positive when it gets longer.
-  double speedMmPerS() const;
   /// Start, via points, end in the world's frame.
   std::vector<Vector> pointsMm() const;
 
-  /// Tension and what resists beside it, in N:
+  /// Adds the forces of the thread to the bodies, which have not moved since lengthMm() was asked for. It pulls with tension and what
+  /// resists beside it, in N:
   ///     F + F_f tanh(v / v_0) + k max(0, l - l_max),   dry friction; F_f v / v_1 in place of the second term, viscous friction
   /// v = dl/dt, F_f a slider's friction (in a chain all sliders are in series and carry the same force), v_0 = 100 mm/s, v_1 the speed at
-  /// which both are equal, k = 10 N/mm.
-  double totalForceN(double tension_N, double maximum_length_mm, const MuscleSettings& settings, const PhysicsSettings& physics) const;
-  /// Adds the forces of the thread to the bodies. A thread with a loose end carries nothing.
-  void pull(double force) const;
+  /// which both are equal, k = 10 N/mm. A thread with a loose end carries nothing.
+  void pull(double tension_N, double maximum_length_mm, const MuscleSettings& settings, const PhysicsSettings& physics) const;
 
   /// What a force of 1 does to a body: dl/dx of all points on it, as force and torque about its centre of mass in the world's frame.
   struct Push {
@@ -60,15 +57,19 @@ class LineOfPull {
     bool connected = false;
   };
   static Point pointOn(Primitive* primitive, const Vector& point_mm);
-  static Vector positionOf(const Point& point);
-  static Vector velocityOf(const Point& point);
-  /// Works out positions_ for the bodies' present poses.
+  /// Works out what follows from the bodies' present poses; what is below uses it.
   void locate() const;
-  /// d l / d x_i, after locate().
+  /// dl/dt in world units, positive when it gets longer.
+  double speed() const;
+  double totalForceN(double tension_N, double maximum_length_mm, const MuscleSettings& settings, const PhysicsSettings& physics) const;
+  /// d l / d x_i
   Vector gradient(std::size_t i) const;
 
   std::vector<Point> points_;
-  mutable std::vector<Vector> positions_;  ///< of the points; kept only to save memory requests
+  // Kept only to save memory requests.
+  mutable std::vector<Vector> arms_, positions_;  ///< of the points, from their body's centre of mass and in the world
+  mutable std::vector<Vector> directions_;        ///< of the segments
+  mutable double length_mm_ = 0;
 };
 
 }  // namespace musclesim

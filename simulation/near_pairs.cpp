@@ -1,0 +1,115 @@
+#include "near_pairs.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace musclesim {
+
+namespace {
+
+constexpr double skin_mm = 120;
+
+double difference(const dReal* a, const dReal* b, int count) {
+  double square = 0;
+  for (int i = 0; i < count; ++i) square += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(square);
+}
+
+}  // namespace
+
+void NearPairs::collide(void* data, dNearCallback* near) {
+  if (dSpaceGetNumGeoms(space_) != static_cast<int>(geoms_.size()) || !listIsGood()) makeList();
+  if (has_subspaces_) return dSpaceCollide(space_, data, near);
+  for (Geom& geom : geoms_) geom.box_is_read = false;
+  for (const Pair& pair : pairs_) {
+    if (bodyOf(pair.first).moved_mm + bodyOf(pair.second).moved_mm < pair.distance_mm) continue;
+    if (distanceMm(boxOf(pair.first), boxOf(pair.second)) > 0) continue;
+    near(data, geoms_[static_cast<std::size_t>(pair.first)].id, geoms_[static_cast<std::size_t>(pair.second)].id);
+  }
+}
+
+/// Works out how far the bodies can have moved.
+bool NearPairs::listIsGood() {
+  // |q - q_0| = 2 sin(angle / 4), so angle <= pi / sqrt(2) |q - q_0| up to half a turn.
+  constexpr double most_angle_per_difference = 2.23;
+  double farthest_mm = 0;
+  for (Body& body : bodies_) {
+    if (!body.id) continue;
+    body.moved_mm = difference(dBodyGetPosition(body.id), body.position, 3) +
+                    body.reach_mm * most_angle_per_difference * difference(dBodyGetQuaternion(body.id), body.orientation, 4);
+    farthest_mm = std::max(farthest_mm, body.moved_mm);
+  }
+  return has_subspaces_ || farthest_mm <= skin_mm / 2;
+}
+
+void NearPairs::makeList() {
+  geoms_.clear();
+  bodies_.clear();
+  pairs_.clear();
+  const int count = dSpaceGetNumGeoms(space_);
+  has_subspaces_ = false;
+  for (int i = 0; i < count; ++i) {
+    const dGeomID geom = dSpaceGetGeom(space_, i);
+    has_subspaces_ = has_subspaces_ || dGeomIsSpace(geom);
+    geoms_.push_back({geom, dGeomIsSpace(geom) ? -1 : placeOf(dGeomGetBody(geom)), false, {}});
+  }
+  if (has_subspaces_) return;
+  for (int i = 0; i < count; ++i) extend(bodyOf(i), boxOf(i));
+  listStrangers();
+  for (int i = 0; i < count; ++i)
+    for (int j = i + 1; j < count; ++j) {
+      if (!areStrangers(i, j)) continue;
+      const double distance_mm = distanceMm(boxOf(i), boxOf(j));
+      if (distance_mm <= skin_mm) pairs_.push_back({i, j, distance_mm});
+    }
+}
+
+/// Which bodies are different and not joined.
+void NearPairs::listStrangers() {
+  strangers_.clear();
+  for (const Body& first : bodies_)
+    for (const Body& second : bodies_)
+      strangers_.push_back(first.id != second.id && !(first.id && second.id && dAreConnected(first.id, second.id)));
+}
+
+bool NearPairs::areStrangers(int first, int second) const {
+  const auto row = static_cast<std::size_t>(geoms_[static_cast<std::size_t>(first)].body),
+             column = static_cast<std::size_t>(geoms_[static_cast<std::size_t>(second)].body);
+  return strangers_[row * bodies_.size() + column] != 0;
+}
+
+/// Where a body stands in the list, which notes its pose if it is new.
+int NearPairs::placeOf(dBodyID body) {
+  const auto found = std::ranges::find(bodies_, body, &Body::id);
+  if (found != bodies_.end()) return static_cast<int>(found - bodies_.begin());
+  Body& added = bodies_.emplace_back(Body{body, 0, {}, {}, 0});
+  if (body) {
+    std::copy_n(dBodyGetPosition(body), 3, added.position);
+    std::copy_n(dBodyGetQuaternion(body), 4, added.orientation);
+  }
+  return static_cast<int>(bodies_.size()) - 1;
+}
+
+/// One of the body's geoms fills this box.
+void NearPairs::extend(Body& body, const Box& box) {
+  double farthest[3];
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    farthest[axis] = std::max(std::abs(box[2 * axis] - body.position[axis]), std::abs(box[2 * axis + 1] - body.position[axis]));
+  body.reach_mm = std::max(body.reach_mm, std::hypot(farthest[0], farthest[1], farthest[2]));
+}
+
+const NearPairs::Box& NearPairs::boxOf(int number) {
+  Geom& geom = geoms_[static_cast<std::size_t>(number)];
+  if (!geom.box_is_read) dGeomGetAABB(geom.id, geom.box.data());
+  geom.box_is_read = true;
+  return geom.box;
+}
+
+/// Along the axis on which they are farthest apart; 0 for boxes that overlap or touch.
+double NearPairs::distanceMm(const Box& a, const Box& b) {
+  double farthest = 0;
+  for (std::size_t axis = 0; axis < 6; axis += 2) farthest = std::max({farthest, a[axis] - b[axis + 1], b[axis] - a[axis + 1]});
+  return farthest;
+}
+
+}  // namespace musclesim

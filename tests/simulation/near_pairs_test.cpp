@@ -1,0 +1,83 @@
+/// The neighbour list finds what dSpaceCollide finds, in its order.
+#include "../../simulation/near_pairs.h"
+
+#include <gtest/gtest.h>
+
+#include <utility>
+#include <vector>
+
+#include "musclesim/random.h"
+#include "musclesim/simulation/simulation.h"
+
+namespace musclesim {
+namespace {
+
+using Pairs = std::vector<std::pair<dGeomID, dGeomID>>;
+
+void collect(void* pairs, dGeomID first, dGeomID second) {
+  const dBodyID a = dGeomGetBody(first), b = dGeomGetBody(second);
+  if (a != b && !(a && b && dAreConnected(a, b))) static_cast<Pairs*>(pairs)->emplace_back(first, second);
+}
+
+class NearPairsTest : public testing::Test {
+ protected:
+  NearPairsTest() {
+    for (int i = 0; i < 12; ++i) {
+      const dBodyID body = bodies.emplace_back(dBodyCreate(world));
+      dGeomSetBody(i % 2 ? dCreateBox(space, 30, 200, 50) : dCreateCapsule(space, 20, 150), body);
+      dBodySetPosition(body, random.uniform(-300, 300), random.uniform(-300, 300), random.uniform(-300, 300));
+    }
+    dGeomSetPosition(dCreateBox(space, 100, 100, 100), 50, 0, 0);
+    const dJointID joint = dJointCreateBall(world, nullptr);
+    dJointAttach(joint, bodies[0], bodies[1]);
+  }
+  ~NearPairsTest() override {
+    dSpaceDestroy(space);
+    dWorldDestroy(world);
+  }
+
+  /// Every body by up to so much, and turned by up to so much.
+  void stir(double shift_mm, double turn_rad) {
+    for (const dBodyID body : bodies) {
+      const dReal* x = dBodyGetPosition(body);
+      const double moved[3] = {x[0] + random.uniform(-shift_mm, shift_mm), x[1] + random.uniform(-shift_mm, shift_mm),
+                               x[2] + random.uniform(-shift_mm, shift_mm)};
+      dBodySetPosition(body, moved[0], moved[1], moved[2]);
+      dQuaternion turn, turned;
+      dQFromAxisAndAngle(turn, random.uniform(-1, 1), random.uniform(-1, 1), 1, random.uniform(-turn_rad, turn_rad));
+      dQMultiply0(turned, turn, dBodyGetQuaternion(body));
+      dBodySetQuaternion(body, turned);
+    }
+  }
+
+  Simulation ode_is_running;
+  dWorldID world = dWorldCreate();
+  dSpaceID space = dSimpleSpaceCreate(nullptr);
+  RandomStream random{7, "near_pairs"};
+  std::vector<dBodyID> bodies;
+  NearPairs near{space};
+};
+
+TEST_F(NearPairsTest, AreThoseOfAllPairsInTheSameOrder) {
+  std::size_t found = 0;
+  for (int step = 0; step < 2000; ++step) {
+    stir(step % 100 == 99 ? 200 : 1.5, 0.02);
+    Pairs all, listed;
+    dSpaceCollide(space, &all, &collect);
+    near.collide(&listed, &collect);
+    ASSERT_EQ(listed, all) << "step " << step;
+    found += all.size();
+  }
+  EXPECT_GT(found, 500u);
+}
+
+TEST_F(NearPairsTest, TakeGeomsThatAreAddedLater) {
+  Pairs before, after;
+  near.collide(&before, &collect);
+  dGeomSetPosition(dCreateBox(space, 1000, 1000, 1000), 0, 0, 0);
+  near.collide(&after, &collect);
+  EXPECT_GE(after.size(), before.size() + 6);
+}
+
+}  // namespace
+}  // namespace musclesim
