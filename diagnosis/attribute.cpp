@@ -54,8 +54,8 @@ Attributor::Attributor(const Plant& plant, const DiagnosisOptions& options, OnSi
     : plant_(plant),
       options_(options),
       on_simulation_(std::move(on_simulation)),
-      look_(plant, lookStretches(plant)),
-      fit_(plant, plant.split().fit) {}
+      look_(plant, lookStretches(plant), Comparison::Averages::with),
+      fit_(plant, plant.split().fit, Comparison::Averages::with) {}
 
 void Attributor::look() {
   const Eigen::VectorXd nominal = look_.predicted(Model{});

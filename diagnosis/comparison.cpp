@@ -6,7 +6,15 @@
 
 namespace musclesim {
 
-Comparison::Comparison(const Plant& plant, std::vector<Stretch> stretches) : plant_(plant), stretches_(std::move(stretches)) {
+namespace {
+
+constexpr std::size_t block_rows = 16;
+constexpr double steady_share = 0.2;  ///< of the floor that does not average out: what the model's own steps leave
+
+}  // namespace
+
+Comparison::Comparison(const Plant& plant, std::vector<Stretch> stretches, Averages averages)
+    : plant_(plant), stretches_(std::move(stretches)) {
   for (std::size_t k = 0; k < stretches_.size(); ++k)
     for (std::size_t s = 0; s < plant.signals().size(); ++s) {
       const std::vector<double>& y = plant.measured(stretches_[k].recording, static_cast<int>(s));
@@ -17,11 +25,37 @@ Comparison::Comparison(const Plant& plant, std::vector<Stretch> stretches) : pla
       size_ += static_cast<Eigen::Index>(cell.rows.size());
       cells_.push_back(std::move(cell));
     }
+  if (averages == Averages::with) addAverages();
   measured_.resize(size_);
   for (const Cell& cell : cells_) {
+    if (cell.block > 0) continue;
     const std::vector<double>& y = plant.measured(stretches_[cell.stretch].recording, cell.signal);
     for (std::size_t i = 0; i < cell.rows.size(); ++i)
       measured_[cell.first + static_cast<Eigen::Index>(i)] = y[static_cast<std::size_t>(cell.rows[i])];
+  }
+  average(measured_);
+}
+
+/// floor^2 = floor^2 (1 / block + share^2). What repeats differ by need not be white: it is not averaged.
+void Comparison::addAverages() {
+  const std::size_t plain_count = cells_.size();
+  for (std::size_t i = 0; i < plain_count; ++i) {
+    const Cell& plain = cells_[i];
+    const NoiseFloor& floor = plant_.signals()[static_cast<std::size_t>(plain.signal)].floor;
+    if (floor.source == NoiseFloor::Source::repeats || plain.rows.size() < 4 * block_rows) continue;
+    Cell cell{plain.stretch, plain.signal, {}, size_, plain.floor * std::sqrt(1.0 / block_rows + steady_share * steady_share),
+              block_rows,    plain.first};
+    for (std::size_t row = 0; row + block_rows <= plain.rows.size(); row += block_rows) cell.rows.push_back(plain.rows[row]);
+    size_ += cell.count();
+    cells_.push_back(std::move(cell));
+  }
+}
+
+void Comparison::average(Eigen::VectorXd& values) const {
+  for (const Cell& cell : cells_) {
+    if (cell.block == 0) continue;
+    const auto block = static_cast<Eigen::Index>(cell.block);
+    for (Eigen::Index i = 0; i < cell.count(); ++i) values[cell.first + i] = values.segment(cell.first_of_all + i * block, block).mean();
   }
 }
 
@@ -56,16 +90,17 @@ Eigen::VectorXd Comparison::gathered(const std::vector<Prediction>& per_stretch)
     if (prediction.diverged) return {};
   Eigen::VectorXd result(size_);
   for (const Cell& cell : cells_) {
+    if (cell.block > 0) continue;
     const std::vector<double>& y = per_stretch[cell.stretch].values[static_cast<std::size_t>(cell.signal)];
     for (std::size_t i = 0; i < cell.rows.size(); ++i)
       result[cell.first + static_cast<Eigen::Index>(i)] = y[static_cast<std::size_t>(cell.rows[i])];
   }
+  average(result);
   return result;
 }
 
 double Comparison::meanSquare(const Cell& cell, const Eigen::VectorXd& residual) const {
-  const auto count = static_cast<Eigen::Index>(cell.rows.size());
-  return residual.segment(cell.first, count).squaredNorm() / static_cast<double>(count);
+  return residual.segment(cell.first, cell.count()).squaredNorm() / static_cast<double>(cell.count());
 }
 
 double Comparison::logMisfit(const Eigen::VectorXd& residual) const {
@@ -78,9 +113,8 @@ double Comparison::logMisfit(const Eigen::VectorXd& residual) const {
 Eigen::VectorXd Comparison::weights(const Eigen::VectorXd& residual) const {
   Eigen::VectorXd result(size_);
   for (const Cell& cell : cells_) {
-    const auto count = static_cast<Eigen::Index>(cell.rows.size());
     const double rms = std::max(cell.floor, std::sqrt(meanSquare(cell, residual)));
-    result.segment(cell.first, count).setConstant(1 / (rms * std::sqrt(static_cast<double>(count))));
+    result.segment(cell.first, cell.count()).setConstant(1 / (rms * std::sqrt(static_cast<double>(cell.count()))));
   }
   return result;
 }
@@ -92,6 +126,7 @@ Gap Comparison::gap(const Eigen::VectorXd& residual) const {
   };
   std::map<int, Sum> sums;
   for (const Cell& cell : cells_) {
+    if (cell.block > 0) continue;
     Sum& sum = sums[cell.signal];
     sum.squares += meanSquare(cell, residual) * static_cast<double>(cell.rows.size());
     sum.count += cell.rows.size();

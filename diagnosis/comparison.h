@@ -8,18 +8,23 @@
 
 namespace musclesim {
 
-/// The compared rows of some stretches. A cell is one signal in one stretch.
+/// The compared rows of some stretches. A cell is one signal in one stretch, or the same averaged over blocks of rows: there noise is
+/// smaller, and what is weak but slow stands out.
 class Comparison {
  public:
   struct Cell {
     std::size_t stretch;
     int signal;
-    std::vector<int> rows;  ///< those with a measured number
+    std::vector<int> rows;  ///< those with a measured number, or the first ones of the blocks
     Eigen::Index first;     ///< where its rows begin in the vectors
     double floor;
+    std::size_t block = 0;          ///< rows of a block; 0: not averaged
+    Eigen::Index first_of_all = 0;  ///< where the rows that are averaged begin
+    Eigen::Index count() const { return static_cast<Eigen::Index>(rows.size()); }
   };
+  enum class Averages { without, with };
 
-  Comparison(const Plant& plant, std::vector<Stretch> stretches);
+  Comparison(const Plant& plant, std::vector<Stretch> stretches, Averages averages = Averages::without);
 
   const Plant& plant() const { return plant_; }
   const std::vector<Stretch>& stretches() const { return stretches_; }
@@ -50,6 +55,8 @@ class Comparison {
   int affectedCells(const Eigen::VectorXd& residual) const;
 
  private:
+  void addAverages();
+  void average(Eigen::VectorXd& values) const;
   Eigen::VectorXd gathered(const std::vector<Prediction>& per_stretch) const;
 
   const Plant& plant_;

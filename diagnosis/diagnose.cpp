@@ -231,8 +231,8 @@ class Run {
     for (std::size_t i = 0; i < before.size(); ++i) {
       const Comparison::Cell& cell = fitted.cells()[i];
       const auto recording = static_cast<std::size_t>(fitted.stretches()[cell.stretch].recording);
-      diagnosis_.cells.push_back(
-          {plant_.recordings()[recording].file, plant_.signals()[static_cast<std::size_t>(cell.signal)].name, cell.floor, before[i]});
+      diagnosis_.cells.push_back({plant_.recordings()[recording].file, plant_.signals()[static_cast<std::size_t>(cell.signal)].name,
+                                  cell.floor, before[i], static_cast<int>(cell.block)});
     }
     for (const Explanation& explanation : attribution.explanations) {
       Trial trial{{}, static_cast<int>(explanation.z.size()), rmsOf(explanation.residual), {}};

@@ -74,8 +74,11 @@ Json fittedJson(const Diagnosis& d) {
   Json json = {{"looks", Json::array()}, {"cells", Json::array()}, {"trials", Json::array()}};
   for (const FirstLook& look : d.looks) json["looks"].push_back({look.effect, look.removed});
   for (const FittedCell& cell : d.cells)
-    json["cells"].push_back(
-        {{"recording", cell.recording}, {"signal", cell.signal}, {"floor", cell.floor}, {"rms_before", cell.rms_before}});
+    json["cells"].push_back({{"recording", cell.recording},
+                             {"signal", cell.signal},
+                             {"floor", cell.floor},
+                             {"rms_before", cell.rms_before},
+                             {"averaged_rows", cell.averaged_rows}});
   for (const Trial& trial : d.trials)
     json["trials"].push_back(
         {{"effects", trial.effects}, {"parameters", trial.parameter_count}, {"rms", trial.rms}, {"values", trial.values}});

@@ -87,6 +87,26 @@ Eigen::VectorXd residualUnderMeasuredPressures(const Comparison& comparison) {
   return comparison.measured() - predicted;
 }
 
+/// Mean square of a residual over its variance, row by row, and averaged over blocks of rows: what is weak but slow stands out there.
+class BlockRatio {
+ public:
+  void add(double residual, double variance) {
+    constexpr int block_rows = 16;
+    constexpr double steady_share = 0.2;  // of the standard deviation that does not average out
+    plain_ += residual * residual / variance, ++count_;
+    residual_ += residual, variance_ += variance;
+    if (++filled_ < block_rows) return;
+    averaged_ += residual_ * residual_ / (variance_ * (1 + steady_share * steady_share * block_rows)), ++block_count_;
+    residual_ = variance_ = 0, filled_ = 0;
+  }
+  bool isEmpty() const { return count_ == 0; }
+  double largestRms() const { return std::sqrt(std::max(plain_ / count_, block_count_ > 0 ? averaged_ / block_count_ : 0.0)); }
+
+ private:
+  double plain_ = 0, averaged_ = 0, residual_ = 0, variance_ = 0;
+  int filled_ = 0, count_ = 0, block_count_ = 0;
+};
+
 /// RMS of measured tension minus that of the law at measured pressure and length, over what noise of all three gives; the largest of all
 /// muscles. Nothing if one of the three signals is missing.
 std::optional<double> tensionRatio(const Comparison& comparison) {
@@ -97,8 +117,7 @@ std::optional<double> tensionRatio(const Comparison& comparison) {
               l = signalNumber(plant, fmt::format("length_{}_mm", muscle));
     if (p < 0 || f < 0 || l < 0) continue;
     auto floorOf = [&](int signal) { return plant.signals()[static_cast<std::size_t>(signal)].floor.value; };
-    double sum = 0;
-    long count = 0;
+    BlockRatio ratio;
     for (const Stretch& stretch : comparison.stretches()) {
       const auto &ps = plant.measured(stretch.recording, p), &fs = plant.measured(stretch.recording, f),
                  &ls = plant.measured(stretch.recording, l);
@@ -109,11 +128,10 @@ std::optional<double> tensionRatio(const Comparison& comparison) {
         const double law = plant.tensionN(muscle, ps[i], ls[i]);
         const double by_p = plant.tensionN(muscle, ps[i] + floorOf(p), ls[i]) - law,
                      by_l = plant.tensionN(muscle, ps[i], ls[i] + floorOf(l)) - law;
-        sum += (fs[i] - law) * (fs[i] - law) / (by_p * by_p + by_l * by_l + floorOf(f) * floorOf(f));
-        ++count;
+        ratio.add(fs[i] - law, by_p * by_p + by_l * by_l + floorOf(f) * floorOf(f));
       }
     }
-    if (count > 0) largest = std::max(largest.value_or(0), std::sqrt(sum / static_cast<double>(count)));
+    if (!ratio.isEmpty()) largest = std::max(largest.value_or(0), ratio.largestRms());
   }
   return largest;
 }

@@ -44,8 +44,11 @@ Eigen::MatrixXd derivatives(const Comparison& comparison, const FitProblem& prob
 /// Samples per independent sample, from the autocorrelation up to its first zero, averaged over cells.
 double samplesPerIndependent(const Comparison& comparison, const Eigen::VectorXd& residual) {
   double sum = 0;
+  int cell_count = 0;
   for (const Comparison::Cell& cell : comparison.cells()) {
-    const auto count = static_cast<Eigen::Index>(cell.rows.size());
+    if (cell.block > 0) continue;
+    ++cell_count;
+    const Eigen::Index count = cell.count();
     const Eigen::VectorXd r = residual.segment(cell.first, count);
     const double power = std::max(r.squaredNorm(), 1e-300);
     double correlation_length = 1;
@@ -56,14 +59,14 @@ double samplesPerIndependent(const Comparison& comparison, const Eigen::VectorXd
     }
     sum += correlation_length;
   }
-  return sum / static_cast<double>(comparison.cells().size());
+  return sum / cell_count;
 }
 
 Eigen::VectorXd halfWidths(const Comparison& comparison, const Point& point, const Eigen::MatrixXd& jacobian) {
   // Weighted residuals have mean square 1 / rows per cell where the misfit is the residual's own size.
   Eigen::VectorXd per_sample = comparison.weights(point.residual);
   for (const Comparison::Cell& cell : comparison.cells())
-    per_sample.segment(cell.first, static_cast<Eigen::Index>(cell.rows.size())) *= std::sqrt(static_cast<double>(cell.rows.size()));
+    per_sample.segment(cell.first, cell.count()) *= cell.block > 0 ? 0 : std::sqrt(static_cast<double>(cell.count()));
   const Eigen::MatrixXd weighted = per_sample.asDiagonal() * jacobian;
   const Eigen::MatrixXd information = weighted.transpose() * weighted / samplesPerIndependent(comparison, point.residual);
   const Eigen::MatrixXd covariance = information.completeOrthogonalDecomposition().pseudoInverse();

@@ -33,6 +33,7 @@ double RegimeSums::meanSquare(Regime regime) const {
 RegimeSums regimeSums(const Comparison& comparison, const Eigen::VectorXd& residual) {
   RegimeSums sums;
   for (const Comparison::Cell& cell : comparison.cells()) {
+    if (cell.block > 0) continue;
     const Recording& recording = comparison.plant().recordings()[static_cast<std::size_t>(comparison.stretches()[cell.stretch].recording)];
     std::size_t before = 0;
     for (std::size_t i = 0; i < cell.rows.size(); ++i) {

@@ -58,8 +58,7 @@ Eigen::VectorXd only(const Comparison& comparison, const Eigen::VectorXd& values
   Eigen::VectorXd result = Eigen::VectorXd::Zero(values.size());
   for (const Comparison::Cell& cell : comparison.cells())
     if (cell.signal == signal) {
-      const auto count = static_cast<Eigen::Index>(cell.rows.size());
-      result.segment(cell.first, count) = values.segment(cell.first, count);
+      result.segment(cell.first, cell.count()) = values.segment(cell.first, cell.count());
     }
   return result;
 }
@@ -69,7 +68,7 @@ double excitationOf(const Comparison& comparison, const std::vector<Eigen::Vecto
   for (const Eigen::VectorXd& column : columns)
     if (column.size())
       for (const Comparison::Cell& cell : comparison.cells())
-        largest = std::max(largest, std::sqrt(comparison.meanSquare(cell, column)) / cell.floor);
+        if (cell.block == 0) largest = std::max(largest, std::sqrt(comparison.meanSquare(cell, column)) / cell.floor);
   return largest;
 }
 

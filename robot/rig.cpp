@@ -36,14 +36,14 @@ void Rig::settle(const Action& first_command) {
   dBodyGetMass(load_->body().id, &load);
   const double weight_N = (load.mass + muscle_->massG() / 2) * gravity;
   const auto stops = muscle_->straightLengthRange();
-  // The load hangs at this depth when the muscle has a length.
+  // The load hangs that far below the start when the muscle has a length.
   auto depth = [&](double length_mm) { return std::sqrt(length_mm * length_mm - top_mm_.x() * top_mm_.x()); };
   auto surplus = [&](double length_mm) {
-    load_->place({0, -depth(length_mm), 0}, Eigen::Matrix3d::Identity());
+    load_->place({0, top_mm_.y() - depth(length_mm), 0}, Eigen::Matrix3d::Identity());
     return effects.restingTensionN(0, length_mm) * depth(length_mm) / length_mm + effects.restingLoad(*load_).force_N.y() - weight_N;
   };
   const double length_mm = rootBetween(surplus, stops.shortest_mm, stops.longest_mm);
-  const Vector bottom(0, -depth(length_mm), 0);
+  const Vector bottom(0, top_mm_.y() - depth(length_mm), 0);
   load_->place(bottom, Eigen::Matrix3d::Identity());
   muscle_->placeStraight(top_mm_, bottom);
 }

@@ -85,6 +85,7 @@ struct Experiment {
 struct FittedCell {
   std::string recording, signal;
   double floor = 0, rms_before = 0;
+  int averaged_rows = 0;  ///< rows per block of the averaged signal; 0: as recorded
 };
 
 /// An explanation that was fitted: what it leaves of each cell.
