@@ -111,12 +111,13 @@ void Attributor::refit(Explanation& explanation, const Comparison& comparison, i
     result.tail(tuned_count) = Plant::clampedTuning(z.tail(tuned_count));
     return result;
   };
-  problem.predicted = [&](const Eigen::VectorXd& z) {
+  auto modelAt = [&](const Eigen::VectorXd& z) {
     on_simulation_();
-    const Model model = modelOf({members, z.head(effect_count), {}, {}, 0, 0, 0, z.tail(tuned_count)});
-    return fidelity == Fidelity::fine ? comparison.predicted(model, fidelity) : comparison.predicted(model);
+    return modelOf({members, z.head(effect_count), {}, {}, 0, 0, 0, z.tail(tuned_count)});
   };
-  const FitResult result = fit(comparison, problem, rounds);
+  problem.predicted = [&](const Eigen::VectorXd& z) { return comparison.predicted(modelAt(z)); };
+  auto exact = [&](const Eigen::VectorXd& z) { return comparison.predicted(modelAt(z), Fidelity::fine); };
+  const FitResult result = fidelity == Fidelity::fine ? fitCorrected(comparison, problem, exact, rounds) : fit(comparison, problem, rounds);
   explanation.z = result.z.head(effect_count);
   explanation.tuning = result.z.tail(tuned_count);
   if (rounds > 0 || explanation.half_width.size() == 0) {

@@ -107,31 +107,39 @@ class BlockRatio {
   int filled_ = 0, count_ = 0, block_count_ = 0;
 };
 
-/// RMS of measured tension minus that of the law at measured pressure and length, over what noise of all three gives; the largest of all
-/// muscles. Nothing if one of the three signals is missing.
-std::optional<double> tensionRatio(const Comparison& comparison) {
+/// Of measured tension minus that of the law at measured pressure and length, over what noise of all three gives; of the muscle in which it
+/// is largest.
+struct TensionTest {
+  double found = 0;     ///< RMS ratio
+  double expected = 0;  ///< if all of the gap in the length arose in the law
+};
+
+/// Nothing if one of the three signals is missing.
+std::optional<TensionTest> testTension(const Comparison& comparison, const Eigen::VectorXd& residual) {
   const Plant& plant = comparison.plant();
-  std::optional<double> largest;
+  std::optional<TensionTest> largest;
   for (int muscle = 0; muscle < plant.muscleCount(); ++muscle) {
     const int p = signalNumber(plant, fmt::format("pressure_{}", muscle)), f = signalNumber(plant, fmt::format("force_{}_N", muscle)),
               l = signalNumber(plant, fmt::format("length_{}_mm", muscle));
     if (p < 0 || f < 0 || l < 0) continue;
     auto floorOf = [&](int signal) { return plant.signals()[static_cast<std::size_t>(signal)].floor.value; };
-    BlockRatio ratio;
-    for (const Stretch& stretch : comparison.stretches()) {
-      const auto &ps = plant.measured(stretch.recording, p), &fs = plant.measured(stretch.recording, f),
-                 &ls = plant.measured(stretch.recording, l);
-      for (int row = stretch.first_row; row < stretch.end_row; ++row) {
-        const auto i = static_cast<std::size_t>(row);
-        if (i >= ps.size() || i >= fs.size() || i >= ls.size()) break;
-        if (!std::isfinite(ps[i] + fs[i] + ls[i])) continue;
+    BlockRatio found, expected;
+    for (const Comparison::Cell& cell : comparison.cells()) {
+      if (cell.signal != l || cell.block > 0) continue;
+      const int recording = comparison.stretches()[cell.stretch].recording;
+      const auto &ps = plant.measured(recording, p), &fs = plant.measured(recording, f), &ls = plant.measured(recording, l);
+      for (std::size_t k = 0; k < cell.rows.size(); ++k) {
+        const auto i = static_cast<std::size_t>(cell.rows[k]);
+        if (i >= ps.size() || i >= fs.size() || !std::isfinite(ps[i] + fs[i])) continue;
         const double law = plant.tensionN(muscle, ps[i], ls[i]);
         const double by_p = plant.tensionN(muscle, ps[i] + floorOf(p), ls[i]) - law,
                      by_l = plant.tensionN(muscle, ps[i], ls[i] + floorOf(l)) - law;
-        ratio.add(fs[i] - law, by_p * by_p + by_l * by_l + floorOf(f) * floorOf(f));
+        const double variance = by_p * by_p + by_l * by_l + floorOf(f) * floorOf(f);
+        found.add(fs[i] - law, variance);
+        expected.add(plant.tensionN(muscle, ps[i], ls[i] - residual[cell.first + static_cast<Eigen::Index>(k)]) - law, variance);
       }
     }
-    if (!ratio.isEmpty()) largest = std::max(largest.value_or(0), ratio.largestRms());
+    if (!found.isEmpty() && (!largest || found.largestRms() > largest->found)) largest = {found.largestRms(), expected.largestRms()};
   }
   return largest;
 }
@@ -214,14 +222,16 @@ Location locate(const Comparison& comparison, const std::vector<Suspect>& suspec
           "than one cause, and shares say how much typical disturbances of each stage resemble the whole gap");
     }
   }
-  if (const auto ratio = tensionRatio(comparison)) {
-    if (*ratio < agrees) {
+  if (const auto tension = testTension(comparison, residual)) {
+    if (tension->found < agrees && tension->expected > disagrees) {
       force *= hardly;
       reasons.push_back("tensions follow the force law at the measured pressures and lengths");
-    } else if (*ratio > disagrees) {
+    } else if (tension->found < agrees) {
+      reasons.push_back("the gap is too small to show in tensions against the force law at the measured pressures and lengths");
+    } else if (tension->found > disagrees) {
       body *= hardly;
-      reasons.push_back(
-          fmt::format("tensions differ from the force law at the measured pressures and lengths by {:.1f} times the noise", *ratio));
+      reasons.push_back(fmt::format("tensions differ from the force law at the measured pressures and lengths by {:.1f} times the noise",
+                                    tension->found));
     }
   }
   if (reasons.empty())

@@ -127,4 +127,33 @@ FitResult fit(const Comparison& comparison, const FitProblem& problem, int round
   return {best.z, best.residual, best.log_misfit, halfWidths(comparison, best, jacobian)};
 }
 
+FitResult fitCorrected(const Comparison& comparison, const FitProblem& cheap, const Predicted& exact, int round_count) {
+  constexpr int pass_count = 2;
+  FitProblem exactly = cheap;
+  exactly.predicted = exact;
+  Point best = evaluate(comparison, exactly, cheap.start);
+  FitResult result{best.z, best.residual, best.log_misfit, Eigen::VectorXd::Zero(best.z.size())};
+  for (int pass = 0; pass < pass_count && best.residual.size() && !comparison.plant().interrupted(); ++pass) {
+    const Eigen::VectorXd before = cheap.predicted(best.z);
+    if (before.size() != comparison.size()) break;
+    FitProblem corrected = cheap;
+    corrected.start = best.z;
+    const Eigen::VectorXd shift = comparison.measured() - best.residual - before;
+    corrected.predicted = [&](const Eigen::VectorXd& z) -> Eigen::VectorXd {
+      const Eigen::VectorXd predicted = cheap.predicted(z);
+      return predicted.size() == shift.size() ? predicted + shift : predicted;
+    };
+    const FitResult fitted = fit(comparison, corrected, round_count);
+    result.half_width = fitted.half_width;
+    if (fitted.log_misfit > best.log_misfit - enough) break;
+    Point next = evaluate(comparison, exactly, fitted.z);
+    if (next.log_misfit > best.log_misfit - enough) break;
+    best = std::move(next);
+  }
+  result.z = best.z;
+  result.residual = best.residual;
+  result.log_misfit = best.log_misfit;
+  return result;
+}
+
 }  // namespace musclesim

@@ -8,9 +8,11 @@
 
 namespace musclesim {
 
+/// The prediction at the compared rows for given coordinates; empty if the model diverges.
+using Predicted = std::function<Eigen::VectorXd(const Eigen::VectorXd&)>;
+
 struct FitProblem {
-  /// The prediction at the compared rows for given coordinates; empty if the model diverges.
-  std::function<Eigen::VectorXd(const Eigen::VectorXd&)> predicted;
+  Predicted predicted;
   std::function<Eigen::VectorXd(const Eigen::VectorXd&)> clamped;
   Eigen::VectorXd start;
 };
@@ -28,5 +30,10 @@ struct FitResult {
 /// The intervals are those of the linearised problem with the residual's own variance, widened by the number of samples over the
 /// effective number of samples (from the residual's autocorrelation).
 FitResult fit(const Comparison& comparison, const FitProblem& problem, int round_count);
+
+/// The same for an exact prediction that costs more than the one of the problem. That one is fitted with what it lacks at the start added,
+/// the result is predicted exactly, and once more from there (additive correction, Alexandrov and Lewis 2001). The residual is the exact
+/// one, and never worse than that at the start.
+FitResult fitCorrected(const Comparison& comparison, const FitProblem& cheap, const Predicted& exact, int round_count);
 
 }  // namespace musclesim
