@@ -7,7 +7,7 @@ namespace musclesim {
 
 namespace {
 
-constexpr double skin_mm = 120;
+constexpr double skin_mm = 100;
 
 double difference(const dReal* a, const dReal* b, int count) {
   double square = 0;

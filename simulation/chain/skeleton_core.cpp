@@ -72,18 +72,29 @@ void SkeletonCore::couple(int row, int bone, const double jacobian[6]) {
   for (std::size_t i = 0; i < 6; ++i) target[i * stride_] = jacobian[i] + (is_new ? 0 : target[i * stride_]);
 }
 
-/// M = L L^T in place. Where no chain ends on the bone, nothing couples its first three unknowns, and what is 0 is left out.
-void SkeletonCore::factorise(BoneSystem& bone) {
-  Matrix6& m = bone.mass;
-  const bool alone = (m.bottomLeftCorner<3, 3>().array() == 0).all() && m(1, 0) == 0 && m(2, 0) == 0 && m(2, 1) == 0;
-  bone.first_coupled = alone ? 3 : 0;
-  for (int j = 0; j < bone.first_coupled; ++j) m(j, j) *= 1 / std::sqrt(m(j, j));
-  for (int j = bone.first_coupled; j < 6; ++j) {
-    for (int k = bone.first_coupled; k < j; ++k)
+namespace {
+
+/// M = L L^T in place, for the rows and columns from `first` on.
+template <int first>
+void factoriseFrom(Matrix6& m) {
+  for (int j = first; j < 6; ++j) {
+    for (int k = first; k < j; ++k)
       for (int i = j; i < 6; ++i) m(i, j) -= m(i, k) * m(j, k);
     const double per_root = 1 / std::sqrt(m(j, j));
     for (int i = j; i < 6; ++i) m(i, j) *= per_root;
   }
+}
+
+}  // namespace
+
+/// Where no chain ends on the bone, nothing couples its first three unknowns, and what is 0 is left out.
+void SkeletonCore::factorise(BoneSystem& bone) {
+  Matrix6& m = bone.mass;
+  const bool alone = (m.bottomLeftCorner<3, 3>().array() == 0).all() && m(1, 0) == 0 && m(2, 0) == 0 && m(2, 1) == 0;
+  bone.first_coupled = alone ? 3 : 0;
+  if (!alone) return factoriseFrom<0>(m);
+  for (int j = 0; j < 3; ++j) m(j, j) *= 1 / std::sqrt(m(j, j));
+  factoriseFrom<3>(m);
 }
 
 /// Factors M and replaces J^T by L^-1 J^T, g by L^-1 g.
