@@ -23,7 +23,7 @@ AsmController::AsmController(const ControllerRequest& request)
       noise_(request.seed, "asm.noise"),
       step_ratio_(
           request.parameters.number("asm.step_ratio", 1.2, "", 0, 1e6, "length of one step; times the activity it is limited to 1")),
-      noise_std_(request.parameters.number("asm.noise_std", 0.13, "", 0, 10, "standard deviation of the fluctuation in one step")),
+      noise_std_(request.parameters.number("asm.noise_std", 0.2, "", 0, 10, "standard deviation of the fluctuation in one step")),
       steps_per_decision_(request.parameters.integer("asm.steps_per_decision", 200, 1, 100000, "steps of the state per decision")),
       x_(Eigen::VectorXd::Zero(request.muscle_count)) {}
 

@@ -69,7 +69,7 @@ std::unique_ptr<Task> Task::make(const ControllerRequest& request) {
 HeightTask::HeightTask(const ControllerRequest& request)
     : Task(Target::make(request)),
       gain_(request.parameters.number("height_task.gain", 1, "", 0, 1e6, "activity at the target")),
-      e0_mm_(request.parameters.number("height_task.error_scale_mm", 5, "mm", 1e-3, 1e5,
+      e0_mm_(request.parameters.number("height_task.error_scale_mm", 20, "mm", 1e-3, 1e5,
                                        "height error at which the activity is half of that at the target")) {}
 
 double HeightTask::activity(const State& state) {

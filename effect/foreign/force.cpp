@@ -1,5 +1,5 @@
-/// Foreign laws of the force stage: Bouc-Wen hysteresis (Bouc 1967, Wen 1976), a power law of speed, two Kelvin elements, a threshold that
-/// sets in softly, a gain that changes over the length, an offset that grows with the length, a tendon that stiffens, a warm-up that ends,
+/// Foreign laws of the force stage: Bouc-Wen hysteresis (Bouc 1967, Wen 1976), a power law of speed, two Kelvin elements, an onset
+/// without a kink, a gain that changes over the length, an offset that grows with the length, a tendon that stiffens, a warm-up that ends,
 /// Eq. 1 bent by a parabola.
 #include <algorithm>
 #include <cmath>
@@ -78,19 +78,19 @@ class TwoKelvinElements final : public ForceEffect {
   double amount_, tau_s_, fast_mm_ = 0, slow_mm_ = 0;
 };
 
-/// p' = s log(1 + exp((p - p_t) / s)), scaled so that full pressure stays.
-class SoftThreshold final : public ForceEffect {
+/// p' = p^2 (1 + p_t) / (p + p_t): no kink at all, p - p_t far above it.
+class GradualOnset final : public ForceEffect {
  public:
-  explicit SoftThreshold(const EffectValues& v) : threshold_(v["threshold"]), softness_(v["softness"]) {}
+  explicit GradualOnset(const EffectValues& v) : threshold_(v["threshold"]) {}
   double tensionN(const MuscleInput& input, const ForceBelow& below) const override {
     MuscleInput inside = input;
-    inside.pressure_ratio = soft(input.pressure_ratio) / soft(1);
+    const double p = std::max(0.0, input.pressure_ratio);
+    if (p > 0) inside.pressure_ratio = p * p * (1 + threshold_) / (p + threshold_);
     return below(inside);
   }
 
  private:
-  double soft(double p) const { return softness_ * std::log1p(std::exp((p - threshold_) / softness_)); }
-  double threshold_, softness_;
+  double threshold_;
 };
 
 double lengthRatio(const Actuator& actuator, double length_mm) {
@@ -182,9 +182,8 @@ std::vector<ForeignEffect> forceLaws() {
              {{"amount", "", 0, 0, 10, 0.05, 0.25, "of both together"}, {"time_constant_s", "s", 0.7, 1e-2, 1e3, 0.3, 3, "tau", true}},
              [](const EffectValues& v) { return std::make_unique<TwoKelvinElements>(v); }),
        "creep"},
-      {entry("soft_threshold", Stage::force, muscle, "p' ~ s log(1 + exp((p - p_t) / s))",
-             {{"threshold", "", 0, 0, 0.9, 0.04, 0.15, "p_t"}, {"softness", "", 0.02, 1e-3, 1, 0.01, 0.04, "s", true}},
-             [](const EffectValues& v) { return std::make_unique<SoftThreshold>(v); }),
+      {entry("gradual_onset", Stage::force, muscle, "p' = p^2 (1 + p_t) / (p + p_t)", {{"threshold", "", 0, 0, 0.9, 0.04, 0.15, "p_t"}},
+             [](const EffectValues& v) { return std::make_unique<GradualOnset>(v); }),
        "threshold_pressure"},
       {entry("sloping_gain", Stage::force, muscle, "F' = (g + s (r - 1/2)) F",
              {{"gain", "", 1, 0, 10, 0.75, 1.25, "g"}, {"slope", "", 0, -5, 5, -0.1, 0.1, "s"}},

@@ -21,6 +21,17 @@ TEST(ThresholdPressure, IsTheLawAtLessPressure) {
   EXPECT_NEAR(machine.tensionAt(230), machine.lawN(0, 230), 1e-9);
 }
 
+TEST(ThresholdPressure, WithSoftnessHasNoKink) {
+  LengthMachine machine({{"threshold_pressure", "all", {{"threshold", 0.1}, {"softness", 0.5}}}});
+  const auto s = [](double p) { return 0.05 * std::log(1 + std::exp((p - 0.1) / 0.05)); };
+  for (const double p : {0.0, 0.05, 0.1, 0.3, 1.0}) {
+    machine.setPressure(p);
+    EXPECT_NEAR(machine.tensionAt(230), machine.lawN((s(p) - s(0)) / (s(1) - s(0)), 230), 1e-9) << p;
+  }
+  LengthMachine gentle({{"threshold_pressure", "all", {{"threshold", 0.1}, {"softness", 1e-4}}}});
+  EXPECT_NEAR(gentle.tensionAt(230), gentle.lawN(0.4 / 0.9, 230), 1e-9) << "the kink is its limit";
+}
+
 TEST(ForceGain, IsAFactor) {
   LengthMachine machine({{"force_gain", "muscle_0", {{"gain", 0.8}}}});
   EXPECT_NEAR(machine.tensionAt(230), 0.8 * machine.lawN(0.5, 230), 1e-9);
