@@ -17,7 +17,7 @@ constexpr int look_rows = 1500;           ///< the look's stretches have that ma
 constexpr std::size_t look_count = 3;     ///< recordings that are looked at
 constexpr std::size_t single_count = 14;  ///< suspects that are fitted
 constexpr std::size_t pair_count = 6;     ///< further effects that are fitted beside the best
-constexpr double worth_a_pair = 0.15;     ///< log misfit per affected cell above which a further effect is looked for
+constexpr double least_hope = -1;         ///< ln of the odds of one more effect that leaves nothing; below, none is looked for
 constexpr int few_effects = 2;            ///< up to that many, the first look serves for all of them
 constexpr int first_rounds = 2, more_rounds = 6, last_rounds = 2;
 constexpr int many_rounds = 12;  ///< in place of the last rounds where many effects act together
@@ -113,7 +113,7 @@ void Attributor::refit(Explanation& explanation, const Comparison& comparison, i
   };
   auto modelAt = [&](const Eigen::VectorXd& z) {
     on_simulation_();
-    return modelOf({members, z.head(effect_count), {}, {}, 0, 0, 0, z.tail(tuned_count)});
+    return modelOf({members, z.head(effect_count), {}, {}, 0, 0, z.tail(tuned_count)});
   };
   problem.predicted = [&](const Eigen::VectorXd& z) { return comparison.predicted(modelAt(z)); };
   auto exact = [&](const Eigen::VectorXd& z) { return comparison.predicted(modelAt(z), Fidelity::fine); };
@@ -178,7 +178,7 @@ void Attributor::fitSingles() {
   for (const Signature& signature : result_.signatures) log_misfit.push_back(signature.log_misfit);
   const std::vector<std::size_t> chosen = survivors(log_misfit, single_count, true);
   std::vector<Explanation> candidates;
-  for (const std::size_t index : chosen) candidates.push_back({{index}, startOf(index, result_.signatures[index]), {}, {}, 0, 0, 0});
+  for (const std::size_t index : chosen) candidates.push_back({{index}, startOf(index, result_.signatures[index]), {}, {}, 0, 0});
   fitTogether(std::move(candidates), single_reach.on_look, single_reach.on_all);
 }
 
@@ -187,7 +187,9 @@ void Attributor::fitSingles() {
 bool Attributor::fitFurther(std::size_t count) {
   const auto found =
       std::ranges::find_if(result_.explanations, [&](const Explanation& explanation) { return explanation.suspects.size() + 1 == count; });
-  if (found == result_.explanations.end() || found->log_misfit < worth_a_pair) return false;
+  if (found == result_.explanations.end()) return false;
+  const double best_hope = weighing_.per_further_gain * weighedMisfit(found->residual) - weighing_.per_effect - weighing_.per_parameter;
+  if (best_hope < least_hope) return false;
   const Explanation best = *found;
   const Eigen::VectorXd predicted = look_.predicted(modelOf(best));
   if (!predicted.size()) return false;
@@ -206,7 +208,7 @@ bool Attributor::fitFurther(std::size_t count) {
   std::vector<Explanation> candidates;
   for (const std::size_t index : survivors(log_misfit, pair_count, false)) {
     const Eigen::VectorXd further = startOf(index, signatures[index]);
-    Explanation candidate{best.suspects, Eigen::VectorXd(best.z.size() + further.size()), {}, {}, 0, 0, 0, best.tuning};
+    Explanation candidate{best.suspects, Eigen::VectorXd(best.z.size() + further.size()), {}, {}, 0, 0, best.tuning};
     candidate.suspects.push_back(index);
     candidate.z << best.z, further;
     candidates.push_back(std::move(candidate));
@@ -219,25 +221,26 @@ void Attributor::sort() {
   std::ranges::stable_sort(result_.explanations, [](const Explanation& a, const Explanation& b) { return a.probability > b.probability; });
 }
 
-/// Mean over affected cells of ln(RMS / floor), where floor^2 = noise floor^2 + (mismatch * RMS without any effect)^2.
-double Attributor::weighedMisfit(const Eigen::VectorXd& residual, double mismatch) const {
+/// Mean over affected cells of ln(RMS / floor), where floor^2 = noise floor^2 + (law mismatch * RMS without any effect)^2.
+double Attributor::weighedMisfit(const Eigen::VectorXd& residual) const {
   double sum = 0;
   for (const Comparison::Cell& cell : fit_.cells()) {
-    const double square = mismatch * mismatch * fit_.meanSquare(cell, nominal_residual_);
+    const double square = weighing_.law_mismatch * weighing_.law_mismatch * fit_.meanSquare(cell, nominal_residual_);
     sum += 0.5 * std::log(std::max(1.0, fit_.meanSquare(cell, residual) / (cell.floor * cell.floor + square)));
   }
   return sum / fit_.affectedCells(nominal_residual_);
 }
 
-/// Of several effects: what all but the last leave, less what the last one gains where a wrong law is forgiven more.
-double Attributor::weighedMisfit(const Explanation& explanation) const {
-  if (explanation.suspects.size() < 2) return weighedMisfit(explanation.residual, weighing_.law_mismatch);
-  const auto before = std::ranges::find_if(result_.explanations, [&](const Explanation& other) {
-    return other.suspects.size() + 1 == explanation.suspects.size() &&
-           std::equal(other.suspects.begin(), other.suspects.end(), explanation.suspects.begin());
+/// ln of the odds by what is left. What further effects gain over the first counts less than what the first leaves: they may only mend
+/// its law, which is never quite the right one.
+double Attributor::misfitLogOdds(const Explanation& explanation) const {
+  const double left = weighedMisfit(explanation.residual);
+  if (explanation.suspects.size() < 2) return -weighing_.per_misfit * left;
+  const auto first = std::ranges::find_if(result_.explanations, [&](const Explanation& other) {
+    return other.suspects.size() == 1 && other.suspects.front() == explanation.suspects.front();
   });
-  return weighedMisfit(*before) - weighedMisfit(before->residual, weighing_.second_mismatch) +
-         weighedMisfit(explanation.residual, weighing_.second_mismatch);
+  const double alone = weighedMisfit(first->residual);
+  return -weighing_.per_misfit * alone + weighing_.per_further_gain * (alone - left);
 }
 
 /// What speaks against an explanation before its misfit is looked at.
@@ -254,15 +257,12 @@ double Attributor::priorLogOdds(const Explanation& explanation) const {
   return odds;
 }
 
-/// odds = exp(-per_misfit * weighed misfit) * prior odds; "none of these" and "no effect" are explanations like any other.
+/// odds = exp(misfit log odds) * prior odds; "none of these" and "no effect" are explanations like any other.
 void Attributor::weigh() {
-  const double no_effect = weighedMisfit(nominal_residual_, weighing_.law_mismatch);
+  const double no_effect = weighedMisfit(nominal_residual_);
   std::vector<double> odds = {-weighing_.per_misfit * no_effect,
                               -weighing_.per_misfit * weighing_.none_share * no_effect - weighing_.per_parameter};
-  for (Explanation& explanation : result_.explanations) {
-    explanation.weighed_misfit = weighedMisfit(explanation);
-    odds.push_back(-weighing_.per_misfit * explanation.weighed_misfit + priorLogOdds(explanation));
-  }
+  for (const Explanation& explanation : result_.explanations) odds.push_back(misfitLogOdds(explanation) + priorLogOdds(explanation));
   const double largest = *std::ranges::max_element(odds);
   double sum = 0;
   for (double& value : odds) sum += value = std::exp(value - largest);

@@ -17,9 +17,8 @@ struct Explanation {
   std::vector<std::size_t> suspects;
   Eigen::VectorXd z;  ///< coordinates of all of them, one after the other
   Eigen::VectorXd half_width;
-  Eigen::VectorXd residual;   ///< on the stretches for fitting
-  double log_misfit = 0;      ///< per affected cell
-  double weighed_misfit = 0;  ///< the same with the mismatch of laws taken for noise
+  Eigen::VectorXd residual;  ///< on the stretches for fitting
+  double log_misfit = 0;     ///< per affected cell
   double probability = 0;
   Eigen::VectorXd tuning = {};             ///< coordinates of the numbers of the model that are fitted together with the effects
   Eigen::VectorXd tuning_half_width = {};  ///< Plant::tunedAt tells the values
@@ -27,14 +26,14 @@ struct Explanation {
 
 /// How answers are weighed; docs/diagnosing.md says on which cases the numbers were found.
 struct Weighing {
-  double per_misfit = 14;         ///< ln of the odds per unit of log misfit per affected cell
-  double per_parameter = 0.35;    ///< ln of the odds that a further parameter costs
-  double per_effect = 2.2;        ///< ln of the odds that a second effect costs
+  double per_misfit = 10;         ///< ln of the odds per unit of log misfit per affected cell
+  double per_parameter = 0.5;    ///< ln of the odds that a further parameter costs
+  double per_effect = 6.5;          ///< ln of the odds that a further effect costs
+  double per_further_gain = 6.2;  ///< ln of the odds per unit of log misfit that further effects gain over the first
   double per_excess = 0.6;        ///< ln of the odds per e-fold by which a parameter is beyond its usual range
-  double shared_sensor = 2.5;     ///< ln of the odds of one sensor's fault against one that all sensors share
+  double shared_sensor = 3;     ///< ln of the odds of one sensor's fault against one that all sensors share
   double law_mismatch = 0.01;     ///< share of the residual that the right cause may leave since its law is not quite ours
-  double second_mismatch = 0.13;  ///< the same where a second effect is asked for: it must explain more than the first one's wrong law
-  double none_share = 0.78;       ///< "none of these" stands for a cause that would leave this share of the log misfit without effects
+  double none_share = 0.72;       ///< "none of these" stands for a cause that would leave this share of the log misfit without effects
 };
 
 struct Attribution {
@@ -68,8 +67,8 @@ class Attributor {
   Eigen::VectorXd startOf(std::size_t index, const Signature& signature) const;
   void fitSingles();
   bool fitFurther(std::size_t count);
-  double weighedMisfit(const Eigen::VectorXd& residual, double mismatch) const;
-  double weighedMisfit(const Explanation& explanation) const;
+  double weighedMisfit(const Eigen::VectorXd& residual) const;
+  double misfitLogOdds(const Explanation& explanation) const;
   double priorLogOdds(const Explanation& explanation) const;
   void weigh();
   void sort();

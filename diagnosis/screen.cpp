@@ -13,6 +13,8 @@ namespace {
 
 constexpr double largest_amount = 5;  ///< beyond that many typical strengths a straight line says nothing
 constexpr double strong = 4;          ///< typical strengths at which one that shows nothing is looked at again
+constexpr double nothing = 0.1;       ///< floors
+constexpr double late = 3;            ///< typical strengths at which delays and time constants are looked at again
 
 /// A simulation whose result gives columns of one or more suspects.
 struct Probe {
@@ -125,19 +127,36 @@ std::vector<Eigen::VectorXd> changesBy(const Comparison& comparison, const std::
   return changes;
 }
 
-/// Strengths that change nothing at their typical value, though they would if they were stronger: limits that nothing reaches.
-std::vector<Probe> strongerProbes(const Comparison& comparison, const std::vector<Suspect>& suspects, const std::vector<Signature>& looks) {
+/// Strengths that change nothing at their typical value, though they would if they were stronger: limits that nothing reaches. `direction`
+/// -1: those that may have either sign.
+std::vector<Probe> strongerProbes(const Comparison& comparison, const std::vector<Suspect>& suspects, const std::vector<Signature>& looks,
+                                  int direction) {
   std::vector<Probe> result;
   for (std::size_t s = 0; s < suspects.size(); ++s) {
     if (suspects[s].info().stage == Stage::sensor) continue;
     for (std::size_t k = 0; k < suspects[s].strengths().size(); ++k) {
       const int coordinate = suspects[s].strengths()[k];
-      if (suspects[s].isSigned(coordinate) || excitationOf(comparison, {looks[s].per_strength[k]}) >= 1) continue;
+      const bool either_sign = suspects[s].isSigned(coordinate);
+      if ((direction < 0 && !either_sign) || excitationOf(comparison, {looks[s].per_strength[k]}) >= (either_sign ? nothing : 1)) continue;
       Eigen::VectorXd z = Eigen::VectorXd::Zero(suspects[s].coordinateCount());
-      z[coordinate] = strong;
+      z[coordinate] = direction * strong;
       result.push_back({{{suspects[s].at(z)}, {}}, {{s, k, -1}}});
     }
   }
+  return result;
+}
+
+/// Delays and time constants: what they do is not proportional to them.
+std::vector<Probe> lateProbes(const std::vector<Suspect>& suspects) {
+  std::vector<Probe> result;
+  for (std::size_t s = 0; s < suspects.size(); ++s)
+    for (std::size_t k = 0; k < suspects[s].strengths().size(); ++k) {
+      const int coordinate = suspects[s].strengths()[k];
+      if (suspects[s].info().stage == Stage::sensor || !suspects[s].isTime(coordinate)) continue;
+      Eigen::VectorXd z = Eigen::VectorXd::Zero(suspects[s].coordinateCount());
+      z[coordinate] = late;
+      result.push_back({{{suspects[s].at(z)}, {}}, {{s, k, -1}}});
+    }
   return result;
 }
 
@@ -147,18 +166,25 @@ std::vector<Signature> screen(const Comparison& comparison, const std::vector<Su
                               const Model& base, int job_count, const OnSimulation& on_simulation) {
   std::vector<Signature> result(suspects.size());
   for (std::size_t s = 0; s < suspects.size(); ++s) result[s].per_strength.resize(std::max<std::size_t>(1, suspects[s].strengths().size()));
-  auto look = [&](const std::vector<Probe>& probes, double strength) {
+  auto lookInto = [&](std::vector<Signature>& signatures, const std::vector<Probe>& probes, double strength) {
     const std::vector<Eigen::VectorXd> changes = changesBy(comparison, probes, nominal, base, job_count, on_simulation);
     for (std::size_t i = 0; i < probes.size(); ++i)
       for (const Probe::Target& target : probes[i].targets)
         if (changes[i].size())
-          result[target.suspect].per_strength[target.strength] = only(comparison, changes[i] / strength, target.signal);
+          signatures[target.suspect].per_strength[target.strength] = only(comparison, changes[i] / strength, target.signal);
   };
+  auto look = [&](const std::vector<Probe>& probes, double strength) { lookInto(result, probes, strength); };
   look(probes(comparison, suspects), 1);
   for (std::size_t s = 0; s < suspects.size(); ++s) result[s].excitation_ratio = excitationOf(comparison, result[s].per_strength);
-  look(strongerProbes(comparison, suspects, result), strong);
+  for (const int direction : {1, -1}) look(strongerProbes(comparison, suspects, result, direction), direction * strong);
   const Eigen::VectorXd residual = comparison.measured() - nominal;
-  for (std::size_t s = 0; s < suspects.size(); ++s) explain(comparison, suspects[s], residual, result[s]);
+  std::vector<Signature> lately = result;
+  lookInto(lately, lateProbes(suspects), late);
+  for (std::size_t s = 0; s < suspects.size(); ++s) {
+    explain(comparison, suspects[s], residual, result[s]);
+    explain(comparison, suspects[s], residual, lately[s]);
+    if (lately[s].log_misfit < result[s].log_misfit) result[s] = std::move(lately[s]);
+  }
   return result;
 }
 

@@ -103,6 +103,10 @@ bool Suspect::isSigned(int coordinate) const {
   return info_.id == "force_law" || (c.scale == Scale::linear && p.minimum < p.neutral);
 }
 
+bool Suspect::isTime(int coordinate) const {
+  return info_.parameters[coordinates_[static_cast<std::size_t>(coordinate)].parameter].unit == "s";
+}
+
 double Suspect::valueOf(const Coordinate& c, double z) const {
   const double base = base_[c.parameter];
   switch (c.scale) {

@@ -28,6 +28,8 @@ class Suspect {
   const std::vector<int>& strengths() const { return strengths_; }
   /// Whether a strength may have either sign.
   bool isSigned(int coordinate) const;
+  /// Whether it is a time.
+  bool isTime(int coordinate) const;
   ActiveEffect at(const Eigen::VectorXd& z) const;
   /// Names and values of the parameters that z changes, and of those that are set to something else than neutral.
   std::vector<std::pair<std::string, double>> valuesAt(const Eigen::VectorXd& z) const;
