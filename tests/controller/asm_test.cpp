@@ -36,7 +36,8 @@ TEST(AsmController, FollowsEquation5StepByStep) {
 }
 
 TEST(AsmController, DecidesByCountAndHoldsBetween) {
-  Prepared prepared{"asm.steps_per_decision=1", "asm.attractor_count=5"};  // four control steps per decision
+  // Four control steps per decision.
+  Prepared prepared{"asm.steps_per_decision=1", "asm.attractor_count=5", "height_task.error_scale_mm=5"};
   AsmController controller(prepared.request);
   Action last;
   for (int step = 0; step < 400; ++step) {
@@ -125,7 +126,9 @@ TEST(AsmController, LiftsASurrogateArmAndHoldsIt) {
   double held_after = 0, held_after_random = 0;
   constexpr int runs = 20;
   for (std::uint64_t seed = 1; seed <= runs; ++seed) {
-    Parameters parameters;
+    Parameters parameters;  // what suits this plant, which is at rest sooner than the arm
+    parameters.set("height_task.error_scale_mm", 5.0, "test");
+    parameters.set("asm.noise_std", 0.13, "test");
     const ControllerRequest request{parameters, 10, 0.1, 6, seed, "height", std::nullopt};
     AsmController controller(request);
     RandomPressuresController baseline(request);
