@@ -44,7 +44,7 @@ class NearPairs {
   bool areStrangers(int first, int second) const;
   int placeOf(dBodyID body);
   static void extend(Body& body, const Box& box);
-  const Box& boxOf(int geom);
+  const Box& boxOf(int number);
   static double distanceMm(const Box& a, const Box& b);
   Body& bodyOf(int geom) { return bodies_[static_cast<std::size_t>(geoms_[static_cast<std::size_t>(geom)].body)]; }
 
