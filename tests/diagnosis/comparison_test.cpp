@@ -88,6 +88,40 @@ TEST_F(Rig, FitFindsTheBottomOfABentValley) {
   EXPECT_LT(found.log_misfit, 0.1);
 }
 
+TEST_F(Rig, AveragesShowWhatIsWeakButSlow) {
+  const Comparison averaged(plant, {{0, 0, 150}, {1, 0, 150}}, Comparison::Averages::with);
+  ASSERT_EQ(averaged.cells().size(), 4u);
+  ASSERT_EQ(averaged.size(), 300 + 2 * 9) << "blocks of 16 rows, the rest left out";
+  const Comparison::Cell& blocks = averaged.cells()[2];
+  const double floor = planted::noise_mm, block_floor = floor * std::sqrt(1.0 / 16 + 0.04);
+  EXPECT_NEAR(blocks.floor, block_floor, 1e-12);
+  EXPECT_NEAR(averaged.measured()[blocks.first], both.measured().head(16).mean(), 1e-12);
+  EXPECT_EQ(averaged.predicted(Model{}).head(300), both.predicted(Model{}));
+  const Eigen::VectorXd weak = Eigen::VectorXd::Constant(averaged.size(), 0.9 * floor);
+  EXPECT_NEAR(averaged.logMisfit(weak), 2 * std::log(0.9 * floor / block_floor), 1e-12) << "as recorded it is below the floor";
+  EXPECT_EQ(averaged.gap(2 * weak).normalised, both.gap(2 * weak.head(300)).normalised) << "the gap is that of the signals as recorded";
+}
+
+/// The cheap prediction is off by what depends on z; only the exact one has the bottom at 2.
+TEST_F(Rig, CorrectedFitEndsWhereTheExactPredictionDoes) {
+  int exact_count = 0;
+  Eigen::VectorXd shape(300);
+  for (Eigen::Index i = 0; i < 300; ++i) shape[i] = 20 * std::sin(0.1 * static_cast<double>(i));
+  FitProblem cheap;
+  cheap.start = Eigen::VectorXd::Constant(1, 1.5);
+  cheap.clamped = [](const Eigen::VectorXd& z) { return z; };
+  cheap.predicted = [&](const Eigen::VectorXd& z) -> Eigen::VectorXd { return both.measured() + shape * (0.9 * z[0] - 1); };
+  auto exact = [&](const Eigen::VectorXd& z) -> Eigen::VectorXd {
+    ++exact_count;
+    return both.measured() + shape * (z[0] - 2);
+  };
+  const FitResult found = fitCorrected(both, cheap, exact, 5);
+  EXPECT_NEAR(found.z[0], 2, 0.02);
+  EXPECT_LT((found.residual - shape * (2 - found.z[0])).norm(), 1e-9) << "the residual is the exact one";
+  EXPECT_LE(exact_count, 3);
+  EXPECT_GT(found.half_width[0], 0);
+}
+
 TEST_F(Rig, FitStaysWithinBoundsAndReportsADivergedStart) {
   FitProblem problem;
   problem.start = Eigen::VectorXd::Constant(1, 0.1);

@@ -231,6 +231,21 @@ TEST(AttachmentOffset, MovesTheStartOfTheMuscle) {
   EXPECT_NEAR(other.build("elbow").truth().length_mm[1], std::hypot(260, 8), 1e-6);
 }
 
+TEST(AttachmentOffset, OfTheForeignLawIsTurnedToTheVertical) {
+  // 25 deg from the lever arm: the muscle runs from (35 + 8 cos, 240 + 8 sin) to (35, -20).
+  Simulation simulation(optionsWith({{"foreign.turned_attachment", "muscle_0", {{"offset_mm", 8.0}}}}));
+  const double turn_rad = 25 * rad_per_deg;
+  EXPECT_NEAR(simulation.build("elbow").truth().length_mm[0], std::hypot(260 + 8 * std::sin(turn_rad), 8 * std::cos(turn_rad)), 1e-6);
+}
+
+TEST(AttachmentOffset, OfARigLeavesItsLoadAtRest) {
+  const Recording commands = commandsFor("rig", 0.5, [](double) { return Action{0.4}; });
+  for (const char* id : {"attachment_offset", "foreign.turned_attachment"}) {
+    const auto length_mm = valuesOf(replayWith(commands, {{id, "muscle_0", {{"offset_mm", 20.0}}}}), "length_0_mm");
+    for (const double value : length_mm) EXPECT_NEAR(value, length_mm.front(), 0.2) << id;
+  }
+}
+
 TEST(AttachmentOffset, IsRefusedByRobotsThatDoNotAskForIt) {
   class Plain : public Robot {
    public:
