@@ -6,13 +6,6 @@
 
 namespace musclesim {
 
-namespace {
-
-constexpr std::size_t block_rows = 16;
-constexpr double steady_share = 0.2;  ///< of the floor that does not average out: what the model's own steps leave
-
-}  // namespace
-
 Comparison::Comparison(const Plant& plant, std::vector<Stretch> stretches, Averages averages)
     : plant_(plant), stretches_(std::move(stretches)) {
   for (std::size_t k = 0; k < stretches_.size(); ++k)

@@ -8,6 +8,9 @@
 
 namespace musclesim {
 
+inline constexpr std::size_t block_rows = 16;  ///< that many rows are averaged
+inline constexpr double steady_share = 0.2;    ///< of a noise floor that does not average out: what the model's own steps leave
+
 /// The compared rows of some stretches. A cell is one signal in one stretch, or the same averaged over blocks of rows: there noise is
 /// smaller, and what is weak but slow stands out.
 class Comparison {

@@ -91,12 +91,10 @@ Eigen::VectorXd residualUnderMeasuredPressures(const Comparison& comparison) {
 class BlockRatio {
  public:
   void add(double residual, double variance) {
-    constexpr int block_rows = 16;
-    constexpr double steady_share = 0.2;  // of the standard deviation that does not average out
     plain_ += residual * residual / variance, ++count_;
     residual_ += residual, variance_ += variance;
     if (++filled_ < block_rows) return;
-    averaged_ += residual_ * residual_ / (variance_ * (1 + steady_share * steady_share * block_rows)), ++block_count_;
+    averaged_ += residual_ * residual_ / (variance_ * (1 + steady_share * steady_share * static_cast<double>(block_rows))), ++block_count_;
     residual_ = variance_ = 0, filled_ = 0;
   }
   bool isEmpty() const { return count_ == 0; }
@@ -104,7 +102,8 @@ class BlockRatio {
 
  private:
   double plain_ = 0, averaged_ = 0, residual_ = 0, variance_ = 0;
-  int filled_ = 0, count_ = 0, block_count_ = 0;
+  std::size_t filled_ = 0;
+  int count_ = 0, block_count_ = 0;
 };
 
 /// Of measured tension minus that of the law at measured pressure and length, over what noise of all three gives; of the muscle in which it
