@@ -22,12 +22,6 @@ double speedRatio(const PhysicsSettings& physics) {
   return std::sqrt(physics.force_per_N / world_force_per_N);
 }
 
-bool isFixed(dBodyID body) {
-  for (int i = 0; i < dBodyGetNumJoints(body); ++i)
-    if (dJointGetType(dBodyGetJoint(body, i)) == dJointTypeFixed) return true;
-  return false;
-}
-
 }  // namespace
 
 LineOfPull::LineOfPull(const Vector& start_mm, const Vector& end_mm) : points_{{nullptr, start_mm, false}, {nullptr, end_mm, false}} {}
@@ -117,7 +111,7 @@ std::vector<LineOfPull::Push> LineOfPull::pushes() const {
   locate();
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const dBodyID body = points_[i].body;
-    if (!body || isFixed(body)) continue;
+    if (!body) continue;
     const Vector force = gradient(i);
     result.push_back({body, force, arms_[i].cross(force)});
   }

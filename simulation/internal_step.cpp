@@ -1,12 +1,11 @@
 #include "internal_step.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "../robot/ode_vector.h"
+#include "bone_mobility.h"
 #include "musclesim/robot/line_of_pull.h"
 #include "musclesim/units.h"
 
@@ -14,40 +13,34 @@ namespace musclesim {
 
 namespace {
 
-constexpr double line_margin_ratio = 0.9;  ///< of the limit for bones without joints, which are on the safe side
+constexpr double line_margin_ratio = 0.6;  ///< of the limit in the pose as built: in other poses lines have other levers
 
 using Pushes = std::vector<LineOfPull::Push>;
 
-/// J_a M^-1 J_b^T: how fast line a gets longer under a force of 1 on line b, per time.
-double mobility(const Pushes& a, const Pushes& b) {
-  double sum = 0;
-  for (const auto& first : a)
-    for (const auto& second : b) {
-      if (first.body != second.body) continue;
-      dMass mass;
-      dBodyGetMass(first.body, &mass);
-      const Eigen::Matrix3d turn = rotationOf(first.body);
-      sum += first.force.dot(second.force) / mass.mass +
-             first.torque.dot(turn * matrixFromOde(mass.I).inverse() * turn.transpose() * second.torque);
-    }
-  return sum;
-}
-
-/// Largest eigenvalue of sqrt(k_a k_b) J_a M^-1 J_b^T over all line muscles: squared rate of the fastest vibration of springs k on the free
-/// bones (joints between them only slow it down).
-double largestEigenvalue(const std::vector<Pushes>& lines, const std::vector<double>& k) {
+/// Largest eigenvalue of sqrt(k_a k_b) J_a P J_b^T over all line muscles: squared rate of the fastest vibration of springs k on the bones,
+/// P how easily they move (BoneMobility).
+double largestEigenvalue(const BoneMobility& mobility, const std::vector<Pushes>& lines, const std::vector<double>& k) {
   const auto count = static_cast<Eigen::Index>(lines.size());
   Eigen::MatrixXd matrix(count, count);
   for (Eigen::Index a = 0; a < count; ++a)
     for (Eigen::Index b = 0; b < count; ++b) {
       const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
-      matrix(a, b) = std::sqrt(k[i] * k[j]) * mobility(lines[i], lines[j]);
+      matrix(a, b) = std::sqrt(k[i] * k[j]) * mobility.between(lines[i], lines[j]);
     }
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
 }
 
+std::vector<dBodyID> beadsOf(const std::vector<std::unique_ptr<Actuator>>& actuators) {
+  std::vector<dBodyID> beads;
+  for (const auto& actuator : actuators)
+    for (const Link& link : actuator->links()) beads.insert(beads.end(), std::begin(link.bead), std::end(link.bead));
+  std::sort(beads.begin(), beads.end());
+  return beads;
+}
+
 /// Longest step with h^2 K / 4 + h D / 2 = 1 for the fastest rates K, D of the line muscles' stiffness and friction.
-double longestLineStepS(const PhysicsSettings& physics, const std::vector<std::unique_ptr<Actuator>>& actuators) {
+double longestLineStepS(const PhysicsSettings& physics, const std::vector<std::unique_ptr<Joint>>& joints,
+                        const std::vector<std::unique_ptr<Actuator>>& actuators) {
   std::vector<Pushes> lines;
   std::vector<double> stiffness, damping;
   const double speed_ratio = std::sqrt(physics.force_per_N / world_force_per_N);
@@ -59,7 +52,9 @@ double longestLineStepS(const PhysicsSettings& physics, const std::vector<std::u
     stiffness.push_back(LineOfPull::stiffnessNPerMm(std::max(0.0, steepest)) * physics.force_per_N);
     damping.push_back(LineOfPull::dampingNsPerMm(actuator->settings()) * physics.force_per_N / speed_ratio);
   }
-  const double k = lines.empty() ? 0 : largestEigenvalue(lines, stiffness), d = lines.empty() ? 0 : largestEigenvalue(lines, damping);
+  if (lines.empty()) return std::numeric_limits<double>::infinity();
+  const BoneMobility mobility(joints, beadsOf(actuators));
+  const double k = largestEigenvalue(mobility, lines, stiffness), d = largestEigenvalue(mobility, lines, damping);
   return k > 0 ? (std::sqrt(d * d + 4 * k) - d) / k : std::numeric_limits<double>::infinity();
 }
 
@@ -121,10 +116,11 @@ void setStop(const Joint& joint, const PhysicsSettings::Stop& stop) {
 
 }  // namespace
 
-int automaticSubsteps(double step_s, const PhysicsSettings& physics, const std::vector<std::unique_ptr<Actuator>>& actuators) {
+int automaticSubsteps(double step_s, const PhysicsSettings& physics, const std::vector<std::unique_ptr<Joint>>& joints,
+                      const std::vector<std::unique_ptr<Actuator>>& actuators) {
   if (!std::isfinite(physics.longest_internal_step_s)) return 1;
   const double longest_s = std::min({physics.longest_internal_step_s, physics.stability_margin_ratio * longestChainStepS(actuators),
-                                     line_margin_ratio * longestLineStepS(physics, actuators)});
+                                     line_margin_ratio * longestLineStepS(physics, joints, actuators)});
   return static_cast<int>(std::max(1.0, std::ceil(step_s / longest_s - 1e-9)));
 }
 

@@ -76,7 +76,7 @@ Simulation::Simulation(SimulationOptions options)
   if (options.substeps < 0 || options.substeps > 1000000)
     throw BadParameter("substeps", fmt::format("{}", options.substeps), "be a whole number in 1 .. 1000000, or 0 for automatic");
   substeps_given_ = options.substeps > 0;
-  substeps_ = substeps_given_ ? options.substeps : automaticSubsteps(step_s_, physics_, {});
+  substeps_ = substeps_given_ ? options.substeps : automaticSubsteps(step_s_, physics_, {}, {});
   world_ = dWorldCreate();
   // ODE's own threading is shared by all worlds of the process and not safe where two threads step two worlds.
   threading_ = dThreadingAllocateSelfThreadedImplementation();
@@ -160,7 +160,7 @@ Robot& Simulation::adopt(std::unique_ptr<Robot> robot) {
 /// Sets the length of internal steps by the muscles there are by now, and what depends on it.
 void Simulation::prepareSteps() {
   const double before = dWorldGetERP(world_);
-  if (!substeps_given_) substeps_ = automaticSubsteps(step_s_, physics_, actuators_);
+  if (!substeps_given_) substeps_ = automaticSubsteps(step_s_, physics_, joints_, actuators_);
   if (before == error_reduction_) dWorldSetERP(world_, physics_.errorReductionPerStep(internalStepS()));
   adaptJoints(internalStepS(), error_reduction_, physics_, joints_, actuators_);
   error_reduction_ = physics_.errorReductionPerStep(internalStepS());

@@ -78,17 +78,18 @@ double fittedExponent(const BenchCurve& curve, int first_count) {
   return count < 2 ? std::nan("") : (count * sxy - sx * sy) / (count * sxx - sx * sx);
 }
 
-std::string benchTable(const std::vector<BenchCurve>& curves, double duration_s, double time_limit_s) {
+std::string benchTable(const std::vector<BenchCurve>& curves, double duration_s, double shortest_cpu_s, double time_limit_s) {
   std::string text =
       "# Performance\n\nWritten by `musclesim bench` (musclesim " MUSCLESIM_VERSION
       "); do not edit. r = CPU time of one thread over simulated time, of the RoboticArm under random\npressures, new ones every 0.25 s of "
       "true time. r < 1 is faster than real time. `original` physics is 31.6 times slower than true\ntime: its r is per second of its own "
       "clock, as in the paper.\n\n";
   text += fmt::format(
-      "All of it is one process' work; every number is the median of its repeats over {:g} true seconds. `*`: cut short after {:g} s of "
+      "All of it is one process' work; every number is the median of its repeats over {:g} true seconds or, where that is longer, {:g} s "
+      "of CPU time. `*`: cut short after {:g} s of "
       "CPU\n"
       "time and not repeated. Exponent: of n in a power law through the points from n = 10 on.\n\n",
-      duration_s, time_limit_s);
+      duration_s, shortest_cpu_s, time_limit_s);
   text += "| |";
   std::string rule = "|---|";
   for (const BenchRun& run : curves.front().runs) text += fmt::format(" n = {} |", run.muscle_count), rule += "---|";

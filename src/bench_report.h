@@ -22,7 +22,7 @@ struct BenchCurve {
 /// r = a n^b through the points from `first_count` muscles on, least squares of the logarithms; NaN for less than two points.
 double fittedExponent(const BenchCurve& curve, int first_count);
 
-std::string benchTable(const std::vector<BenchCurve>& curves, double duration_s, double time_limit_s);
+std::string benchTable(const std::vector<BenchCurve>& curves, double duration_s, double shortest_cpu_s, double time_limit_s);
 /// r over n, both logarithmic, with the paper's curve.
 std::string benchFigure(const std::vector<BenchCurve>& curves);
 nlohmann::json benchJson(const std::vector<BenchCurve>& curves);

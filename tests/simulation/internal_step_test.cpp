@@ -82,7 +82,7 @@ double worstDifference(const std::string& robot, const std::vector<std::string>&
     if (i % 10 == 0)
       for (double& pressure : command) pressure = random.uniform();
     for (Simulation* simulation : {ode.get(), chain.get()}) simulation->robot().step(command);
-    copyState(*ode, *chain);
+    makeComparable(*ode, *chain);
     ode->advance(ode->internalStepS());
     chain->advance(chain->internalStepS());
     worst = std::max(worst, velocityDifference(*ode, *chain));

@@ -48,6 +48,15 @@ inline void copyState(const Simulation& from, const Simulation& to) {
   }
 }
 
+/// Gives both simulations the state of `from`. That state itself passes through ODE's normalisation too: the point where two overlapping
+/// boxes touch may hang on the last bit.
+inline void makeComparable(const Simulation& from, const Simulation& to) {
+  sortGeometries(from);
+  sortGeometries(to);
+  copyState(from, to);
+  copyState(from, from);
+}
+
 /// max |v - v'| / max |v| over all bodies, or the same of angular velocities if that is larger. At rest max |v| is itself a rounding
 /// error, so the velocity that a body gains by falling for one step (at a bead's radius, for angular velocities) is its least value.
 inline double velocityDifference(const Simulation& expected, const Simulation& actual) {
@@ -123,12 +132,7 @@ inline Comparison compareSteps(const ComparisonCase& c) {
     if (i > 0 && i % hold == 0) draw();
     ode->robot().step(command);
     chain->robot().step(command);
-    sortGeometries(*ode);
-    sortGeometries(*chain);
-    // The state of `ode` itself passes through ODE's normalisation too: the point where two overlapping boxes touch may hang on the last
-    // bit.
-    copyState(*ode, *chain);
-    copyState(*ode, *ode);
+    makeComparable(*ode, *chain);
     ode->step();
     chain->step();
     const double difference = velocityDifference(*ode, *chain);

@@ -44,7 +44,7 @@ class LineOfPull {
     dBodyID body;
     Vector force, torque;
   };
-  /// Of all bodies that can move, one per point.
+  /// One per point that is fixed to a body.
   std::vector<Push> pushes() const;
   /// d(force)/dl at the longest length in N/mm, the stop's spring included, and d(force)/d(speed) at rest in N s/mm of true time.
   static double stiffnessNPerMm(double of_tension_N_per_mm);
