@@ -7,7 +7,8 @@ namespace musclesim {
 
 namespace {
 
-constexpr double skin_mm = 100;
+constexpr double most_moved_mm = 1e5;  ///< then the list is made anew, before sums lose digits
+constexpr double rounding_mm = 1e-6;   ///< of the sums
 
 double difference(const dReal* a, const dReal* b, int count) {
   double square = 0;
@@ -18,33 +19,49 @@ double difference(const dReal* a, const dReal* b, int count) {
 }  // namespace
 
 void NearPairs::collide(void* data, dNearCallback* near) {
-  if (dSpaceGetNumGeoms(space_) != static_cast<int>(geoms_.size()) || !listIsGood()) makeList();
+  moveBodies();
+  if (!listIsGood()) makeList();
   if (has_subspaces_) return dSpaceCollide(space_, data, near);
   for (Geom& geom : geoms_) geom.box_is_read = false;
-  for (const Pair& pair : pairs_) {
-    if (bodyOf(pair.first).moved_mm + bodyOf(pair.second).moved_mm < pair.distance_mm) continue;
-    if (distanceMm(boxOf(pair.first), boxOf(pair.second)) > 0) continue;
-    near(data, geoms_[static_cast<std::size_t>(pair.first)].id, geoms_[static_cast<std::size_t>(pair.second)].id);
+  for (Pair& pair : pairs_) {
+    const double moved_mm = moved_mm_[static_cast<std::size_t>(pair.body[0])] + moved_mm_[static_cast<std::size_t>(pair.body[1])];
+    if (moved_mm < pair.due_mm) continue;
+    const double distance_mm = distanceMm(boxOf(pair.geom[0]), boxOf(pair.geom[1]));
+    if (distance_mm > 0)
+      pair.due_mm = moved_mm + distance_mm - rounding_mm;
+    else
+      near(data, geoms_[static_cast<std::size_t>(pair.geom[0])].id, geoms_[static_cast<std::size_t>(pair.geom[1])].id);
   }
 }
 
-/// Works out how far the bodies can have moved.
-bool NearPairs::listIsGood() {
+/// Adds how far the bodies can have moved since the last call.
+void NearPairs::moveBodies() {
   // |q - q_0| = 2 sin(angle / 4), so angle <= pi / sqrt(2) |q - q_0| up to half a turn.
   constexpr double most_angle_per_difference = 2.23;
-  double farthest_mm = 0;
-  for (Body& body : bodies_) {
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    Body& body = bodies_[i];
     if (!body.id) continue;
-    body.moved_mm = difference(dBodyGetPosition(body.id), body.position, 3) +
-                    body.reach_mm * most_angle_per_difference * difference(dBodyGetQuaternion(body.id), body.orientation, 4);
-    farthest_mm = std::max(farthest_mm, body.moved_mm);
+    const dReal *position = dBodyGetPosition(body.id), *orientation = dBodyGetQuaternion(body.id);
+    moved_mm_[i] +=
+        difference(position, body.position, 3) + body.reach_mm * most_angle_per_difference * difference(orientation, body.orientation, 4);
+    std::copy_n(position, 3, body.position);
+    std::copy_n(orientation, 4, body.orientation);
   }
-  return has_subspaces_ || farthest_mm <= skin_mm / 2;
+}
+
+/// Whether it holds the space's geoms in their present order: the space puts what has been moved in front.
+bool NearPairs::listIsGood() const {
+  const int count = dSpaceGetNumGeoms(space_);
+  if (count != static_cast<int>(geoms_.size())) return false;
+  for (int i = 0; i < count; ++i)
+    if (dSpaceGetGeom(space_, i) != geoms_[static_cast<std::size_t>(i)].id) return false;
+  return std::ranges::none_of(moved_mm_, [](double mm) { return mm > most_moved_mm; });
 }
 
 void NearPairs::makeList() {
   geoms_.clear();
   bodies_.clear();
+  moved_mm_.clear();
   pairs_.clear();
   const int count = dSpaceGetNumGeoms(space_);
   has_subspaces_ = false;
@@ -53,15 +70,14 @@ void NearPairs::makeList() {
     has_subspaces_ = has_subspaces_ || dGeomIsSpace(geom);
     geoms_.push_back({geom, dGeomIsSpace(geom) ? -1 : placeOf(dGeomGetBody(geom)), false, {}});
   }
-  if (has_subspaces_) return;
-  for (int i = 0; i < count; ++i) extend(bodyOf(i), boxOf(i));
+  if (has_subspaces_) return bodies_.clear();
+  moved_mm_.resize(bodies_.size());
+  for (int i = 0; i < count; ++i) extend(geoms_[static_cast<std::size_t>(i)].body, boxOf(i));
   listStrangers();
   for (int i = 0; i < count; ++i)
-    for (int j = i + 1; j < count; ++j) {
-      if (!areStrangers(i, j)) continue;
-      const double distance_mm = distanceMm(boxOf(i), boxOf(j));
-      if (distance_mm <= skin_mm) pairs_.push_back({i, j, distance_mm});
-    }
+    for (int j = i + 1; j < count; ++j)
+      if (areStrangers(i, j))
+        pairs_.push_back({{i, j}, {geoms_[static_cast<std::size_t>(i)].body, geoms_[static_cast<std::size_t>(j)].body}, 0});
 }
 
 /// Which bodies are different and not joined.
@@ -82,7 +98,7 @@ bool NearPairs::areStrangers(int first, int second) const {
 int NearPairs::placeOf(dBodyID body) {
   const auto found = std::ranges::find(bodies_, body, &Body::id);
   if (found != bodies_.end()) return static_cast<int>(found - bodies_.begin());
-  Body& added = bodies_.emplace_back(Body{body, 0, {}, {}, 0});
+  Body& added = bodies_.emplace_back(Body{body, 0, {}, {}});
   if (body) {
     std::copy_n(dBodyGetPosition(body), 3, added.position);
     std::copy_n(dBodyGetQuaternion(body), 4, added.orientation);
@@ -91,7 +107,8 @@ int NearPairs::placeOf(dBodyID body) {
 }
 
 /// One of the body's geoms fills this box.
-void NearPairs::extend(Body& body, const Box& box) {
+void NearPairs::extend(int number, const Box& box) {
+  Body& body = bodies_[static_cast<std::size_t>(number)];
   double farthest[3];
   for (std::size_t axis = 0; axis < 3; ++axis)
     farthest[axis] = std::max(std::abs(box[2 * axis] - body.position[axis]), std::abs(box[2 * axis + 1] - body.position[axis]));

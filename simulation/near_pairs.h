@@ -1,4 +1,4 @@
-/// Pairs of geoms that may touch soon: a neighbour list (Verlet 1967) in place of a test of all pairs at every step.
+/// Pairs of geoms that may touch: bounds of what they can have moved in place of a test of all pairs at every step.
 #pragma once
 
 #include <ode/ode.h>
@@ -8,15 +8,15 @@
 
 namespace musclesim {
 
-/// The list holds the pairs whose bounding boxes are nearer than a skin along every axis, with their distance along the farthest. A body
-/// can have moved any of its points by
-///     m = |x - x_0| + r angle(q, q_0)
-/// at most; x, q its pose, 0 when the list was made, r the farthest point of its geoms from x. A pair is looked at when the m of both
-/// bodies add up to its distance; the list is made anew when two bodies could have crossed the skin.
+/// From one call to the next a body moves each of its points by
+///     |x - x_0| + r angle(q, q_0)
+/// at most; x, q its pose, 0 that of the call before, r the farthest point of its geoms from x. These bounds are summed up over all calls.
+/// A pair whose bounding boxes are apart by d along their farthest axis is looked at again when the sums of its bodies have grown by d.
 class NearPairs {
  public:
   explicit NearPairs(dSpaceID space) : space_(space) {}
-  /// Calls `near` for the same pairs in the same order as dSpaceCollide, but for pairs of one body or of two that a joint connects.
+  /// Calls `near` for the same pairs in the same order as dSpaceCollide, but for pairs of one body and of two that were joined at the first
+  /// call.
   void collide(void* data, dNearCallback* near);
 
  private:
@@ -32,27 +32,27 @@ class NearPairs {
     double reach_mm;
     dVector3 position;
     dQuaternion orientation;
-    double moved_mm;  ///< at most
   };
   struct Pair {
-    int first, second;  ///< among geoms_
-    double distance_mm;
+    int geom[2], body[2];  ///< among geoms_ and bodies_
+    double due_mm;         ///< sum of what both bodies have moved when it must be looked at
   };
-  bool listIsGood();
+  void moveBodies();
+  bool listIsGood() const;
   void makeList();
   void listStrangers();
   bool areStrangers(int first, int second) const;
   int placeOf(dBodyID body);
-  static void extend(Body& body, const Box& box);
+  void extend(int number, const Box& box);
   const Box& boxOf(int number);
   static double distanceMm(const Box& a, const Box& b);
-  Body& bodyOf(int geom) { return bodies_[static_cast<std::size_t>(geoms_[static_cast<std::size_t>(geom)].body)]; }
 
   dSpaceID space_;
   bool has_subspaces_ = false;  ///< ODE is asked then
   std::vector<Geom> geoms_;
   std::vector<Body> bodies_;
-  std::vector<char> strangers_;  ///< of every two bodies
+  std::vector<double> moved_mm_;  ///< of the bodies, at most, since the list was made
+  std::vector<char> strangers_;   ///< of every two bodies
   std::vector<Pair> pairs_;
 };
 

@@ -12,15 +12,11 @@ using Wide = double __attribute__((vector_size(width * sizeof(double)), aligned(
 }  // namespace
 
 MUSCLESIM_WIDE void combineSixRows(double* result, const double* const rows[6], const double factors[6], int count) {
-  const double* f = factors;
-  int i = 0;
-  for (; i + width <= count; i += width) {
+  for (int i = 0; i < count; i += width) {
     Wide products[6];
-    for (int row = 0; row < 6; ++row) products[row] = f[row] * *reinterpret_cast<const Wide*>(rows[row] + i);
+    for (int row = 0; row < 6; ++row) products[row] = factors[row] * *reinterpret_cast<const Wide*>(rows[row] + i);
     *reinterpret_cast<Wide*>(result + i) = (products[0] + products[1]) + (products[2] + products[3]) + (products[4] + products[5]);
   }
-  for (; i < count; ++i)
-    result[i] = (f[0] * rows[0][i] + f[1] * rows[1][i]) + (f[2] * rows[2][i] + f[3] * rows[3][i]) + (f[4] * rows[4][i] + f[5] * rows[5][i]);
 }
 
 MUSCLESIM_WIDE void factoriseTile(double* a, double* pivots) {

@@ -13,7 +13,7 @@
 
 namespace musclesim::chain {
 
-/// result = factor[0] row[0] + ... + factor[5] row[5]
+/// result = factor[0] row[0] + ... + factor[5] row[5]; rows and result must have room for a multiple of eight numbers.
 void combineSixRows(double* result, const double* const rows[6], const double factors[6], int count);
 
 /// Tiles: eight by eight numbers, one column after another. l is a unit lower triangle, of which only what is below the diagonal is used.

@@ -1,4 +1,4 @@
-/// The neighbour list finds what dSpaceCollide finds, in its order.
+/// It finds what dSpaceCollide finds, in its order.
 #include "../../simulation/near_pairs.h"
 
 #include <gtest/gtest.h>
