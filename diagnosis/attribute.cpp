@@ -188,7 +188,11 @@ bool Attributor::fitFurther(std::size_t count) {
   const auto found =
       std::ranges::find_if(result_.explanations, [&](const Explanation& explanation) { return explanation.suspects.size() + 1 == count; });
   if (found == result_.explanations.end()) return false;
-  const double best_hope = weighing_.per_further_gain * weighedMisfit(found->residual) - weighing_.per_effect - weighing_.per_parameter;
+  // Of the one that leaves nothing.
+  const Explanation& first = firstOf(*found);
+  const Eigen::VectorXd nothing = Eigen::VectorXd::Zero(fit_.size());
+  const double best_hope =
+      furtherLogOdds(nothing, first) - furtherLogOdds(found->residual, first) - weighing_.per_effect - weighing_.per_parameter;
   if (best_hope < least_hope) return false;
   const Explanation best = *found;
   const Eigen::VectorXd predicted = look_.predicted(modelOf(best));
@@ -221,26 +225,48 @@ void Attributor::sort() {
   std::ranges::stable_sort(result_.explanations, [](const Explanation& a, const Explanation& b) { return a.probability > b.probability; });
 }
 
-/// Mean over affected cells of ln(RMS / floor), where floor^2 = noise floor^2 + (law mismatch * RMS without any effect)^2.
-double Attributor::weighedMisfit(const Eigen::VectorXd& residual) const {
+/// Mean square per cell of a share of the residual.
+Eigen::VectorXd Attributor::mismatchOf(double share, const Eigen::VectorXd& residual) const {
+  Eigen::VectorXd squares(static_cast<Eigen::Index>(fit_.cells().size()));
+  for (Eigen::Index i = 0; i < squares.size(); ++i)
+    squares[i] = share * share * fit_.meanSquare(fit_.cells()[static_cast<std::size_t>(i)], residual);
+  return squares;
+}
+
+/// Mean over affected cells of ln(RMS / floor), where floor^2 = noise floor^2 + mismatch, but no less than 0 per cell.
+double Attributor::weighedMisfit(const Eigen::VectorXd& residual, const Eigen::VectorXd& mismatch) const {
   double sum = 0;
-  for (const Comparison::Cell& cell : fit_.cells()) {
-    const double square = weighing_.law_mismatch * weighing_.law_mismatch * fit_.meanSquare(cell, nominal_residual_);
-    sum += 0.5 * std::log(std::max(1.0, fit_.meanSquare(cell, residual) / (cell.floor * cell.floor + square)));
+  for (Eigen::Index i = 0; i < mismatch.size(); ++i) {
+    const Comparison::Cell& cell = fit_.cells()[static_cast<std::size_t>(i)];
+    sum += 0.5 * std::log(std::max(1.0, fit_.meanSquare(cell, residual) / (cell.floor * cell.floor + mismatch[i])));
   }
   return sum / fit_.affectedCells(nominal_residual_);
 }
 
-/// ln of the odds by what is left. What further effects gain over the first counts less than what the first leaves: they may only mend
-/// its law, which is never quite the right one.
-double Attributor::misfitLogOdds(const Explanation& explanation) const {
-  const double left = weighedMisfit(explanation.residual);
-  if (explanation.suspects.size() < 2) return -weighing_.per_misfit * left;
-  const auto first = std::ranges::find_if(result_.explanations, [&](const Explanation& other) {
+/// A small share of the gap counts as noise: the right cause's law is not quite ours.
+double Attributor::misfitLeftBy(const Eigen::VectorXd& residual) const {
+  return weighedMisfit(residual, mismatchOf(weighing_.law_mismatch, nominal_residual_));
+}
+
+/// ln of the odds by what further effects leave, but for a constant. It is taken once as of the first effect, and once with a large share
+/// of what the first one changes counted as noise: what further effects gain below that may only mend its law.
+double Attributor::furtherLogOdds(const Eigen::VectorXd& residual, const Explanation& first) const {
+  const double beyond = weighedMisfit(residual, mismatchOf(weighing_.mended_share, nominal_residual_ - first.residual));
+  return -weighing_.per_further_gain * misfitLeftBy(residual) - weighing_.per_own_gain * beyond;
+}
+
+/// That of its first effect alone.
+const Explanation& Attributor::firstOf(const Explanation& explanation) const {
+  return *std::ranges::find_if(result_.explanations, [&](const Explanation& other) {
     return other.suspects.size() == 1 && other.suspects.front() == explanation.suspects.front();
   });
-  const double alone = weighedMisfit(first->residual);
-  return -weighing_.per_misfit * alone + weighing_.per_further_gain * (alone - left);
+}
+
+/// ln of the odds by what is left; of further effects, by what they gain over the first.
+double Attributor::misfitLogOdds(const Explanation& explanation) const {
+  const Explanation& first = firstOf(explanation);
+  return -weighing_.per_misfit * misfitLeftBy(first.residual) + furtherLogOdds(explanation.residual, first) -
+         furtherLogOdds(first.residual, first);
 }
 
 /// What speaks against an explanation before its misfit is looked at.
@@ -259,7 +285,7 @@ double Attributor::priorLogOdds(const Explanation& explanation) const {
 
 /// odds = exp(misfit log odds) * prior odds; "none of these" and "no effect" are explanations like any other.
 void Attributor::weigh() {
-  const double no_effect = weighedMisfit(nominal_residual_);
+  const double no_effect = misfitLeftBy(nominal_residual_);
   std::vector<double> odds = {-weighing_.per_misfit * no_effect,
                               -weighing_.per_misfit * weighing_.none_share * no_effect - weighing_.per_parameter};
   for (const Explanation& explanation : result_.explanations) odds.push_back(misfitLogOdds(explanation) + priorLogOdds(explanation));

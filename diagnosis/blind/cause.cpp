@@ -7,6 +7,7 @@
 
 #include "../../effect/components.h"
 #include "chance.h"
+#include "musclesim/effect/relevance.h"
 #include "musclesim/error.h"
 #include "musclesim/robot/robot.h"
 
@@ -80,16 +81,22 @@ Band bandOf(const std::string& size, const std::string& stands_for) {
   return found->second;
 }
 
-std::vector<std::string> componentsOf(const EffectInfo& law, const Robot& robot, const std::vector<std::string>& signals) {
-  std::vector<std::string> components = componentsFor(law, robot);
-  if (law.stage == Stage::sensor) std::erase_if(components, [&](const std::string& c) { return !isMeasured(c, signals); });
+std::vector<std::string> componentsOf(const ForeignEffect& law, const Robot& robot, const std::vector<std::string>& signals) {
+  std::vector<std::string> components = componentsFor(law.info, robot);
+  if (law.info.stage == Stage::sensor) std::erase_if(components, [&](const std::string& c) { return !isMeasured(c, signals); });
+  if (law.stands_for.empty()) return components;
+  const EffectInfo stood_for = effectInfo(law.stands_for);
+  const auto is_foreign_to = [&](const std::string& c) {
+    return !stood_for.parameters.empty() && relevantParameters(stood_for, c).empty();
+  };
+  std::erase_if(components, is_foreign_to);
   return components;
 }
 
 std::vector<ForeignEffect> lawsFor(const Robot& robot, const std::vector<std::string>& signals, bool open) {
   std::vector<ForeignEffect> laws;
   for (const ForeignEffect& law : foreignEffects())
-    if (law.stands_for.empty() == open && !componentsOf(law.info, robot, signals).empty()) laws.push_back(law);
+    if (law.stands_for.empty() == open && !componentsOf(law, robot, signals).empty()) laws.push_back(law);
   return laws;
 }
 

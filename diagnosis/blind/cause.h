@@ -36,8 +36,8 @@ struct Cause {
 /// The laws that can act on this robot and on what is measured: of the catalogue's causes, or of others.
 std::vector<ForeignEffect> lawsFor(const Robot& robot, const std::vector<std::string>& signals, bool open);
 
-/// The components of a law: those of the robot; of sensors only those that are read.
-std::vector<std::string> componentsOf(const EffectInfo& law, const Robot& robot, const std::vector<std::string>& signals);
+/// The components of a law: those of the robot on which the cause that it stands for does something; of sensors only those that are read.
+std::vector<std::string> componentsOf(const ForeignEffect& law, const Robot& robot, const std::vector<std::string>& signals);
 
 /// Sizes within the usual ranges: the first parameter log-uniform, signed where the range is, shapes anywhere in their range.
 std::vector<double> drawSizes(const EffectInfo& law, RandomStream& random);

@@ -114,7 +114,7 @@ Cause drawCause(const Plan& plan, const std::vector<Cause>& others, const Robot&
   for (int draw = 0; draw < most_draws; ++draw) {
     const ForeignEffect& law = oneOf(random, laws);
     if (std::ranges::any_of(others, [&](const Cause& other) { return other.stage == law.info.stage; })) continue;
-    const std::string component = oneOf(random, componentsOf(law.info, robot, plan.signals));
+    const std::string component = oneOf(random, componentsOf(law, robot, plan.signals));
     if (auto cause = causeOfSize(law, component, plan.size, truth, random)) return *cause;
     redrawn.push_back(law.info.id + "@" + component);
   }

@@ -1,4 +1,4 @@
-/// Foreign laws of the pressure stage: three lags in a row, an orifice with choked and subsonic flow (ISO 6358), a leak through an orifice,
+/// Foreign laws of the pressure stage: three lags in a row, an orifice with choked and subsonic flow (ISO 6358), a choked leak,
 /// a tank that empties, the volume of an ideal braid (Chou and Hannaford 1996), a bowed calibration.
 #include <algorithm>
 #include <array>
@@ -66,21 +66,20 @@ class Orifice final : public MuscleRatioEffect {
   double fill_per_s_, vent_per_s_, pressure_ = 0;
 };
 
-/// dp/dt = (u - p) / tau_r - k sqrt(p)
-class OrificeLeak final : public MuscleRatioEffect {
+/// dp/dt = (u - p) / tau_r - k (p + p_atm) while p > 0: choked flow goes with the absolute pressure
+class ChokedLeak final : public MuscleRatioEffect {
  public:
-  explicit OrificeLeak(const EffectValues& v) : leak_per_s_(v["leak_per_s"]) {}
+  explicit ChokedLeak(const EffectValues& v) : leak_per_s_(v["leak_per_s"]) {}
 
  private:
   static constexpr double regulator_s = 0.07;
   double output(double input, const Moment& moment) override {
-    const double loss = leak_per_s_ * std::sqrt(std::max(0.0, pressure_));
+    const double loss = leak_per_s_ * (pressure_ + atmosphere_ratio);
     return pressure_ = std::max(0.0, pressure_ + moment.h_s * ((input - pressure_) / regulator_s - loss));
   }
   double settled(double input) override {
-    // s^2 + k tau s - u = 0 for s = sqrt(p)
-    const double half = leak_per_s_ * regulator_s / 2, root = std::sqrt(half * half + input) - half;
-    return pressure_ = root * root;
+    const double k = leak_per_s_ * regulator_s;
+    return pressure_ = std::max(0.0, (input - k * atmosphere_ratio) / (1 + k));
   }
 
   double leak_per_s_, pressure_ = 0;
@@ -151,8 +150,8 @@ std::vector<ForeignEffect> pressureLaws() {
               {"vent_rate_per_s", "1/s", INFINITY, 0.01, INFINITY, 0.3, 2, "choked venting at half of full scale"}},
              [](const EffectValues& v) { return std::make_unique<Orifice>(v); }),
        "flow_limit"},
-      {entry("orifice_leak", Stage::pressure, muscle, "dp/dt = (u - p) / 0.07 s - k sqrt(p)",
-             {{"leak_per_s", "1/s", 0, 0, 100, 0.2, 2, "k"}}, [](const EffectValues& v) { return std::make_unique<OrificeLeak>(v); }),
+      {entry("choked_leak", Stage::pressure, muscle, "dp/dt = (u - p) / 0.07 s - k (p + p_atm)",
+             {{"leak_per_s", "1/s", 0, 0, 100, 0.2, 2, "k"}}, [](const EffectValues& v) { return std::make_unique<ChokedLeak>(v); }),
        "leak"},
       {entry("tank", Stage::pressure, {ComponentKind::all_muscles}, "ds/dt = (1 - s) / T - c sum max(0, du/dt), p = min(u, s)",
              {{"loss_per_fill", "", 0, 0, 10, 0.2, 0.8, "c"}, {"recovery_s", "s", 1, 0.01, 100, 0.3, 3, "T", true}},

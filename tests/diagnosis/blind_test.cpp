@@ -17,6 +17,7 @@
 #include "diagnosis/blind/seal.h"
 #include "diagnosis/blind/sha256.h"
 #include "musclesim/error.h"
+#include "musclesim/simulation/simulation.h"
 #include "support/support.h"
 
 namespace musclesim::blind {
@@ -64,6 +65,19 @@ void append(const fs::path& file, const std::string& text) {
 TEST(BlindSha256, IsThatOfTheStandard) {
   EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   EXPECT_EQ(sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+}
+
+TEST_F(Blind, DrawsNoCauseWhereTheCatalogueHasNone) {
+  Simulation simulation;
+  const Robot& rig = simulation.build("rig");
+  for (const ForeignEffect& law : foreignEffects()) {
+    const auto components = componentsOf(law, rig, {"length_0_mm", "pressure_0", "force_0_N"});
+    if (law.stands_for == "sensor_bias") {
+      EXPECT_EQ(components.size(), 3u);
+    }
+    if (law.stands_for != "sensor_backlash") continue;
+    EXPECT_EQ(components, std::vector<std::string>{"signal_length_0"});  // none in a gauge
+  }
 }
 
 TEST_F(Blind, MakesTheSameCasesFromTheSameSeed) {

@@ -177,6 +177,19 @@ TEST(Diagnose, FindsThreeEffectsOneBesideTheOther) {
       << diagnosisSummary(found);
 }
 
+TEST(Diagnose, FindsASecondCauseOfItsOwn) {
+  const auto recordings = plant({{"payload", "hand", {{"mass_kg", 0.12}}}, {"transport_delay", "muscle_0", {{"delay_s", 0.06}}}});
+  Diagnosis found = diagnose(recordings, few({"payload", "transport_delay", "force_gain", "viscous_loss"}));
+  std::ranges::sort(found.chosen);
+  EXPECT_EQ(found.chosen, (std::vector<std::string>{"payload@hand", "transport_delay@muscle_0"})) << diagnosisSummary(found);
+}
+
+TEST(Diagnose, TakesNoSecondCauseThatOnlyMendsTheLawOfTheFirst) {
+  const auto recordings = plant({{"foreign.three_lags", "muscle_0", {{"fill_time_constant_s", 0.1}, {"vent_time_constant_s", 0.1}}}});
+  const Diagnosis found = diagnose(recordings, few({"valve_lag", "transport_delay", "sensor_delay", "viscous_loss"}));
+  EXPECT_EQ(found.chosen, std::vector<std::string>{"valve_lag@muscle_0"}) << diagnosisSummary(found);
+}
+
 TEST(Diagnose, TellsWhatComesNearestWhereNothingDeservesBelief) {
   const Diagnosis found = diagnose(plant({{"valve_lag", "all", {{"fill_time_constant_s", 0.15}, {"vent_time_constant_s", 0.15}}}}),
                                    few({"sensor_backlash", "force_drift"}));

@@ -72,6 +72,23 @@ TEST(Leak, KnowsOtherRegulators) {
   for (const double p : valuesOf(run, "pressure_0")) EXPECT_NEAR(p, 0.3 / 1.2, 1e-12);
 }
 
+TEST(Leak, ThroughAHoleGoesWithThePowerOfThePressure) {
+  const double k = 1.5, tau_s = 0.07, before = 0.6, u = 0.3;
+  const std::vector<ActiveEffect> hole = {
+      {"leak", "all", {{"leak_per_s", k}, {"regulator_time_constant_s", tau_s}, {"flow_exponent", 0.5}}}};
+  const ReplayResult run = replayWith(stepOf("rig", {before}, {u}), hole);
+  // At rest a quadratic equation of sqrt(p).
+  const double half = k * tau_s / 2, root = std::sqrt(half * half + before) - half;
+  EXPECT_NEAR(valuesOf(run, "pressure_0").front(), root * root, 1e-9);
+  double p = root * root, t = 0;
+  for (std::size_t row = 0; row < run.simulated.time_s.size(); ++row) {
+    constexpr double h_s = 1e-6;
+    for (const double end = sinceStep(run.simulated.time_s[row]); t + h_s / 2 < end; t += h_s)
+      p += h_s * ((u - p) / tau_s - k * std::sqrt(p));
+    EXPECT_NEAR(valuesOf(run, "pressure_0")[row], p, 2e-4);
+  }
+}
+
 TEST(Leak, HoldsLessAndFollowsItsRegulator) {
   const double k = 2, u = 0.5, held = u / (1 + k * 0.05);
   const ReplayResult run = replayWith(stepOf("rig", {0.3}, {u}), {{"leak", "all", {{"leak_per_s", k}}}});
