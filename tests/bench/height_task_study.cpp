@@ -158,7 +158,7 @@ std::string tableOf(const Groups& groups) {
 
 /// One row per group: every run a vertical stroke at the share of time it held the target.
 std::string figureOf(const Groups& groups) {
-  const double left = 260, width = 560, row_height = 44;
+  const double left = 290, width = 540, row_height = 44;
   Svg svg(left + width + 40, 70 + row_height * static_cast<double>(groups.size()), "Share of time within 20 mm after reaching the target");
   double y = 30;
   const auto x_of = [&](double ratio) { return left + width * ratio; };
