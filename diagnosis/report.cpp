@@ -74,18 +74,25 @@ std::string which(const Diagnosis& d) {
   return text;
 }
 
+/// Whether there is a model with effects to set against the one without.
+bool hasAfter(const Diagnosis& d) {
+  return !d.chosen.empty() || !d.attempt.effects.empty();
+}
+
 std::string signalTable(const Diagnosis& d) {
+  const auto cell = [](double value) { return fmt::format("<td class=number>{:.3g}</td>", value); };
   std::string rows;
   const Gap& gap_after = d.attempt.effects.empty() ? d.after : d.attempt.after;
   for (const auto& [name, before] : d.before.per_signal) {
     const auto after = gap_after.per_signal.find(name);
-    rows += fmt::format(
-        "<tr><td><code>{}</code></td><td class=number>{:.3g}</td><td class=number>{:.3g}</td><td class=number>{:.3g}</td></tr>\n", name,
-        before.rmse, after == gap_after.per_signal.end() ? before.rmse : after->second.rmse, before.noise_floor);
+    rows += "<tr><td><code>" + name + "</code></td>" + cell(before.rmse);
+    if (hasAfter(d)) rows += cell(after == gap_after.per_signal.end() ? before.rmse : after->second.rmse);
+    rows += cell(before.noise_floor) + "</tr>\n";
   }
-  return "<div class=scroll><table><tr><th>signal</th><th class=number>RMSE before</th><th class=number>RMSE after</th><th "
-         "class=number>noise floor</th></tr>\n" +
-         rows + "</table></div>\n";
+  const std::string residuals =
+      hasAfter(d) ? "<th class=number>RMSE before</th><th class=number>RMSE after</th>" : "<th class=number>RMSE</th>";
+  return "<div class=scroll><table><tr><th>signal</th>" + residuals + "<th class=number>noise floor</th></tr>\n" + rows +
+         "</table></div>\n";
 }
 
 /// What an explanation gains beside what gains nothing in understanding.
@@ -109,15 +116,15 @@ std::string regimeFigure(const Diagnosis& d) {
   double full = 1;
   for (const RegimeGap& regime : d.regimes) {
     full = std::max({full, regime.before, regime.after});
-    all.push_back({"while " + regime.regime + ", before", regime.before, fmt::format("{:.3g}", regime.before), false});
-    if (regime.after > 0) all.push_back({"after", regime.after, fmt::format("{:.3g}", regime.after), true});
+    all.push_back({"while " + regime.regime + (hasAfter(d) ? ", before" : ""), regime.before, fmt::format("{:.3g}", regime.before), false});
+    if (hasAfter(d) && regime.after > 0) all.push_back({"after", regime.after, fmt::format("{:.3g}", regime.after), true});
   }
   if (all.empty()) return "";
   return paragraph("Residual in units of the noise floor (1 is as good as it gets):") + barsFigure("Residual by regime", all, full);
 }
 
 std::string howFar(const Diagnosis& d) {
-  std::string text = heading("How far") + paragraph("Measured on " + d.held_out + ".");
+  std::string text = heading(hasAfter(d) ? "How far" : "How close the model comes") + paragraph("Measured on " + d.held_out + ".");
   if (!d.chosen.empty())
     text += shrinkFigure(d) +
             paragraph(fmt::format(
@@ -133,8 +140,10 @@ std::string howFar(const Diagnosis& d) {
                             fmt::join(d.attempt.effects, ", "), d.before.normalised, d.attempt.after.normalised, d.attempt.shrink_percent,
                             d.attempt.shrink_low_percent, d.attempt.shrink_high_percent));
   text += regimeFigure(d) + signalTable(d);
+  if (d.verdict == Verdict::no_gap)
+    text += paragraph("What is smaller than the noise floor stays unseen, and so does what these commands did not bring out.");
   if (!d.traces.empty()) text += "<p class=screen>Drag over a plot to zoom all of them in time, double click to see everything.</p>\n";
-  for (const Trace& trace : d.traces) text += traceFigure(trace);
+  for (const Trace& trace : d.traces) text += traceFigure(trace, hasAfter(d));
   return text;
 }
 

@@ -124,7 +124,7 @@ std::string robotFigure(const RobotDrawing& drawing, const Place& place) {
   return with(svg, markup + labels);
 }
 
-std::string traceFigure(const Trace& trace) {
+std::string traceFigure(const Trace& trace, bool has_after) {
   constexpr double width = 900, height = 230;
   const SvgBox box{70, 26, width - 90, height - 66};
   Extent values, times;
@@ -145,7 +145,7 @@ std::string traceFigure(const Trace& trace) {
     double line_width;
   };
   const std::array<Kind, 3> kinds = {Kind{trace.measured, "measured", "#1a1a1a", "", 2.4},
-                                     Kind{trace.before, "simulated before", "#d95f0e", "7 4", 1.5},
+                                     Kind{trace.before, has_after ? "simulated before" : "simulated", "#d95f0e", "7 4", 1.5},
                                      Kind{trace.after, "simulated after", "#1f78d0", "", 1.3}};
   std::string markup, curves;
   double x = box.left;

@@ -23,8 +23,8 @@ std::string stagesFigure(const std::vector<Place>& where);
 /// The robot from the front with the component of the first place marked.
 std::string robotFigure(const RobotDrawing& drawing, const Place& place);
 
-/// Measured, before and after over time. The page's script zooms all of them together.
-std::string traceFigure(const Trace& trace);
+/// Measured, before and, if there is one, after over time. The page's script zooms all of them together.
+std::string traceFigure(const Trace& trace, bool has_after);
 
 /// JavaScript that zooms every trace of the page: drag to select a stretch of time, double click to see all.
 std::string zoomScript();
