@@ -54,6 +54,8 @@ std::string whereSentence(const Diagnosis& d) {
 
 namespace {
 
+constexpr double likely = 0.5;  ///< probability from which a candidate must have failed on data held back
+
 /// "valve lag on muscle 1".
 std::string labelWords(const std::string& label) {
   std::string words = label.substr(0, label.find('@'));
@@ -98,6 +100,24 @@ std::string otherwise(const Diagnosis& d) {
                      d.next_experiment.commands.empty() ? "" : "; record the schedule in next.csv to tell them apart");
 }
 
+std::string mostProbable(const Diagnosis& d) {
+  const FoundEffect& first = d.effects.front();
+  return fmt::format(": the best candidate, {}, has a probability of {:.0f} %", labelWords(first.label()), 100 * first.probability);
+}
+
+/// The likeliest effect explains what it was fitted to and nothing else.
+std::string notConfirmed(const Diagnosis& d) {
+  const FoundEffect& first = d.effects.front();
+  std::string text = fmt::format(
+      ": the best candidate, {}, fits the data that it was fitted to ({} likely by them alone), but on data held back it removes {} of the "
+      "gap",
+      labelWords(first.label()), probabilityWords(first.probability),
+      first.shrink_percent > 0 ? percentWords(first.shrink_percent) : "nothing");
+  if (d.nominal_refit_shrink_percent > 0)
+    text += fmt::format("; re-tuning the model without any effect removes {}", percentWords(d.nominal_refit_shrink_percent));
+  return text;
+}
+
 }  // namespace
 
 std::string verdictSentence(const Diagnosis& d) {
@@ -108,9 +128,7 @@ std::string verdictSentence(const Diagnosis& d) {
       return "I cannot tell: the commands rest, so the recordings do not show what the plant does.";
     case Verdict::unexplained: {
       std::string text = "There is a gap that I cannot explain";
-      if (!d.effects.empty())
-        text += fmt::format(": the best candidate, {}, has a probability of {:.0f} %", labelWords(d.effects.front().label()),
-                            100 * d.effects.front().probability);
+      if (!d.effects.empty()) text += d.effects.front().probability > likely ? notConfirmed(d) : mostProbable(d);
       text += ".";
       if (!d.attempt.effects.empty())
         text += fmt::format(

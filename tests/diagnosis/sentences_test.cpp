@@ -58,6 +58,12 @@ TEST(VerdictSentence, AdmitsWhatItCannotTell) {
   d.effects = lagFound().effects;
   d.effects.front().probability = 0.21;
   EXPECT_TRUE(contains(verdictSentence(d), "valve lag on muscle 1, has a probability of 21 %"));
+  d.effects.front().probability = 0.98;
+  d.effects.front().shrink_percent = -45;
+  EXPECT_TRUE(contains(verdictSentence(d),
+                       "fits the data that it was fitted to (98 % likely by them alone), but on data held back it removes nothing"));
+  d.nominal_refit_shrink_percent = 71;
+  EXPECT_TRUE(contains(verdictSentence(d), "without any effect removes 71.0 %"));
 }
 
 }  // namespace
