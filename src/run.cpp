@@ -48,6 +48,9 @@ bool hasWindow(const RunOptions& options) {
 /// Options of what this run does not have would be without effect.
 void requireUsedOptions(const RunOptions& options) {
   if (hasWindow(options)) return;
+  const bool asks_for_view = !options.pictures.camera.empty() || options.pictures.size_px != PictureOptions().size_px;
+  if (asks_for_view && !options.pictures.wanted())
+    throw BadParameter("--camera and --picture-size are those of a window, a --screenshot or a --video, and with --simple there is none");
   const char* without_window = options.simple ? "--simple opens no window" : "--screenshot and --video open no window";
   if (options.window_log) throw BadParameter(fmt::format("--window-log logs what is done in a window, but {}", without_window));
   if (options.pictures.speed && !options.pictures.video)
