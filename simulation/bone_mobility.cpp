@@ -77,10 +77,8 @@ BoneMobility::BoneMobility(const std::vector<std::unique_ptr<Joint>>& joints, co
     if (!ends[0] || isLeftOut(ends[0]) || isLeftOut(ends[1])) continue;
     held.push_back(joint.get());
     for (const dBodyID body : ends)
-      if (body) bodies_.push_back(body);
+      if (body && placeOf(body) < 0) bodies_.push_back(body);
   }
-  std::sort(bodies_.begin(), bodies_.end());
-  bodies_.erase(std::unique(bodies_.begin(), bodies_.end()), bodies_.end());
 
   const auto unknowns = 6 * static_cast<Eigen::Index>(bodies_.size());
   mobility_.setZero(unknowns, unknowns);
@@ -112,8 +110,8 @@ BoneMobility::BoneMobility(const std::vector<std::unique_ptr<Joint>>& joints, co
 }
 
 Eigen::Index BoneMobility::placeOf(dBodyID body) const {
-  const auto found = std::lower_bound(bodies_.begin(), bodies_.end(), body);
-  return found != bodies_.end() && *found == body ? 6 * (found - bodies_.begin()) : -1;
+  const auto found = std::ranges::find(bodies_, body);
+  return found != bodies_.end() ? 6 * (found - bodies_.begin()) : -1;
 }
 
 double BoneMobility::between(const std::vector<LineOfPull::Push>& a, const std::vector<LineOfPull::Push>& b) const {

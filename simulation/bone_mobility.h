@@ -27,7 +27,7 @@ class BoneMobility {
 
  private:
   Eigen::Index placeOf(dBodyID body) const;
-  std::vector<dBodyID> bodies_;  ///< sorted
+  std::vector<dBodyID> bodies_;  ///< in the order of the joints, not of addresses: rounding must not depend on memory
   Eigen::MatrixXd mobility_;     ///< P, 6 unknowns per body: velocity of the centre of mass, angular velocity, world frame
 };
 
