@@ -35,7 +35,7 @@ struct Weighing {
   double per_excess = 0.6;      ///< ln of the odds per e-fold by which a parameter is beyond its usual range
   double shared_sensor = 3;     ///< ln of the odds of one sensor's fault against one that all sensors share
   double law_mismatch = 0.01;   ///< share of the residual that the right cause may leave since its law is not quite ours
-  double none_share = 0.72;     ///< "none of these" stands for a cause that would leave this share of the log misfit without effects
+  double none_share = 0.6;      ///< "none of these" stands for a cause that would leave this share of the log misfit without effects
 };
 
 struct Attribution {
