@@ -151,7 +151,7 @@ std::string howFar(const Diagnosis& d) {
 std::string tuned(const Diagnosis& d) {
   if (d.tuned.empty()) return "";
   std::string rows;
-  const bool together = !d.chosen.empty() || !d.attempt.effects.empty();
+  const bool together = hasAfter(d);
   for (const TunedParameter& p : d.tuned) {
     rows += fmt::format("<tr><td>{}</td><td class=number>{:.4g} {}</td><td class=number>{:.4g} ({:.4g} to {:.4g})</td>",
                         breakableCode(p.name), p.start, p.unit, p.fitted.value, p.fitted.low, p.fitted.high);
