@@ -1,23 +1,33 @@
 #include "joint_coulomb_friction.h"
 
+#include <algorithm>
+
 #include "musclesim/units.h"
 
 namespace musclesim {
 
 EffectInfo JointCoulombFriction::info() {
-  return {.id = "joint_coulomb_friction",
-          .stage = Stage::body,
-          .acts_on = {ComponentKind::joint},
-          .summary = "dry friction in a joint",
-          .equation = "torque = -tau_c sign(dq/dt), at rest within -tau_c .. tau_c    q joint angle, tau_c = torque_Nm",
-          .signature = "loop width does not depend on pressure; sticks at reversal",
-          .source = "Coulomb friction as a bounded force of constraint",
-          .parameters = {{"torque_Nm", "N m", 0, 0, 100, 0.02, 1, "tau_c"}},
-          .make = [](const EffectValues& values) { return std::make_unique<JointCoulombFriction>(values["torque_Nm"]); }};
+  return {
+      .id = "joint_coulomb_friction",
+      .stage = Stage::body,
+      .acts_on = {ComponentKind::joint},
+      .summary = "dry friction in a joint",
+      .equation =
+          "torque = -tau_c sign(dq/dt), at rest within -tau_c .. tau_c; with presliding d: -tau_c z / d, dz = dq within -d .. d    q joint "
+          "angle, tau_c = torque_Nm",
+      .signature = "loop width does not depend on pressure; sticks at reversal",
+      .source = "Coulomb friction as a bounded force of constraint; Maxwell slip, Al-Bender, Lampaert and Swevers 2005",
+      .parameters = {{"torque_Nm", "N m", 0, 0, 100, 0.02, 1, "tau_c"},
+                     {"presliding_deg", "deg", 0, 0, 90, 0.1, 1, "d, angle within which the contact only gives way", true}},
+      .make = [](const EffectValues& v) { return std::make_unique<JointCoulombFriction>(v["torque_Nm"], v["presliding_deg"]); }};
 }
+
+JointCoulombFriction::JointCoulombFriction(double torque_Nm, double presliding_deg)
+    : torque_Nm_(torque_Nm), presliding_rad_(presliding_deg * rad_per_deg) {}
 
 void JointCoulombFriction::attach(const EffectPlace& place) {
   JointEffect::attach(place);
+  if (presliding_rad_ > 0) return;
   const double before = dJointGetHingeParam(joint().id(), dParamFMax);
   dJointSetHingeParam(joint().id(), dParamVel, 0);
   const double largest = before + torque_Nm_ * mm_per_m * forcePerN();
@@ -25,6 +35,12 @@ void JointCoulombFriction::attach(const EffectPlace& place) {
   // A softness (CFM) is a speed per torque: the joint creeps at this speed under the full torque.
   constexpr double creep_rad_per_s = 1e-6;
   dJointSetHingeParam(joint().id(), dParamCFM, creep_rad_per_s / largest);
+}
+
+void JointCoulombFriction::apply(const Moment& moment) {
+  if (presliding_rad_ == 0 || !(moment.h_s > 0)) return;  // friction does not shift an equilibrium
+  stretch_rad_ = std::clamp(stretch_rad_ + moment.h_s * rateRadPerS(), -presliding_rad_, presliding_rad_);
+  addTorqueNm(-torque_Nm_ * stretch_rad_ / presliding_rad_);
 }
 
 }  // namespace musclesim

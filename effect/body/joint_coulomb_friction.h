@@ -1,8 +1,10 @@
 /// Body stage: dry friction in a joint.
 ///     torque = -tau_c sign(dq/dt); at rest, whatever keeps it at rest within -tau_c .. tau_c
 /// q joint angle, tau_c = torque_Nm. It is a bound on a force of constraint in the stepper, so the joint sticks without creeping. It adds
-/// to dry friction that the joint has already. Neutral: tau_c = 0. Range 0 .. 100 N m, usually 0.02 .. 1.  Source: Coulomb; motor with
-/// bounded force of ODE.
+/// to dry friction that the joint has already. With presliding_deg = d > 0 the contact gives way like a spring before it slides:
+///     torque = -tau_c z / d,    dz/dt = dq/dt, z held within -d .. d
+/// Neutral: tau_c = 0. Range 0 .. 100 N m, usually 0.02 .. 1; d 0 .. 90 deg, usually 0.1 .. 1.  Source: Coulomb; motor with bounded force
+/// of ODE; one Maxwell slip element, Al-Bender, Lampaert and Swevers 2005.
 #pragma once
 
 #include "musclesim/effect/catalogue.h"
@@ -11,13 +13,16 @@ namespace musclesim {
 
 class JointCoulombFriction final : public JointEffect {
  public:
-  explicit JointCoulombFriction(double torque_Nm) : torque_Nm_(torque_Nm) {}
+  JointCoulombFriction(double torque_Nm, double presliding_deg);
   static EffectInfo info();
 
   void attach(const EffectPlace& place) override;
+  void reset() override { stretch_rad_ = 0; }
+  void apply(const Moment& moment) override;
 
  private:
-  double torque_Nm_;
+  double torque_Nm_, presliding_rad_;
+  double stretch_rad_ = 0;  ///< z
 };
 
 }  // namespace musclesim

@@ -12,7 +12,7 @@ namespace musclesim {
 
 namespace {
 
-enum Law { own, braun, chou_hannaford, sarosi, map };
+enum Law { own, braun, chou_hannaford, sarosi, map, corrected };
 
 EffectParameter constant(const std::string& name, const std::string& unit, double neutral, const std::string& meaning) {
   constexpr double usual_low_ratio = 0.7, usual_high_ratio = 1.3, largest = 1e6;
@@ -24,7 +24,16 @@ std::vector<EffectParameter> lawParameters() {
   const BraunConstants b;
   const ChouHannafordConstants c;
   const SarosiConstants s;
-  return {{"law", "", 0, 0, 4, 0, 4, "the law in place of the model's", false, {"own", "braun", "chou-hannaford", "sarosi", "map"}},
+  return {{"law",
+           "",
+           0,
+           0,
+           5,
+           0,
+           5,
+           "the law in place of the model's; corrected: the terms of chou-hannaford are added to the model's",
+           false,
+           {"own", "braun", "chou-hannaford", "sarosi", "map", "corrected"}},
           {"rest_length_mm", "mm", 0, 0, 1e4, 0, 400, "rest length of the law; 0: the muscle's own longest length", true},
           constant("a", "", b.a, "braun"),
           constant("b", "", b.b, "braun"),
@@ -80,7 +89,7 @@ EffectInfo OtherForceLaw::info() {
           .stage = Stage::force,
           .acts_on = {ComponentKind::muscle},
           .summary = "the muscle follows another static law than the model's",
-          .equation = "F' = G(p, l)    G another law, p pressure, l length",
+          .equation = "F' = G(p, l), or F' = max(0, F + G(p, l))    G another law, p pressure, l length",
           .signature = "smooth misfit of the static map, the same in both directions",
           .source = "Braun 2007; Chou and Hannaford 1996; Sarosi 2012; measured maps",
           .parameters = lawParameters(),
@@ -92,7 +101,8 @@ void OtherForceLaw::attach(const EffectPlace& place) {
   const double given_mm = values_["rest_length_mm"];
   const double rest_mm = given_mm > 0 ? given_mm : actuator().maximumLengthMm();
   const auto law = static_cast<Law>(values_["law"]);
-  if (law == chou_hannaford)
+  adds_ = law == corrected;
+  if (law == chou_hannaford || law == corrected)
     law_ = std::make_unique<ChouHannafordForceLaw>(rest_mm, chouHannafordConstants(values_));
   else if (law == sarosi)
     law_ = std::make_unique<SarosiForceLaw>(rest_mm, sarosiConstants(values_));
@@ -100,6 +110,11 @@ void OtherForceLaw::attach(const EffectPlace& place) {
     law_ = std::make_unique<ForceMap>(rest_mm, ForceMapTable(simulation().parameters()));
   else
     law_ = std::make_unique<BraunForceLaw>(actuator().minimumLengthMm(), rest_mm, braunConstants(values_));
+}
+
+double OtherForceLaw::tensionN(const MuscleInput& input, const ForceBelow& below) const {
+  if (!adds_) return law_->tensionN(input.pressure_ratio, input.length_mm);
+  return std::max(0.0, below(input) + law_->formulaN(input.pressure_ratio, input.length_mm));
 }
 
 }  // namespace musclesim

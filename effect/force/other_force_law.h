@@ -1,5 +1,5 @@
 /// Force stage: the muscle follows another static law than the model's.
-///     F' = G(p, l)
+///     F' = G(p, l),  or  F' = max(0, F + G(p, l)) with law = corrected, G then the terms of Chou-Hannaford
 /// G one of the laws of musclesim/robot: Eq. 1 with other constants, Chou-Hannaford, Sarosi, or the measured map of the parameters
 /// "force_law.*". F tension, p pressure, l length; the constants are those of the law, see its header. rest_length_mm 0 stands for the
 /// muscle's own longest length.
@@ -17,13 +17,12 @@ class OtherForceLaw final : public ForceEffect {
   static EffectInfo info();
 
   void attach(const EffectPlace& place) override;
-  double tensionN(const MuscleInput& input, const ForceBelow&) const override {
-    return law_->tensionN(input.pressure_ratio, input.length_mm);
-  }
+  double tensionN(const MuscleInput& input, const ForceBelow& below) const override;
 
  private:
   EffectValues values_;
   std::unique_ptr<ForceLaw> law_;
+  bool adds_ = false;
 };
 
 }  // namespace musclesim

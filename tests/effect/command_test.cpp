@@ -21,6 +21,13 @@ TEST(CommandQuantisation, RoundsToItsLevels) {
     EXPECT_DOUBLE_EQ(valuesOf(run, "pressure_0")[row], std::round(commands.signals[0].values[row] * 15) / 15);
 }
 
+TEST(CommandQuantisation, MayHaveFullScaleOneLevelBeyondTheHighest) {
+  const Recording commands = wavesFor("rig", 0.3);
+  const ReplayResult run = replayWith(commands, {{"command_quantisation", "all", {{"bits", 4.0}, {"top_level", 0.0}}}});
+  for (std::size_t row = 0; row < commands.time_s.size(); ++row)
+    EXPECT_DOUBLE_EQ(valuesOf(run, "pressure_0")[row], std::round(commands.signals[0].values[row] * 16) / 16);
+}
+
 TEST(CommandQuantisation, TruncatesToTheLevelBelow) {
   const Recording commands = wavesFor("rig", 0.3);
   const ReplayResult run = replayWith(commands, {{"command_quantisation", "all", {{"bits", 4.0}, {"rounding_point", 1.0}}}});

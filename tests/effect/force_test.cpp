@@ -56,6 +56,11 @@ TEST(ForceLaw, IsTheOtherLaw) {
   EXPECT_NEAR(sarosi.tensionAt(230), SarosiForceLaw(300, constants).tensionN(0.5, 230), 1e-9);
   LengthMachine braid({{"force_law", "all", {{"law", "chou-hannaford"}, {"rest_length_mm", 310.0}}}});
   EXPECT_NEAR(braid.tensionAt(230), ChouHannafordForceLaw(310, {}).tensionN(0.5, 230), 1e-9);
+  LengthMachine corrected(
+      {{"force_law",
+        "all",
+        {{"law", "corrected"}, {"braid_N", 6.0}, {"bore_N", 1.0}, {"elastic_N", 0.0}, {"threshold_N", 0.5}, {"stretch_N", 0.0}}}});
+  EXPECT_NEAR(corrected.tensionAt(230), corrected.lawN(0.5, 230) + 0.5 * (6 * std::pow(230.0 / 300, 2) - 1) - 0.5, 1e-9);
   LengthMachine map({{"force_law", "all", {{"law", "map"}}}});
   EXPECT_NEAR(map.tensionAt(230), map.lawN(0.5, 230), 1.0);  // its defaults resemble Eq. 1
   LengthMachine same({{"force_law", "all", {{"law", "braun"}}}});
