@@ -65,10 +65,10 @@ class HardeningSpring final : public JointEffect {
   double stiffness_, rest_deg_;
 };
 
-/// A point mass with drag -c |v| v.
+/// A point mass with drag -c m |v| v.
 class DraggedPayload final : public HandEffect {
  public:
-  explicit DraggedPayload(const EffectValues& v) : mass_kg_(v["mass_kg"]), drag_Ns2_per_m2_(v["drag_Ns2_per_m2"]) {}
+  explicit DraggedPayload(const EffectValues& v) : mass_kg_(v["mass_kg"]), drag_Ns2_per_m2_(v["drag_per_m"] * std::abs(mass_kg_)) {}
   void attach(const EffectPlace& place) override {
     HandEffect::attach(place);
     place.robot.loadHand(mass_kg_ * g_per_kg);
@@ -128,20 +128,19 @@ class RubberStops final : public JointEffect {
   double offset_deg_, low_deg_ = 0, high_deg_ = 0;
 };
 
-/// F = F_0 - k (x - x_built)
+/// F = F_0 (1 - d / L), d the way of the hand along F_0
 class WeakSpring final : public HandEffect {
  public:
-  explicit WeakSpring(const EffectValues& v)
-      : force_N_(v["force_x_N"], v["force_y_N"], v["force_z_N"]), stiffness_N_per_mm_(v["stiffness_N_per_mm"]) {}
+  explicit WeakSpring(const EffectValues& v) : force_N_(v["force_x_N"], v["force_y_N"], v["force_z_N"]), stretch_mm_(v["stretch_mm"]) {}
   void attach(const EffectPlace& place) override {
     HandEffect::attach(place);
     built_mm_ = pointMm();
   }
-  void apply(const Moment&) override { addForceN(force_N_ - stiffness_N_per_mm_ * (pointMm() - built_mm_)); }
+  void apply(const Moment&) override { addForceN(force_N_ * (1 - force_N_.normalized().dot(pointMm() - built_mm_) / stretch_mm_)); }
 
  private:
   Vector force_N_, built_mm_;
-  double stiffness_N_per_mm_;
+  double stretch_mm_;
 };
 
 /// torque = -k x^1.5 (1 + c dx/dt),  x depth beyond the plane in deg
@@ -164,9 +163,9 @@ class HuntCrossley final : public JointEffect {
 /// The start beside its place in a direction between the lever arm and the muscle's line.
 EffectInfo turnedAttachment() {
   EffectInfo info =
-      entry("turned_attachment", Stage::body, {ComponentKind::muscle}, "start' = start + d (e cos 25 deg + up sin 25 deg)",
+      entry("turned_attachment", Stage::body, {ComponentKind::muscle}, "start' = start + d (e cos 8 deg + up sin 8 deg)",
             {{"offset_mm", "mm", 0, -200, 200, -8, 8, "d"}}, [](const EffectValues&) { return std::make_unique<AttachmentOffset>(); });
-  info.start_turn_deg = 25;
+  info.start_turn_deg = 8;
   return info;
 }
 
@@ -186,8 +185,8 @@ std::vector<ForeignEffect> bodyLaws() {
              {{"stiffness_Nm_per_rad", "N m/rad", 0, 0, 1e3, 0.1, 1.5, "k"}, {"rest_deg", "deg", 0, -180, 180, -20, 20, "of x = 0", true}},
              [](const EffectValues& v) { return std::make_unique<HardeningSpring>(v); }),
        "joint_stiffness"},
-      {entry("dragged_payload", Stage::body, hand, "point mass with drag -c |v| v",
-             {{"mass_kg", "kg", 0, -1e3, 1e3, 0.05, 0.6, "mass"}, {"drag_Ns2_per_m2", "N s^2/m^2", 0.3, 0, 1e3, 0.1, 1, "c", true}},
+      {entry("dragged_payload", Stage::body, hand, "point mass with drag -c m |v| v",
+             {{"mass_kg", "kg", 0, -1e3, 1e3, 0.05, 0.6, "mass"}, {"drag_per_m", "1/m", 1, 0, 1e3, 0.5, 3, "c", true}},
              [](const EffectValues& v) { return std::make_unique<DraggedPayload>(v); }),
        "payload"},
       {entry("swaying_base", Stage::body, {ComponentKind::base}, "tilt (1 + a sin(2 pi f t))",
@@ -201,11 +200,11 @@ std::vector<ForeignEffect> bodyLaws() {
       {entry("rubber_stops", Stage::body, joint, "exponential bumpers at shifted stops",
              {{"offset_deg", "deg", 0, -90, 90, -60, 60, "shift"}}, [](const EffectValues& v) { return std::make_unique<RubberStops>(v); }),
        "joint_stop_offset"},
-      {entry("weak_spring", Stage::body, hand, "F = F_0 - k (x - x_built)",
+      {entry("weak_spring", Stage::body, hand, "F = F_0 (1 - d / L), d the way of the hand along F_0",
              {{"force_x_N", "N", 0, -1e4, 1e4, -8, 8, "F_0"},
               {"force_y_N", "N", 0, -1e4, 1e4, -8, 8, "F_0"},
               {"force_z_N", "N", 0, -1e4, 1e4, 0, 0, "F_0"},
-              {"stiffness_N_per_mm", "N/mm", 0.003, 0, 10, 0, 0.005, "k", true}},
+              {"stretch_mm", "mm", 200, 1, 1e6, 100, 500, "L", true}},
              [](const EffectValues& v) { return std::make_unique<WeakSpring>(v); }),
        "external_force"},
       {entry("hunt_crossley", Stage::body, joint, "torque = -k x^1.5 (1 + c dx/dt)",

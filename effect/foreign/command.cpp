@@ -105,7 +105,7 @@ std::vector<ForeignEffect> commandLaws() {
              [](const EffectValues& v) { return std::make_unique<WanderingDelay>(v); }),
        "transport_delay"},
       {entry("unequal_steps", Stage::command, muscle, "u' = (k + c sin(2 pi k / n)) / n, k = floor(n u), n = 2^bits",
-             {{"bits", "bit", INFINITY, 1, INFINITY, 4, 7, "resolution"}, {"bow_levels", "", 0.5, 0, 100, 0.2, 1, "c", true}},
+             {{"bits", "bit", INFINITY, 1, INFINITY, 4, 7, "resolution"}, {"bow_levels", "", 0.2, 0, 100, 0.1, 0.4, "c", true}},
              [](const EffectValues& v) { return std::make_unique<UnequalSteps>(v); }),
        "command_quantisation"},
       {entry("sticking_dead_band", Stage::command, muscle, "0 until u reaches the threshold, then u until it falls below 0.6 of it",

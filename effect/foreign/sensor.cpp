@@ -1,7 +1,8 @@
-/// Foreign laws of the sensor stage: a bias that wanders, a bowed characteristic, a filter of second order in place of a dead time, play
+/// Foreign laws of the sensor stage: a bias that wanders, a scale with a wave, a filter of second order in place of a dead time, play
 /// with a weak spring that centres it, a slower clock in place of lost samples.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "foreign.h"
 #include "musclesim/simulation/simulation.h"
@@ -25,14 +26,17 @@ class WanderingBias final : public SensorEffect {
   std::uint64_t seed_ = 0;
 };
 
-/// y' = g y + c y^2 / y_0
-class BowedScale final : public SensorEffect {
+/// y' = y + (g - 1) y (1 + 0.25 sin(2 pi y / y_0))
+class WavyScale final : public SensorEffect {
  public:
-  explicit BowedScale(const EffectValues& v) : gain_(v["gain"]), bow_(v["bow"]), scale_(v["scale"]) {}
-  double reading(double y, const Moment&, long) override { return gain_ * y + bow_ * y * y / scale_; }
+  explicit WavyScale(const EffectValues& v) : gain_(v["gain"]), period_(v["period"]) {}
+  double reading(double y, const Moment&, long) override {
+    constexpr double wave = 0.25;
+    return y + (gain_ - 1) * y * (1 + wave * std::sin(2 * std::numbers::pi * y / period_));
+  }
 
  private:
-  double gain_, bow_, scale_;
+  double gain_, period_;
 };
 
 /// Two lags in a row, each with half of the delay.
@@ -99,11 +103,9 @@ std::vector<ForeignEffect> sensorLaws() {
              {{"offset", "unit of the signal", 0, -1e4, 1e4, -5, 5, "b"}},
              [](const EffectValues& v) { return std::make_unique<WanderingBias>(v); }),
        "sensor_bias"},
-      {entry("bowed_scale", Stage::sensor, signal, "y' = g y + c y^2 / y_0",
-             {{"gain", "", 1, -10, 10, 0.88, 1.12, "g"},
-              {"bow", "", 0, -10, 10, -0.02, 0.02, "c"},
-              {"scale", "unit of the signal", 100, 1e-3, 1e5, 50, 300, "y_0", true}},
-             [](const EffectValues& v) { return std::make_unique<BowedScale>(v); }),
+      {entry("wavy_scale", Stage::sensor, signal, "y' = y + (g - 1) y (1 + 0.25 sin(2 pi y / y_0))",
+             {{"gain", "", 1, -10, 10, 0.88, 1.12, "g"}, {"period", "unit of the signal", 100, 1e-3, 1e5, 50, 300, "y_0", true}},
+             [](const EffectValues& v) { return std::make_unique<WavyScale>(v); }),
        "sensor_gain"},
       {entry("filter", Stage::sensor, signal, "two lags in a row, each with half of the delay",
              {{"delay_s", "s", 0, 0, 2, 0.01, 0.1, "of both"}}, [](const EffectValues& v) { return std::make_unique<Filter>(v); }),
