@@ -21,10 +21,6 @@ constexpr double least_hope = -1;         ///< ln of the odds of one more effect
 constexpr int few_effects = 2;            ///< up to that many, the first look serves for all of them
 constexpr int first_rounds = 2, more_rounds = 6, last_rounds = 2;
 constexpr int many_rounds = 12;  ///< in place of the last rounds where many effects act together
-/// A fit goes on while its log misfit per affected cell is within that of the best: on the look, on all recordings.
-struct Reach {
-  double on_look, on_all;
-};
 constexpr Reach single_reach = {0.8, 0.4}, pair_reach = {0.25, 0.1};
 
 bool sameCommands(const Recording& a, const Recording& b) {
@@ -128,27 +124,43 @@ void Attributor::refit(Explanation& explanation, const Comparison& comparison, i
   explanation.log_misfit = result.log_misfit / comparison.affectedCells(&comparison == &fit_ ? nominal_residual_ : look_residual_);
 }
 
-/// In three rounds, each for those that the round before left within reach of the best: a few steps on the look, more steps, all
-/// recordings in fine steps (coarse ones blur what lasts some milliseconds). Those out of reach keep what they had, with their misfit on
-/// all recordings.
-void Attributor::fitTogether(std::vector<Explanation> candidates, double on_look, double on_all) {
+/// The last suspect's strengths are taken down until the prediction on the look is no worse than without it.
+void Attributor::weakenStart(Explanation& candidate, double without) const {
+  constexpr double share = 0.3;
+  constexpr int weakenings = 4;
+  const Suspect& last = result_.suspects[candidate.suspects.back()];
+  for (int i = 0; i < weakenings && !plant_.interrupted(); ++i) {
+    const Eigen::VectorXd predicted = look_.predicted(modelOf(candidate));
+    on_simulation_();
+    if (predicted.size() == look_.size() && look_.logMisfit(look_.measured() - predicted) < without) return;
+    for (const int strength : last.strengths()) candidate.z.tail(last.coordinateCount())[strength] *= share;
+  }
+}
+
+/// `without` is the misfit on the look without the last suspect. In three rounds, each for those that the round before left within reach of
+/// the best: a few steps on the look, more steps, all recordings in fine steps (coarse ones blur what lasts some milliseconds). Those out
+/// of reach keep what they had, with their misfit on all recordings.
+void Attributor::fitTogether(std::vector<Explanation> candidates, double without, Reach reach) {
   auto forEach = [&](const std::function<bool(const Explanation&)>& chosen, const std::function<void(Explanation&)>& work) {
     parallelFor(static_cast<int>(candidates.size()), options_.job_count, [&](int i) {
       Explanation& candidate = candidates[static_cast<std::size_t>(i)];
       if (!plant_.interrupted() && chosen(candidate)) work(candidate);
     });
   };
-  auto within = [&](double reach) {
+  auto within = [&](double distance) {
     double best = std::numeric_limits<double>::infinity();
     for (const Explanation& candidate : candidates) best = std::min(best, candidate.log_misfit);
-    return [limit = best + reach](const Explanation& candidate) { return candidate.log_misfit <= limit; };
+    return [limit = best + distance](const Explanation& candidate) { return candidate.log_misfit <= limit; };
   };
   const int rounds = options_.max_effects > few_effects ? many_rounds : last_rounds;
   auto all = [](const Explanation&) { return true; };
-  forEach(all, [&](Explanation& candidate) { refit(candidate, look_, first_rounds, Fidelity::coarse); });
-  forEach(within(on_look), [&](Explanation& candidate) { refit(candidate, look_, more_rounds, Fidelity::coarse); });
+  forEach(all, [&](Explanation& candidate) {
+    weakenStart(candidate, without);
+    refit(candidate, look_, first_rounds, Fidelity::coarse);
+  });
+  forEach(within(reach.on_look), [&](Explanation& candidate) { refit(candidate, look_, more_rounds, Fidelity::coarse); });
   forEach(all, [&](Explanation& candidate) { refit(candidate, fit_, 0, Fidelity::coarse); });
-  forEach(within(on_all), [&](Explanation& candidate) { refit(candidate, fit_, rounds, Fidelity::fine); });
+  forEach(within(reach.on_all), [&](Explanation& candidate) { refit(candidate, fit_, rounds, Fidelity::fine); });
   for (Explanation& candidate : candidates)
     if (candidate.residual.size() == fit_.size()) result_.explanations.push_back(std::move(candidate));
 }
@@ -179,7 +191,7 @@ void Attributor::fitSingles() {
   const std::vector<std::size_t> chosen = survivors(log_misfit, single_count, true);
   std::vector<Explanation> candidates;
   for (const std::size_t index : chosen) candidates.push_back({{index}, startOf(index, result_.signatures[index]), {}, {}, 0, 0});
-  fitTogether(std::move(candidates), single_reach.on_look, single_reach.on_all);
+  fitTogether(std::move(candidates), look_.logMisfit(look_residual_), single_reach);
 }
 
 /// A further effect is looked for beside the likeliest explanation of `count` - 1 effects, with the first look's signatures on what that
@@ -217,7 +229,7 @@ bool Attributor::fitFurther(std::size_t count) {
     candidate.z << best.z, further;
     candidates.push_back(std::move(candidate));
   }
-  fitTogether(std::move(candidates), pair_reach.on_look, pair_reach.on_all);
+  fitTogether(std::move(candidates), look_.logMisfit(left), pair_reach);
   return true;
 }
 

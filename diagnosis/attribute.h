@@ -45,6 +45,11 @@ struct Attribution {
   double none_of_these = 0, no_effect = 0;
 };
 
+/// A fit goes on while its log misfit per affected cell is within that of the best: on the look, on all recordings.
+struct Reach {
+  double on_look, on_all;
+};
+
 class Attributor {
  public:
   Attributor(const Plant& plant, const DiagnosisOptions& options, OnSimulation on_simulation);
@@ -64,7 +69,8 @@ class Attributor {
 
  private:
   void refit(Explanation& explanation, const Comparison& comparison, int rounds, Fidelity fidelity) const;
-  void fitTogether(std::vector<Explanation> candidates, double on_look, double on_all);
+  void weakenStart(Explanation& candidate, double without) const;
+  void fitTogether(std::vector<Explanation> candidates, double without, Reach reach);
   std::vector<std::size_t> survivors(const std::vector<double>& log_misfit, std::size_t count, bool from_every_stage) const;
   Eigen::VectorXd startOf(std::size_t index, const Signature& signature) const;
   void fitSingles();

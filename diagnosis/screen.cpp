@@ -146,6 +146,37 @@ std::vector<Probe> strongerProbes(const Comparison& comparison, const std::vecto
   return result;
 }
 
+/// The largest RMS change in any cell over the residual's there, or over the floor where that is more. 1 where the right cause acts in its
+/// right strength.
+double sizeOver(const Comparison& comparison, const Eigen::VectorXd& residual, const Eigen::VectorXd& change) {
+  double largest = 0;
+  for (const Comparison::Cell& cell : comparison.cells())
+    largest = std::max(
+        largest, std::sqrt(comparison.meanSquare(cell, change)) / std::max(cell.floor, std::sqrt(comparison.meanSquare(cell, residual))));
+  return largest;
+}
+
+/// Weakens the strengths that change much more than there is to explain, or with which the model diverges. Returns their probes.
+std::vector<Probe> weakerProbes(const Comparison& comparison, std::vector<Suspect>& suspects, const std::vector<Signature>& looks,
+                                const Eigen::VectorXd& residual) {
+  constexpr double too_much = 2, after_divergence = 0.1;
+  std::vector<Probe> result;
+  for (std::size_t s = 0; s < suspects.size(); ++s) {
+    if (suspects[s].info().stage == Stage::sensor) continue;
+    for (std::size_t k = 0; k < suspects[s].strengths().size(); ++k) {
+      const Eigen::VectorXd& change = looks[s].per_strength[k];
+      const double size = change.size() ? sizeOver(comparison, residual, change) : 1 / after_divergence;
+      if (size < too_much) continue;
+      const int coordinate = suspects[s].strengths()[k];
+      suspects[s].weaken(coordinate, 1 / size);
+      Eigen::VectorXd z = Eigen::VectorXd::Zero(suspects[s].coordinateCount());
+      z[coordinate] = 1;
+      result.push_back({{{suspects[s].at(z)}, {}}, {{s, k, -1}}});
+    }
+  }
+  return result;
+}
+
 /// Delays and time constants: what they do is not proportional to them.
 std::vector<Probe> lateProbes(const std::vector<Suspect>& suspects) {
   std::vector<Probe> result;
@@ -162,7 +193,7 @@ std::vector<Probe> lateProbes(const std::vector<Suspect>& suspects) {
 
 }  // namespace
 
-std::vector<Signature> screen(const Comparison& comparison, const std::vector<Suspect>& suspects, const Eigen::VectorXd& nominal,
+std::vector<Signature> screen(const Comparison& comparison, std::vector<Suspect>& suspects, const Eigen::VectorXd& nominal,
                               const Model& base, int job_count, const OnSimulation& on_simulation) {
   std::vector<Signature> result(suspects.size());
   for (std::size_t s = 0; s < suspects.size(); ++s) result[s].per_strength.resize(std::max<std::size_t>(1, suspects[s].strengths().size()));
@@ -178,6 +209,8 @@ std::vector<Signature> screen(const Comparison& comparison, const std::vector<Su
   for (std::size_t s = 0; s < suspects.size(); ++s) result[s].excitation_ratio = excitationOf(comparison, result[s].per_strength);
   for (const int direction : {1, -1}) look(strongerProbes(comparison, suspects, result, direction), direction * strong);
   const Eigen::VectorXd residual = comparison.measured() - nominal;
+  constexpr int weakenings = 3;
+  for (int i = 0; i < weakenings; ++i) look(weakerProbes(comparison, suspects, result, residual), 1);
   std::vector<Signature> lately = result;
   lookInto(lately, lateProbes(suspects), late);
   for (std::size_t s = 0; s < suspects.size(); ++s) {

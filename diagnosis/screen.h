@@ -12,7 +12,7 @@ namespace musclesim {
 
 /// What one suspect does to the predictions, and how far a multiple of that goes.
 struct Signature {
-  /// Change of the prediction by each strength alone, at a typical value; empty columns where the model diverged.
+  /// Change of the prediction by each strength alone, at z = 1; empty columns where the model diverged.
   std::vector<Eigen::VectorXd> per_strength;
   Eigen::VectorXd amount;       ///< multiple of each that removes most
   Eigen::VectorXd explained;    ///< sum of amount times per_strength
@@ -24,8 +24,9 @@ struct Signature {
 using OnSimulation = std::function<void()>;
 
 /// One or a few simulations per suspect on the comparison's stretches; sensor effects of one id on different signals share theirs.
-/// `nominal` is the prediction of `base`, the model beside which the suspects are tried.
-std::vector<Signature> screen(const Comparison& comparison, const std::vector<Suspect>& suspects, const Eigen::VectorXd& nominal,
+/// `nominal` is the prediction of `base`, the model beside which the suspects are tried. Strengths that change a signal by much more than
+/// what is to be explained are weakened, since what they do need not be proportional to them.
+std::vector<Signature> screen(const Comparison& comparison, std::vector<Suspect>& suspects, const Eigen::VectorXd& nominal,
                               const Model& base, int job_count, const OnSimulation& on_simulation);
 
 /// The amounts of a signature that remove most of a residual, by least squares weighted anew three times. Amounts of unsigned strengths

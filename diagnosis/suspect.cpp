@@ -1,11 +1,9 @@
 #include "suspect.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "musclesim/effect/relevance.h"
-#include "musclesim/robot/chou_hannaford.h"
 
 namespace musclesim {
 
@@ -60,40 +58,23 @@ Suspect::Suspect(EffectInfo info, std::string component, const Plant& plant) : i
     if (!p.shape) strengths_.push_back(static_cast<int>(coordinates_.size()));
     coordinates_.push_back(c);
   }
-  if (info_.id == "force_law") useChouHannaford(plant);
+  if (info_.id == "force_law") useCorrectedLaw(plant);
 }
 
-/// Another law has many constants and no neutral ones: the fit begins at the constants of Chou and Hannaford that come nearest to the law
-/// of the model (least squares over pressures and lengths) and changes them by shares of themselves.
-void Suspect::useChouHannaford(const Plant& plant) {
-  const Plant::MuscleRange range = plant.muscleRange(0);
-  constexpr int pressure_count = 9, length_count = 21;
-  const double stretch_exponent = ChouHannafordConstants().stretch_exponent;
-  Eigen::MatrixXd columns(pressure_count * length_count, 4);
-  Eigen::VectorXd tension_N(columns.rows());
-  for (int i = 0, row = 0; i < pressure_count; ++i)
-    for (int j = 0; j < length_count; ++j, ++row) {
-      const double p = static_cast<double>(i) / (pressure_count - 1);
-      const double l = range.minimum_mm + (range.maximum_mm - range.minimum_mm) * j / (length_count - 1), s = l / range.maximum_mm;
-      columns.row(row) << p * s * s, -p, -1, std::exp(stretch_exponent * (s - 1));
-      tension_N[row] = plant.tensionN(0, p, l);
-    }
-  const Eigen::Vector4d constants = columns.colPivHouseholderQr().solve(tension_N);
-  const char* const names[] = {"braid_N", "bore_N", "threshold_N", "stretch_N"};
-  const double largest = constants.cwiseAbs().maxCoeff();
+/// Another law has many constants and no neutral ones: the terms of Chou and Hannaford are added to the law of the model, where 0 is
+/// neutral.
+void Suspect::useCorrectedLaw(const Plant& plant) {
+  constexpr double typical_share = 0.1;  // of the tension at full pressure and length
+  const double typical_N = typical_share * plant.tensionN(0, 1, plant.muscleRange(0).maximum_mm);
   coordinates_.clear();
   strengths_.clear();
   for (std::size_t i = 0; i < info_.parameters.size(); ++i) {
     const EffectParameter& p = info_.parameters[i];
-    if (p.name == "law") base_[i] = static_cast<double>(std::ranges::find(p.choices, "chou-hannaford") - p.choices.begin());
-    if (p.name == "elastic_N") base_[i] = 0;
-    if (p.name == "stretch_exponent") base_[i] = stretch_exponent;
-    for (int k = 0; k < 4; ++k) {
-      if (p.name != names[k]) continue;
-      base_[i] = constants[k];
-      strengths_.push_back(static_cast<int>(coordinates_.size()));
-      coordinates_.push_back({i, Scale::linear, constants[k] + 0.1 * largest, 0});
-    }
+    if (p.name == "law") base_[i] = static_cast<double>(std::ranges::find(p.choices, "corrected") - p.choices.begin());
+    if (p.name != "braid_N" && p.name != "bore_N" && p.name != "threshold_N" && p.name != "stretch_N") continue;
+    base_[i] = 0;
+    strengths_.push_back(static_cast<int>(coordinates_.size()));
+    coordinates_.push_back({i, Scale::linear, typical_N, 0});
   }
 }
 
@@ -101,6 +82,11 @@ bool Suspect::isSigned(int coordinate) const {
   const Coordinate& c = coordinates_[static_cast<std::size_t>(coordinate)];
   const EffectParameter& p = info_.parameters[c.parameter];
   return info_.id == "force_law" || (c.scale == Scale::linear && p.minimum < p.neutral);
+}
+
+void Suspect::weaken(int coordinate, double share) {
+  Coordinate& c = coordinates_[static_cast<std::size_t>(coordinate)];
+  c.typical = valueOf(c, share);
 }
 
 bool Suspect::isTime(int coordinate) const {
@@ -141,8 +127,8 @@ Eigen::VectorXd Suspect::clamped(Eigen::VectorXd z) const {
   for (std::size_t i = 0; i < coordinates_.size(); ++i) {
     const Coordinate& c = coordinates_[i];
     const EffectParameter& p = info_.parameters[c.parameter];
-    const double low_value = p.shape && p.usual_low > 0 ? std::max(p.minimum, p.usual_low / 3) : p.minimum;
-    const double high_value = p.shape && p.usual_low > 0 ? std::min(p.maximum, p.usual_high * 3) : p.maximum;
+    const double low_value = c.scale == Scale::factor ? std::max(p.minimum, p.usual_low / 3) : p.minimum;
+    const double high_value = c.scale == Scale::factor ? std::min(p.maximum, p.usual_high * 3) : p.maximum;
     double first = coordinateOf(c, low_value), second = coordinateOf(c, high_value);
     if (first > second) std::swap(first, second);
     if (std::isinf(p.neutral)) first = std::max(first, 1e-6);
@@ -196,19 +182,23 @@ Eigen::VectorXd Suspect::typical() const {
   return z;
 }
 
-/// Levels are a matter of one or the other: whole numbers of bits are tried, rounded and truncated, nothing is fitted.
+/// Levels are a matter of one or the other: whole numbers of bits are tried, rounded and truncated, with full scale at the highest level
+/// and one beyond it; nothing is fitted.
 std::vector<Suspect> Suspect::numbersOfBits() const {
   constexpr int fewest = 4, most = 10;
   std::vector<Suspect> result;
   for (int bits = fewest; bits <= most; ++bits)
-    for (const double rounding_point : {0.5, 1.0}) {
-      Suspect variant = *this;
-      for (std::size_t i = 0; i < info_.parameters.size(); ++i)
-        variant.base_[i] = info_.parameters[i].name == "bits" ? bits : rounding_point;
-      variant.coordinates_.clear();
-      variant.strengths_.clear();
-      result.push_back(std::move(variant));
-    }
+    for (const double rounding_point : {0.5, 1.0})
+      for (const double top_level : {1.0, 0.0}) {
+        Suspect variant = *this;
+        for (std::size_t i = 0; i < info_.parameters.size(); ++i) {
+          const std::string& name = info_.parameters[i].name;
+          variant.base_[i] = name == "bits" ? bits : name == "top_level" ? top_level : rounding_point;
+        }
+        variant.coordinates_.clear();
+        variant.strengths_.clear();
+        result.push_back(std::move(variant));
+      }
   return result;
 }
 

@@ -15,7 +15,8 @@ namespace musclesim {
 ///   neutral value finite      value = neutral + z * (typical - neutral)
 ///   neutral value infinite    value = typical / z
 ///   shape parameters          value = typical * exp(z), or typical + z * half the usual range where that has both signs
-/// z = 0 is neutral for the first two and usual for the third; z = 1 is a typical strength. Values are clamped to their range.
+/// z = 0 is neutral for the first two and usual for the third; z = 1 is a typical strength, or what the first look took in its place (see
+/// weaken). Values are clamped to their range.
 class Suspect {
  public:
   Suspect(EffectInfo info, std::string component, const Plant& plant);
@@ -28,6 +29,8 @@ class Suspect {
   const std::vector<int>& strengths() const { return strengths_; }
   /// Whether a strength may have either sign.
   bool isSigned(int coordinate) const;
+  /// From here on z = 1 is that share of the strength that it was.
+  void weaken(int coordinate, double share);
   /// Whether it is a time.
   bool isTime(int coordinate) const;
   ActiveEffect at(const Eigen::VectorXd& z) const;
@@ -54,7 +57,7 @@ class Suspect {
   };
   double valueOf(const Coordinate& coordinate, double z) const;
   double coordinateOf(const Coordinate& coordinate, double value) const;
-  void useChouHannaford(const Plant& plant);
+  void useCorrectedLaw(const Plant& plant);
   std::vector<Suspect> numbersOfBits() const;
 
   EffectInfo info_;

@@ -143,7 +143,7 @@ class LoadedRig : public Rig {
 
 TEST_F(LoadedRig, FirstLookSeesThePayload) {
   options.candidates = {"payload", "valve_lag"};
-  const std::vector<Suspect> all = suspects(plant, options);
+  std::vector<Suspect> all = suspects(plant, options);
   const Eigen::VectorXd nominal = both.predicted(Model{});
   int simulations = 0;
   const std::vector<Signature> looks = screen(both, all, nominal, Model{}, 1, [&] { ++simulations; });
@@ -158,6 +158,26 @@ TEST_F(LoadedRig, FirstLookSeesThePayload) {
       EXPECT_GT(looks[i].log_misfit, 0.8 * before);
     }
   }
+}
+
+class SlightlyDampedRig : public Rig {
+ protected:
+  SlightlyDampedRig() : Rig({{"viscous_loss", "muscle_0", {{"damping_Ns_per_m", damping}}}}, 0.05) {}
+  static constexpr double damping = 3;  // the first look begins at 245
+};
+
+TEST_F(SlightlyDampedRig, StrengthsThatDoTooMuchAreWeakened) {
+  options.candidates = {"viscous_loss"};
+  std::vector<Suspect> all = suspects(plant, options);
+  const Eigen::VectorXd nominal = both.predicted(Model{});
+  const double typical = all.front().valuesAt(all.front().typical()).front().second;
+  const std::vector<Signature> looks = screen(both, all, nominal, Model{}, 1, [] {});
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(all.front().coordinateCount());
+  z[all.front().strengths().front()] = 1;
+  EXPECT_LT(all.front().valuesAt(z).front().second, 0.1 * typical);
+  z[all.front().strengths().front()] = looks.front().amount[0];
+  EXPECT_NEAR(all.front().valuesAt(z).front().second, damping, 0.5 * damping);
+  EXPECT_LT(looks.front().log_misfit, 0.5 * both.logMisfit(both.measured() - nominal));
 }
 
 TEST(Drawing, ShowsMusclesBonesAndJoints) {

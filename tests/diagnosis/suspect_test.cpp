@@ -41,9 +41,28 @@ TEST_F(PlantedRig, WhatHasNoUsualRangeHasNoExcess) {
   EXPECT_EQ(bias.excess(Eigen::VectorXd::Constant(bias.coordinateCount(), 40)), 0);
 }
 
+TEST_F(PlantedRig, WeakenedStrengthsAreAShareOfWhatTheyWere) {
+  Suspect payload = suspect("payload", "hand"), limit = suspect("flow_limit", "muscle_0");
+  const double typical_kg = payload.valuesAt(payload.typical()).front().second;
+  payload.weaken(0, 0.1);
+  EXPECT_NEAR(payload.valuesAt(payload.typical()).front().second, 0.1 * typical_kg, 1e-12);
+  const double typical_per_s = limit.valuesAt(limit.typical()).front().second;
+  limit.weaken(limit.strengths().front(), 0.1);
+  EXPECT_NEAR(limit.valuesAt(limit.typical()).front().second, 10 * typical_per_s, 1e-9) << "a weaker limit lets more through";
+}
+
+TEST_F(PlantedRig, AnotherForceLawBeginsAtTheLawOfTheModel) {
+  const Suspect law = suspect("force_law", "muscle_0");
+  ASSERT_EQ(law.strengths().size(), 4u);
+  const Eigen::VectorXd neutral = Eigen::VectorXd::Zero(law.coordinateCount());
+  EXPECT_EQ(law.clamped(neutral), neutral);
+  Comparison comparison(plant_, plant_.split().fit);
+  EXPECT_EQ(comparison.predicted(Model{{law.at(neutral)}, {}}), comparison.predicted(Model{}));
+}
+
 TEST_F(PlantedRig, BitsAreRoundedAndTruncated) {
   const std::vector<Suspect> variants = suspect("command_quantisation", "muscle_0").variants(plant_);
-  EXPECT_EQ(variants.size(), 14U);
+  EXPECT_EQ(variants.size(), 28U);
   for (const Suspect& variant : variants) EXPECT_EQ(variant.coordinateCount(), 0);
   EXPECT_NE(variants[0].at({}), variants[1].at({}));
 }
