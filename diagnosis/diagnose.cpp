@@ -152,7 +152,8 @@ class Run {
     };
     diagnosis_.nominal_refit_shrink_percent = shrinkOf(nominal);
     diagnosis_.sham_shrink_percent = shrinkOf(sham);
-    const Estimate interval = shrinkInterval(held_out_, before_residual_, after, options_.seed);
+    const Estimate interval = shrinkInterval({held_out_, before_residual_, after},
+                                             {attributor_.fitComparison(), attributor_.nominalResidual(), best.residual}, options_.seed);
     const Attempt attempt{labelsOf(model), model.effects, gap_after, shrinkOf(after), interval.low, interval.high};
     const bool beats =
         attempt.shrink_percent > std::max(diagnosis_.nominal_refit_shrink_percent, diagnosis_.sham_shrink_percent) + clear_gain_percent;

@@ -1,8 +1,11 @@
 #include "shrink.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <optional>
 
 #include "musclesim/random.h"
 #include "refit.h"
@@ -20,7 +23,8 @@ struct Block {
   std::map<int, std::array<double, 3>> sums;  ///< before, after, rows
 };
 
-std::vector<Block> blocksOf(const Comparison& comparison, const Eigen::VectorXd& before, const Eigen::VectorXd& after) {
+std::vector<Block> blocksOf(const BeforeAndAfter& both) {
+  const auto& [comparison, before, after] = both;
   std::map<std::pair<std::size_t, int>, Block> blocks;
   for (const Comparison::Cell& cell : comparison.cells()) {
     const auto& time_s = comparison.plant().recordings()[static_cast<std::size_t>(comparison.stretches()[cell.stretch].recording)].time_s;
@@ -52,6 +56,43 @@ double shrinkOf(const Comparison& comparison, const std::vector<const Block*>& b
   return before > 0 ? 100 * (1 - after / before) : 0;
 }
 
+/// ln(after / before) of the normalised gaps of each recording. What is left counts at least as much as the gap of noise alone is uncertain
+/// by with some hundred rows.
+std::vector<double> logRests(const BeforeAndAfter& both) {
+  constexpr double least = 0.07;
+  std::map<int, std::map<int, std::array<double, 3>>> sums;  // recording, signal: before, after, rows
+  for (const Comparison::Cell& cell : both.comparison.cells()) {
+    if (cell.block > 0) continue;
+    auto& sum = sums[both.comparison.stretches()[cell.stretch].recording][cell.signal];
+    const auto rows = static_cast<double>(cell.count());
+    sum[0] += rows * both.comparison.meanSquare(cell, both.before);
+    sum[1] += rows * both.comparison.meanSquare(cell, both.after);
+    sum[2] += rows;
+  }
+  std::vector<double> result;
+  for (const auto& [recording, signals] : sums) {
+    double before = 0, after = 0;
+    for (const auto& [signal, sum] : signals) {
+      const double floor = both.comparison.plant().signals()[static_cast<std::size_t>(signal)].floor.value, square = floor * floor;
+      before += std::max(0.0, sum[0] / sum[2] / square - 1) / static_cast<double>(signals.size());
+      after += std::max(0.0, sum[1] / sum[2] / square - 1) / static_cast<double>(signals.size());
+    }
+    if (before > least) result.push_back(std::log(std::max(least, after) / before));
+  }
+  return result;
+}
+
+/// Student's prediction interval for one more value, as shrink in percent.
+std::optional<std::pair<double, double>> ofAnotherRecording(const std::vector<double>& log_rests) {
+  constexpr std::array quantile_975 = {4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262};  // 2 .. 9 degrees of freedom
+  if (log_rests.size() < 3) return std::nullopt;
+  const Eigen::Map<const Eigen::VectorXd> y(log_rests.data(), static_cast<Eigen::Index>(log_rests.size()));
+  const double count = static_cast<double>(log_rests.size()), mean = y.mean();
+  const double deviation = std::sqrt((y.array() - mean).square().sum() / (count - 1));
+  const double reach = quantile_975[std::min(quantile_975.size(), log_rests.size() - 2) - 1] * deviation * std::sqrt(1 + 1 / count);
+  return std::pair{100 * (1 - std::exp(mean + reach)), 100 * (1 - std::exp(mean - reach))};
+}
+
 struct Sine {
   double frequency_hz, phase;
 };
@@ -77,8 +118,8 @@ double shrinkPercent(const Gap& before, const Gap& after) {
   return before.normalised > 0 ? 100 * (1 - after.normalised / before.normalised) : 0;
 }
 
-Estimate shrinkInterval(const Comparison& held_out, const Eigen::VectorXd& before, const Eigen::VectorXd& after, std::uint64_t seed) {
-  const std::vector<Block> blocks = blocksOf(held_out, before, after);
+Estimate shrinkInterval(const BeforeAndAfter& held_out, const BeforeAndAfter& fitted, std::uint64_t seed) {
+  const std::vector<Block> blocks = blocksOf(held_out);
   RandomStream random(seed, "diagnosis.bootstrap");
   std::vector<double> draws;
   for (int draw = 0; draw < draw_count; ++draw) {
@@ -86,12 +127,19 @@ Estimate shrinkInterval(const Comparison& held_out, const Eigen::VectorXd& befor
     for (std::size_t i = 0; i < blocks.size(); ++i)
       chosen.push_back(
           &blocks[std::min(blocks.size() - 1, static_cast<std::size_t>(random.uniform() * static_cast<double>(blocks.size())))]);
-    draws.push_back(shrinkOf(held_out, chosen));
+    draws.push_back(shrinkOf(held_out.comparison, chosen));
   }
   std::ranges::sort(draws);
   std::vector<const Block*> all;
   for (const Block& block : blocks) all.push_back(&block);
-  return {shrinkOf(held_out, all), draws[draw_count / 40], draws[draw_count - 1 - draw_count / 40]};
+  Estimate shrink{shrinkOf(held_out.comparison, all), draws[draw_count / 40], draws[draw_count - 1 - draw_count / 40]};
+  std::vector<double> log_rests = logRests(held_out);
+  std::ranges::copy(logRests(fitted), std::back_inserter(log_rests));
+  if (const auto other = ofAnotherRecording(log_rests)) {
+    shrink.low = std::min(shrink.low, other->first);
+    shrink.high = std::max(shrink.high, other->second);
+  }
+  return shrink;
 }
 
 Eigen::VectorXd nominalRefitResidual(const Comparison& fitted, const Comparison& held_out, const OnSimulation& on_simulation) {

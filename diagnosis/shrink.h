@@ -11,8 +11,16 @@ namespace musclesim {
 /// 100 (1 - after / before) of the normalised gaps; 0 if there is no gap before.
 double shrinkPercent(const Gap& before, const Gap& after);
 
-/// The same with its 95 % interval by a bootstrap over blocks of rows (one second), 1000 draws. Source: Kuensch 1989.
-Estimate shrinkInterval(const Comparison& held_out, const Eigen::VectorXd& before, const Eigen::VectorXd& after, std::uint64_t seed);
+/// Residuals with and without what was found.
+struct BeforeAndAfter {
+  const Comparison& comparison;
+  const Eigen::VectorXd &before, &after;
+};
+
+/// The shrink on what was held out, and the interval in which that of another recording of the same plant is expected with 95 %. It holds
+/// two: a bootstrap over blocks of rows of one second, 1000 draws (Kuensch 1989), and, where there are three recordings or more, Student's
+/// prediction interval for one more value of ln(after / before), which has one value per recording, fitted or held out.
+Estimate shrinkInterval(const BeforeAndAfter& held_out, const BeforeAndAfter& fitted, std::uint64_t seed);
 
 /// Residual on held_out after re-tuning the model's own numbers (Plant::nominalParameters) on `fitted`, without any effect.
 Eigen::VectorXd nominalRefitResidual(const Comparison& fitted, const Comparison& held_out, const OnSimulation& on_simulation);
