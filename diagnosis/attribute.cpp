@@ -53,6 +53,41 @@ Attributor::Attributor(const Plant& plant, const DiagnosisOptions& options, OnSi
       look_(plant, lookStretches(plant), Comparison::Averages::with),
       fit_(plant, plant.split().fit, Comparison::Averages::with) {}
 
+/// Of variants without any strength (numbers of bits), those of one component that leave least on the first stretch of the look: simulating
+/// all of them on all of it would take as long as everything else.
+void Attributor::keepNearestVariants() {
+  constexpr std::size_t kept = 2;
+  const Comparison brief = [&] {
+    Comparison result(plant_, {look_.stretches().front()}, Comparison::Averages::with);
+    result.goCoarse(result.predicted(Model{}));
+    return result;
+  }();
+  std::vector<Suspect>& all = result_.suspects;
+  std::map<std::string, std::vector<std::size_t>> variants;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i].coordinateCount() == 0) variants[all[i].label()].push_back(i);
+  std::vector<double> log_misfit(all.size(), 0);
+  std::vector<std::size_t> tried;
+  for (const auto& [label, members] : variants)
+    if (members.size() > kept) tried.insert(tried.end(), members.begin(), members.end());
+  parallelFor(static_cast<int>(tried.size()), options_.job_count, [&](int i) {
+    const std::size_t index = tried[static_cast<std::size_t>(i)];
+    if (plant_.interrupted()) return;
+    const Eigen::VectorXd predicted = brief.predicted(Model{{all[index].at({})}, {}});
+    log_misfit[index] = predicted.size() ? brief.logMisfit(brief.measured() - predicted) : std::numeric_limits<double>::infinity();
+    on_simulation_();
+  });
+  std::set<std::size_t> dropped;
+  for (auto& [label, members] : variants) {
+    std::ranges::stable_sort(members, {}, [&](std::size_t i) { return log_misfit[i]; });
+    dropped.insert(members.begin() + static_cast<std::ptrdiff_t>(std::min(kept, members.size())), members.end());
+  }
+  std::vector<Suspect> rest;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (!dropped.contains(i)) rest.push_back(std::move(all[i]));
+  all = std::move(rest);
+}
+
 void Attributor::look() {
   const Eigen::VectorXd nominal = look_.predicted(Model{});
   if (!nominal.size()) throw Diverged(0, plant_.robot(), "the model without further effects cannot follow the recordings");
@@ -62,6 +97,7 @@ void Attributor::look() {
   look_.goCoarse(nominal);
   fit_.goCoarse(everywhere);
   result_.suspects = suspects(plant_, options_);
+  keepNearestVariants();
   result_.signatures = screen(look_, result_.suspects, nominal, Model{}, options_.job_count, on_simulation_);
 }
 

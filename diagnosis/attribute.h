@@ -26,7 +26,7 @@ struct Explanation {
 
 /// How answers are weighed; docs/diagnosing.md says on which cases the numbers were found.
 struct Weighing {
-  double per_misfit = 10;       ///< ln of the odds per unit of log misfit per affected cell
+  double per_misfit = 7;        ///< ln of the odds per unit of log misfit per affected cell
   double per_parameter = 0.5;   ///< ln of the odds that a further parameter costs
   double per_effect = 6.5;      ///< ln of the odds that a further effect costs
   double per_further_gain = 5;  ///< ln of the odds per unit of log misfit that further effects gain over the first
@@ -69,6 +69,7 @@ class Attributor {
 
  private:
   void refit(Explanation& explanation, const Comparison& comparison, int rounds, Fidelity fidelity) const;
+  void keepNearestVariants();
   void weakenStart(Explanation& candidate, double without) const;
   void fitTogether(std::vector<Explanation> candidates, double without, Reach reach);
   std::vector<std::size_t> survivors(const std::vector<double>& log_misfit, std::size_t count, bool from_every_stage) const;

@@ -159,7 +159,7 @@ double sizeOver(const Comparison& comparison, const Eigen::VectorXd& residual, c
 /// Weakens the strengths that change much more than there is to explain, or with which the model diverges. Returns their probes.
 std::vector<Probe> weakerProbes(const Comparison& comparison, std::vector<Suspect>& suspects, const std::vector<Signature>& looks,
                                 const Eigen::VectorXd& residual) {
-  constexpr double too_much = 2, after_divergence = 0.1;
+  constexpr double too_much = 3, after_divergence = 0.1;
   std::vector<Probe> result;
   for (std::size_t s = 0; s < suspects.size(); ++s) {
     if (suspects[s].info().stage == Stage::sensor) continue;
