@@ -177,7 +177,7 @@ TEST_F(SlightlyDampedRig, StrengthsThatDoTooMuchAreWeakened) {
   EXPECT_LT(all.front().valuesAt(z).front().second, 0.1 * typical);
   z[all.front().strengths().front()] = looks.front().amount[0];
   EXPECT_NEAR(all.front().valuesAt(z).front().second, damping, 0.5 * damping);
-  EXPECT_LT(looks.front().log_misfit, 0.5 * both.logMisfit(both.measured() - nominal));
+  EXPECT_LT(looks.front().log_misfit, 0.6 * both.logMisfit(both.measured() - nominal));
 }
 
 TEST(Drawing, ShowsMusclesBonesAndJoints) {
