@@ -7,21 +7,14 @@
 
 namespace musclesim::chain {
 
-void SkeletonCore::reserve(std::size_t bones, std::size_t rows) {
-  if (stride_ >= rows && bones_.size() >= bones) return;
-  stride_ = std::max(stride_, rows * 3 / 2 / 2 * 2 + 8);
+void SkeletonCore::reserve(std::size_t bones, std::size_t unknowns) {
+  if (most_tiles_ * tile_width >= unknowns && bones_.size() >= bones) return;
+  most_tiles_ = std::max(most_tiles_, unknowns * 3 / 2 / tile_width + 1);
   bones_.resize(std::max(bones_.size(), bones));
-  place_.resize(bones_.size() * stride_);
-  products_.resize(stride_);
-  places_.resize(stride_);
-  run_lengths_.resize(stride_);
-  const std::size_t unknowns = stride_ + 6 * bones_.size();
-  solution_.resize(unknowns + tile_width);
-  matrix_.reserve(static_cast<int>(unknowns));
-  for (BoneSystem& bone : bones_) {
-    bone.rows.reserve(stride_);
-    bone.jacobian.resize(6 * stride_);
-  }
+  tile_place_.resize(bones_.size() * most_tiles_);
+  solution_.resize(most_tiles_ * tile_width);
+  matrix_.reserve(static_cast<int>(solution_.size()));
+  for (BoneSystem& bone : bones_) bone.rows.reserve(most_tiles_);
 }
 
 void SkeletonCore::reset(int bone_count, int row_count) {
@@ -32,21 +25,22 @@ void SkeletonCore::reset(int bone_count, int row_count) {
 }
 
 void SkeletonCore::reset(const Layout& layout) {
-  const auto bones = layout.kept.size(), rows = static_cast<std::size_t>(layout.row_count);
+  const auto bones = layout.kept.size();
   bone_count_ = static_cast<int>(bones);
-  reserve(bones, rows);
-  kept_unknowns_ = 0;
+  kept_unknowns_ = 6 * static_cast<int>(std::count_if(layout.kept.begin(), layout.kept.end(), [](char kept) { return kept != 0; }));
+  reserve(bones, static_cast<std::size_t>(layout.row_count + kept_unknowns_));
+  band_ = layout.band;
+  int next_kept = band_;
   for (std::size_t b = 0; b < bones; ++b) {
     BoneSystem& bone = bones_[b];
     bone.mass.setZero();
     bone.velocity.setZero();
     bone.rows.clear();
-    bone.kept_place = layout.kept[b] ? layout.band + kept_unknowns_ : -1;
-    if (layout.kept[b]) kept_unknowns_ += 6;
-    if (!layout.kept[b]) std::fill_n(place_.begin() + static_cast<std::ptrdiff_t>(b * stride_), rows, -1);
+    bone.kept_place = layout.kept[b] ? next_kept : -1;
+    if (layout.kept[b]) next_kept += 6;
   }
-  band_ = layout.band;
   matrix_.reset(layout.row_count + kept_unknowns_);
+  std::fill_n(tile_place_.begin(), bones * most_tiles_, -1);
   std::fill_n(solution_.begin(), matrix_.paddedSize(), 0.0);
 }
 
@@ -55,33 +49,42 @@ void SkeletonCore::addBone(int bone, const Matrix6& mass, const Vector6& momentu
   bones_[static_cast<std::size_t>(bone)].velocity += momentum;
 }
 
-void SkeletonCore::couple(int row, int bone, const double jacobian[6]) {
+void SkeletonCore::couple(int first_row, int count, int bone, const double* jacobian) {
   if (bone < 0) return;
   BoneSystem& system = bones_[static_cast<std::size_t>(bone)];
   if (system.kept_place >= 0) {
-    matrix_.addRun(place(row), system.kept_place, jacobian, 6);
+    for (int row = 0; row < count; ++row) matrix_.addRun(place(first_row + row), system.kept_place, jacobian + 6 * row, 6);
     return;
   }
-  int& place = place_[static_cast<std::size_t>(bone) * stride_ + static_cast<std::size_t>(row)];
-  const bool is_new = place < 0;
-  if (is_new) {
-    place = static_cast<int>(system.rows.size());
-    system.rows.push_back(row);
+  for (int row = 0; row < count;) {
+    const auto at = static_cast<unsigned>(place(first_row + row));
+    TileRows& rows = rowsOfTile(system, bone, static_cast<int>(at / tile_width));
+    for (unsigned column = at % tile_width; row < count && column < tile_width; ++row, ++column) {
+      rows.present |= 1U << column;
+      for (int i = 0; i < 6; ++i) rows.jacobian[i][column] += jacobian[6 * row + i];
+    }
   }
-  double* target = system.jacobian.data() + place;
-  for (std::size_t i = 0; i < 6; ++i) target[i * stride_] = jacobian[i] + (is_new ? 0 : target[i * stride_]);
+}
+
+SkeletonCore::TileRows& SkeletonCore::rowsOfTile(BoneSystem& system, int bone, int tile) {
+  int& known = tile_place_[static_cast<std::size_t>(bone) * most_tiles_ + static_cast<std::size_t>(tile)];
+  if (known < 0) {
+    known = static_cast<int>(system.rows.size());
+    system.rows.emplace_back().tile = tile;
+  }
+  return system.rows[static_cast<std::size_t>(known)];
 }
 
 namespace {
 
 /// M = L L^T in place, for the rows and columns from `first` on.
 template <int first>
-void factoriseFrom(Matrix6& m) {
+void factoriseFrom(Matrix6& m, double per_pivot[6]) {
   for (int j = first; j < 6; ++j) {
     for (int k = first; k < j; ++k)
       for (int i = j; i < 6; ++i) m(i, j) -= m(i, k) * m(j, k);
-    const double per_root = 1 / std::sqrt(m(j, j));
-    for (int i = j; i < 6; ++i) m(i, j) *= per_root;
+    per_pivot[j] = 1 / std::sqrt(m(j, j));
+    for (int i = j; i < 6; ++i) m(i, j) *= per_pivot[j];
   }
 }
 
@@ -92,9 +95,9 @@ void SkeletonCore::factorise(BoneSystem& bone) {
   Matrix6& m = bone.mass;
   const bool alone = (m.bottomLeftCorner<3, 3>().array() == 0).all() && m(1, 0) == 0 && m(2, 0) == 0 && m(2, 1) == 0;
   bone.first_coupled = alone ? 3 : 0;
-  if (!alone) return factoriseFrom<0>(m);
-  for (int j = 0; j < 3; ++j) m(j, j) *= 1 / std::sqrt(m(j, j));
-  factoriseFrom<3>(m);
+  if (!alone) return factoriseFrom<0>(m, bone.per_pivot);
+  for (int j = 0; j < 3; ++j) bone.per_pivot[j] = 1 / std::sqrt(m(j, j));
+  factoriseFrom<3>(m, bone.per_pivot);
 }
 
 /// Factors M and replaces J^T by L^-1 J^T, g by L^-1 g.
@@ -103,54 +106,18 @@ void SkeletonCore::reduce(BoneSystem& bone) {
   for (int i = 0; i < 6; ++i) {
     double sum = bone.velocity[i];
     for (int j = bone.first_coupled; j < i; ++j) sum -= bone.mass(i, j) * bone.reduced[j];
-    bone.reduced[i] = sum / bone.mass(i, i);
+    bone.reduced[i] = sum * bone.per_pivot[i];
   }
-  const std::size_t count = bone.rows.size();
-  if (count == 0) return;
-  for (int i = 0; i < 6; ++i) {
-    double* __restrict target = bone.jacobian.data() + static_cast<std::size_t>(i) * stride_;
-    for (int j = bone.first_coupled; j < i; ++j) {
-      const double factor = bone.mass(i, j);
-      const double* __restrict earlier = bone.jacobian.data() + static_cast<std::size_t>(j) * stride_;
-      for (std::size_t c = 0; c < count; ++c) target[c] -= factor * earlier[c];
-    }
-    const double per_pivot = 1 / bone.mass(i, i);
-    for (std::size_t c = 0; c < count; ++c) target[c] *= per_pivot;
-  }
+  for (TileRows& rows : bone.rows) solveSixRows(rows.jacobian, bone.mass.data(), bone.per_pivot, bone.first_coupled);
   addProducts(bone);
-}
-
-/// Where each of the bone's rows stands in the matrix, and how many in a row stand one behind the other from there.
-void SkeletonCore::listRuns(const BoneSystem& bone) {
-  const std::size_t count = bone.rows.size();
-  for (std::size_t c = count; c-- > 0;) {
-    places_[c] = place(bone.rows[c]);
-    run_lengths_[c] = c + 1 < count && places_[c + 1] == places_[c] + 1 ? run_lengths_[c + 1] + 1 : 1;
-  }
 }
 
 /// D += J M^-1 J^T,  r -= J M^-1 g
 void SkeletonCore::addProducts(const BoneSystem& bone) {
-  listRuns(bone);
-  const double* y[6];
-  for (std::size_t i = 0; i < 6; ++i) y[i] = bone.jacobian.data() + i * stride_;
-  const int count = static_cast<int>(bone.rows.size());
-  for (int c = 0; c < count; ++c) {
-    double f[6], right = 0;
-    for (int i = 0; i < 6; ++i) {
-      f[i] = y[i][c];
-      right += f[i] * bone.reduced[i];
-    }
-    const double* behind[6];
-    for (int i = 0; i < 6; ++i) behind[i] = y[i] + c;
-    combineSixRows(products_.data(), behind, f, count - c);
-    const int row = places_[static_cast<std::size_t>(c)];
-    solution_[static_cast<std::size_t>(row)] -= right;
-    for (int d = c; d < count;) {
-      const auto at = static_cast<std::size_t>(d);
-      matrix_.addRun(row, places_[at], products_.data() + d - c, run_lengths_[at]);
-      d += run_lengths_[at];
-    }
+  for (const TileRows& rows : bone.rows) {
+    subtractCombination(solution_.data() + rows.tile * tile_width, rows.jacobian, bone.reduced.data());
+    for (const TileRows& others : bone.rows)
+      if (others.tile <= rows.tile) matrix_.addProducts(rows.tile, others.tile, rows.jacobian, others.jacobian, others.present);
   }
 }
 
@@ -169,14 +136,11 @@ void SkeletonCore::substitute(BoneSystem& bone) const {
     return;
   }
   Vector6 y = bone.reduced;
-  for (std::size_t c = 0; c < bone.rows.size(); ++c) {
-    const double pull = force(bone.rows[c]);
-    for (std::size_t i = 0; i < 6; ++i) y[static_cast<Eigen::Index>(i)] += bone.jacobian[i * stride_ + c] * pull;
-  }
+  for (const TileRows& rows : bone.rows) addProduct(y.data(), rows.jacobian, solution_.data() + rows.tile * tile_width);
   for (int i = 5; i >= 0; --i) {
     double sum = y[i];
-    for (int j = i + 1; j < 6; ++j) sum -= bone.mass(j, i) * bone.velocity[j];
-    bone.velocity[i] = sum / bone.mass(i, i);
+    for (int j = std::max(i + 1, i < bone.first_coupled ? 6 : 0); j < 6; ++j) sum -= bone.mass(j, i) * bone.velocity[j];
+    bone.velocity[i] = sum * bone.per_pivot[i];
   }
 }
 

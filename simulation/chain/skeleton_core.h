@@ -32,40 +32,43 @@ class SkeletonCore {
   void addMomentum(int bone, const Vector6& momentum) { bones_[static_cast<std::size_t>(bone)].velocity += momentum; }
   void addBlock(int row, int column, double value) { matrix_.add(place(row), place(column), value); }
   void addRight(int row, double value) { solution_[static_cast<std::size_t>(place(row))] += value; }
-  /// Adds to J_row,bone; bone -1 does not move.
-  void couple(int row, int bone, const double jacobian[6]);
+  /// Adds rows of six numbers to J of so many core rows, all of the band or none; bone -1 does not move.
+  void couple(int first_row, int count, int bone, const double* jacobian);
 
   void solve();
   const Vector6& velocity(int bone) const { return bones_[static_cast<std::size_t>(bone)].velocity; }
   double force(int row) const { return solution_[static_cast<std::size_t>(place(row))]; }
 
  private:
-  /// Rows that act on a bone are numbered as they come; component i of row c stands at jacobian[i * stride + c].
+  /// Of the rows that act on a bone, those of one of the matrix's tiles.
+  struct TileRows {
+    int tile = 0;
+    unsigned present = 0;                 ///< bit i: row i of the tile acts on the bone
+    double jacobian[6][tile_width] = {};  ///< J^T, then L^-1 J^T; 0 for others
+  };
   struct BoneSystem {
     int kept_place = -1;  ///< where a kept bone's six unknowns stand
-    Matrix6 mass;         ///< then its Cholesky factor L
-    int first_coupled;    ///< columns before it stand alone in M and L
+    Matrix6 mass;         ///< then, below the diagonal, its Cholesky factor L
+    double per_pivot[6];  ///< 1 / diagonal of L
+    int first_coupled;    ///< 0 or 3: columns before it stand alone in M and L
     Vector6 velocity;     ///< first g, then u
     Vector6 reduced;      ///< L^-1 g
-    std::vector<int> rows;
-    std::vector<double> jacobian;  ///< J^T, then L^-1 J^T
+    std::vector<TileRows> rows;
   };
   int place(int row) const { return row < band_ ? row : row + kept_unknowns_; }
-  void reserve(std::size_t bones, std::size_t rows);
+  void reserve(std::size_t bones, std::size_t unknowns);
+  TileRows& rowsOfTile(BoneSystem& system, int bone, int tile);
   static void factorise(BoneSystem& bone);
   void reduce(BoneSystem& bone);
   void addProducts(const BoneSystem& bone);
-  void listRuns(const BoneSystem& bone);
   void enter(const BoneSystem& bone);
   void substitute(BoneSystem& bone) const;
 
   int band_ = 0, kept_unknowns_ = 0;
   std::vector<BoneSystem> bones_;
   int bone_count_ = 0;
-  std::size_t stride_ = 0;                 ///< of the bones' Jacobians
-  std::vector<int> place_;                 ///< of a row among a bone's rows, bone * stride + row; -1: it does not act there
-  std::vector<double> products_;           ///< of one row with itself and all behind it
-  std::vector<int> places_, run_lengths_;  ///< of one bone's rows
+  std::size_t most_tiles_ = 0;   ///< of a bone's rows
+  std::vector<int> tile_place_;  ///< of a tile among a bone's, bone * most_tiles + tile; -1: no row of it acts there
   TiledMatrix matrix_;
   std::vector<double> solution_;  ///< first (r, -g), then (y, u); filled up to whole tiles
 };

@@ -199,14 +199,14 @@ void StepProblem::addChain(std::size_t number) {
   for (int row = 0; row < 3; ++row) {
     for (int other = 0; other <= row; ++other) core_.addBlock(rows[row], rows[other], state.start_block(row, other));
     core_.addRight(rows[row], start.velocity[row] * per_h - Eigen::Map<const Vector6>(start.jacobian[0][row]).dot(motion));
-    core_.couple(rows[row], chain.start.body[1], start.jacobian[1][row]);
+    core_.couple(rows[row], 1, chain.start.body[1], start.jacobian[1][row]);
   }
   const int end_bone = chain.joints.back().body[1];
   for (int i = 0; i < static_cast<int>(state.border_rows.size()); ++i) {
     const int row = state.border_rows[static_cast<std::size_t>(i)];
     for (int j = 0; j <= i; ++j) core_.addBlock(row, state.border_rows[static_cast<std::size_t>(j)], -bundle.borderBlock(lane, i, j));
     core_.addRight(row, -bundle.borderRight(lane, i));
-    if (end_bone >= 0) core_.couple(row, end_bone, bundle.boneCoupling(lane, i).data());
+    if (end_bone >= 0) core_.couple(row, 1, end_bone, bundle.boneCoupling(lane, i).data());
   }
   if (end_bone >= 0) core_.addBone(end_bone, bundle.boneMass(lane), bundle.boneMomentum(lane));
 }
@@ -220,8 +220,8 @@ void StepProblem::addSkeleton() {
       const int core_row = joint.core_row + row;
       core_.addBlock(core_row, core_row, joint.rows.softness[row] * per_h);
       core_.addRight(core_row, joint.rows.velocity[row] * per_h);
-      for (int side = 0; side < 2; ++side) core_.couple(core_row, model_.skeleton[i].body[side], joint.rows.jacobian[side][row]);
     }
+    for (int side = 0; side < 2; ++side) core_.couple(joint.core_row, count, model_.skeleton[i].body[side], joint.rows.jacobian[side][0]);
   }
 }
 
@@ -248,7 +248,7 @@ void StepProblem::addContact(std::size_t number, int row) {
     const double* jacobian = contact.jacobian[side][row];
     const auto place = model_.placeOf(body);
     if (place.chain < 0) {
-      core_.couple(core_row, body, jacobian);
+      core_.couple(core_row, 1, body, jacobian);
       continue;
     }
     const ChainState& chain = chains_[static_cast<std::size_t>(place.chain)];

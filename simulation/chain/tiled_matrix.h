@@ -32,6 +32,11 @@ class TiledMatrix {
     }
   }
 
+  /// Adds left^T right to a tile, of which `columns` has the bits of those columns of `right` that are not 0.
+  void addProducts(int tile_row, int tile_column, const double left[6][tile_width], const double right[6][tile_width], unsigned columns) {
+    addTileProducts(tile(makeTile(tile_row, tile_column)), left, right, columns);
+  }
+
   void factorise();
   /// x <- A^-1 x, after factorise(). x must have paddedSize() entries; those behind size() are used.
   void solve(double* x) const;

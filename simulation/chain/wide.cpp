@@ -9,15 +9,22 @@ constexpr int width = tile_width;
 /// Eight numbers; loaded from and stored to any address. Inlined into the functions that are compiled for several processors.
 using Wide = double __attribute__((vector_size(width * sizeof(double)), aligned(sizeof(double)), may_alias));
 
-}  // namespace
+[[gnu::always_inline]] inline double sumOf(const Wide& p) {
+  return ((p[0] + p[1]) + (p[2] + p[3])) + ((p[4] + p[5]) + (p[6] + p[7]));
+}
 
-MUSCLESIM_WIDE void combineSixRows(double* result, const double* const rows[6], const double factors[6], int count) {
-  for (int i = 0; i < count; i += width) {
-    Wide products[6];
-    for (int row = 0; row < 6; ++row) products[row] = factors[row] * *reinterpret_cast<const Wide*>(rows[row] + i);
-    *reinterpret_cast<Wide*>(result + i) = (products[0] + products[1]) + (products[2] + products[3]) + (products[4] + products[5]);
+/// Forward substitution with six rows, of which those before `first` stand alone.
+template <int first>
+[[gnu::always_inline]] inline void solveRowsFrom(Wide* rows, const double* l, const double* per_pivot) {
+  for (int i = 0; i < first; ++i) rows[i] *= per_pivot[i];
+  for (int i = first; i < 6; ++i) {
+    Wide row = rows[i];
+    for (int j = first; j < i; ++j) row -= l[6 * j + i] * rows[j];
+    rows[i] = row * per_pivot[i];
   }
 }
+
+}  // namespace
 
 MUSCLESIM_WIDE void factoriseTile(double* a, double* pivots) {
   Wide* const columns = reinterpret_cast<Wide*>(a);
@@ -76,7 +83,39 @@ MUSCLESIM_WIDE void subtractTransposed(double* y, const double* a, const double*
   const Wide factors = *reinterpret_cast<const Wide*>(x);
   for (int k = 0; k < tile_width; ++k) {
     const Wide p = factors * reinterpret_cast<const Wide*>(a)[k];
-    y[k] -= ((p[0] + p[1]) + (p[2] + p[3])) + ((p[4] + p[5]) + (p[6] + p[7]));
+    y[k] -= sumOf(p);
+  }
+}
+
+MUSCLESIM_WIDE void solveSixRows(double y[6][width], const double* l, const double per_pivot[6], int first_coupled) {
+  Wide* const rows = reinterpret_cast<Wide*>(y);
+  if (first_coupled > 0)
+    solveRowsFrom<3>(rows, l, per_pivot);
+  else
+    solveRowsFrom<0>(rows, l, per_pivot);
+}
+
+MUSCLESIM_WIDE void addTileProducts(double* tile, const double left[6][width], const double right[6][width], unsigned columns) {
+  const Wide* const rows = reinterpret_cast<const Wide*>(left);
+  for (; columns; columns &= columns - 1) {
+    const int c = __builtin_ctz(columns);
+    Wide products[6];
+    for (int i = 0; i < 6; ++i) products[i] = right[i][c] * rows[i];
+    reinterpret_cast<Wide*>(tile)[c] += (products[0] + products[1]) + (products[2] + products[3]) + (products[4] + products[5]);
+  }
+}
+
+MUSCLESIM_WIDE void subtractCombination(double* x, const double y[6][width], const double factors[6]) {
+  Wide sum = {};
+  for (int i = 0; i < 6; ++i) sum += factors[i] * reinterpret_cast<const Wide*>(y)[i];
+  *reinterpret_cast<Wide*>(x) -= sum;
+}
+
+MUSCLESIM_WIDE void addProduct(double sums[6], const double y[6][width], const double* x) {
+  const Wide factors = *reinterpret_cast<const Wide*>(x);
+  for (int i = 0; i < 6; ++i) {
+    const Wide p = factors * reinterpret_cast<const Wide*>(y)[i];
+    sums[i] += sumOf(p);
   }
 }
 

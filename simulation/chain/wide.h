@@ -13,9 +13,6 @@
 
 namespace musclesim::chain {
 
-/// result = factor[0] row[0] + ... + factor[5] row[5]; rows and result must have room for a multiple of eight numbers.
-void combineSixRows(double* result, const double* const rows[6], const double factors[6], int count);
-
 /// Tiles: eight by eight numbers, one column after another. l is a unit lower triangle, of which only what is below the diagonal is used.
 inline constexpr int tile_width = 8, tile_size = tile_width * tile_width;
 
@@ -31,5 +28,16 @@ void solveUpper(const double* l, double* x);
 /// y -= a x and y -= a^T x
 void subtractProduct(double* y, const double* a, const double* x);
 void subtractTransposed(double* y, const double* a, const double* x);
+
+/// Six rows of eight numbers, y. l is a lower triangle of six by six numbers by columns, per_pivot its diagonal's reciprocals; the columns
+/// before `first_coupled`, 0 or 3, hold nothing below the diagonal.
+/// y <- l^-1 y
+void solveSixRows(double y[6][tile_width], const double* l, const double per_pivot[6], int first_coupled);
+/// tile += left^T right, for the columns whose bits are set
+void addTileProducts(double* tile, const double left[6][tile_width], const double right[6][tile_width], unsigned columns);
+/// x -= y^T factors
+void subtractCombination(double* x, const double y[6][tile_width], const double factors[6]);
+/// sums += y x
+void addProduct(double sums[6], const double y[6][tile_width], const double* x);
 
 }  // namespace musclesim::chain

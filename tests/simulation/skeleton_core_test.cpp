@@ -99,7 +99,7 @@ void expectSolved(const SkeletonCore::Layout& layout, RandomStream& random) {
       core.addRight(row, right(6 * bones + row));
       for (const int bone : {row % bones, (row + 1) % bones, -1}) {
         const Vector6 j = randomMatrix(random, 6, 1);
-        core.couple(row, bone, j.data());
+        core.couple(row, 1, bone, j.data());
         if (bone < 0) continue;
         whole.block<1, 6>(6 * bones + row, 6 * bone) += j.transpose();
         whole.block<6, 1>(6 * bone, 6 * bones + row) -= j;
