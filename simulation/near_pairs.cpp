@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace musclesim {
 
@@ -22,15 +23,26 @@ void NearPairs::collide(void* data, dNearCallback* near) {
   moveBodies();
   if (!listIsGood()) makeList();
   if (has_subspaces_) return dSpaceCollide(space_, data, near);
-  for (Geom& geom : geoms_) geom.box_is_read = false;
-  for (Pair& pair : pairs_) {
-    const double moved_mm = moved_mm_[static_cast<std::size_t>(pair.body[0])] + moved_mm_[static_cast<std::size_t>(pair.body[1])];
-    if (moved_mm < pair.due_mm) continue;
-    const double distance_mm = distanceMm(boxOf(pair.geom[0]), boxOf(pair.geom[1]));
-    if (distance_mm > 0)
+  ++time_;
+  found_.clear();
+  for (BodyPair& bodies : body_pairs_) {
+    const double moved_mm = moved_mm_[bodies.body[0]] + moved_mm_[bodies.body[1]];
+    if (moved_mm >= bodies.due_mm) look(bodies, moved_mm);
+  }
+  std::ranges::sort(found_);
+  for (const auto& [first, second] : found_) near(data, geoms_[first].id, geoms_[second].id);
+}
+
+void NearPairs::look(BodyPair& bodies, double moved_mm) {
+  bodies.due_mm = std::numeric_limits<double>::infinity();
+  for (std::size_t i = bodies.first_pair; i < bodies.end_pair; ++i) {
+    Pair& pair = pairs_[i];
+    if (moved_mm >= pair.due_mm) {
+      const double distance_mm = distanceMm(boxOf(pair.geom[0]), boxOf(pair.geom[1]));
+      if (distance_mm == 0) found_.push_back(pair.geom);
       pair.due_mm = moved_mm + distance_mm - rounding_mm;
-    else
-      near(data, geoms_[static_cast<std::size_t>(pair.geom[0])].id, geoms_[static_cast<std::size_t>(pair.geom[1])].id);
+    }
+    bodies.due_mm = std::min(bodies.due_mm, pair.due_mm);
   }
 }
 
@@ -63,63 +75,62 @@ void NearPairs::makeList() {
   geoms_.clear();
   bodies_.clear();
   moved_mm_.clear();
-  pairs_.clear();
   const int count = dSpaceGetNumGeoms(space_);
   has_subspaces_ = false;
   for (int i = 0; i < count; ++i) {
     const dGeomID geom = dSpaceGetGeom(space_, i);
     has_subspaces_ = has_subspaces_ || dGeomIsSpace(geom);
-    geoms_.push_back({geom, dGeomIsSpace(geom) ? -1 : placeOf(dGeomGetBody(geom)), false, {}});
+    geoms_.push_back({geom, dGeomIsSpace(geom) ? 0 : placeOf(dGeomGetBody(geom)), 0, {}});
   }
   if (has_subspaces_) return bodies_.clear();
   moved_mm_.resize(bodies_.size());
-  for (int i = 0; i < count; ++i) extend(geoms_[static_cast<std::size_t>(i)].body, boxOf(i));
-  listStrangers();
-  for (int i = 0; i < count; ++i)
-    for (int j = i + 1; j < count; ++j)
-      if (areStrangers(i, j))
-        pairs_.push_back({{i, j}, {geoms_[static_cast<std::size_t>(i)].body, geoms_[static_cast<std::size_t>(j)].body}, 0});
+  time_ = 1;
+  for (std::size_t i = 0; i < geoms_.size(); ++i) extend(bodies_[geoms_[i].body], boxOf(i));
+  listPairs();
 }
 
-/// Which bodies are different and not joined.
-void NearPairs::listStrangers() {
-  strangers_.clear();
-  for (const Body& first : bodies_)
-    for (const Body& second : bodies_)
-      strangers_.push_back(first.id != second.id && !(first.id && second.id && dAreConnected(first.id, second.id)));
-}
-
-bool NearPairs::areStrangers(int first, int second) const {
-  const auto row = static_cast<std::size_t>(geoms_[static_cast<std::size_t>(first)].body),
-             column = static_cast<std::size_t>(geoms_[static_cast<std::size_t>(second)].body);
-  return strangers_[row * bodies_.size() + column] != 0;
+/// All pairs of geoms whose bodies are different and not joined.
+void NearPairs::listPairs() {
+  pairs_.clear();
+  body_pairs_.clear();
+  for (std::size_t first = 0; first < bodies_.size(); ++first)
+    for (std::size_t second = first + 1; second < bodies_.size(); ++second) {
+      const dBodyID a = bodies_[first].id, b = bodies_[second].id;
+      if (a && b && dAreConnected(a, b)) continue;
+      BodyPair bodies = {{first, second}, pairs_.size(), 0, 0};
+      for (std::size_t i = 0; i < geoms_.size(); ++i)
+        for (std::size_t j = i + 1; j < geoms_.size(); ++j)
+          if (std::minmax(geoms_[i].body, geoms_[j].body) == std::minmax(first, second)) pairs_.push_back({{i, j}, 0});
+      bodies.end_pair = pairs_.size();
+      body_pairs_.push_back(bodies);
+    }
+  found_.reserve(pairs_.size());
 }
 
 /// Where a body stands in the list, which notes its pose if it is new.
-int NearPairs::placeOf(dBodyID body) {
+std::size_t NearPairs::placeOf(dBodyID body) {
   const auto found = std::ranges::find(bodies_, body, &Body::id);
-  if (found != bodies_.end()) return static_cast<int>(found - bodies_.begin());
+  if (found != bodies_.end()) return static_cast<std::size_t>(found - bodies_.begin());
   Body& added = bodies_.emplace_back(Body{body, 0, {}, {}});
   if (body) {
     std::copy_n(dBodyGetPosition(body), 3, added.position);
     std::copy_n(dBodyGetQuaternion(body), 4, added.orientation);
   }
-  return static_cast<int>(bodies_.size()) - 1;
+  return bodies_.size() - 1;
 }
 
 /// One of the body's geoms fills this box.
-void NearPairs::extend(int number, const Box& box) {
-  Body& body = bodies_[static_cast<std::size_t>(number)];
+void NearPairs::extend(Body& body, const Box& box) {
   double farthest[3];
   for (std::size_t axis = 0; axis < 3; ++axis)
     farthest[axis] = std::max(std::abs(box[2 * axis] - body.position[axis]), std::abs(box[2 * axis + 1] - body.position[axis]));
   body.reach_mm = std::max(body.reach_mm, std::hypot(farthest[0], farthest[1], farthest[2]));
 }
 
-const NearPairs::Box& NearPairs::boxOf(int number) {
-  Geom& geom = geoms_[static_cast<std::size_t>(number)];
-  if (!geom.box_is_read) dGeomGetAABB(geom.id, geom.box.data());
-  geom.box_is_read = true;
+const NearPairs::Box& NearPairs::boxOf(std::size_t number) {
+  Geom& geom = geoms_[number];
+  if (geom.box_time != time_) dGeomGetAABB(geom.id, geom.box.data());
+  geom.box_time = time_;
   return geom.box;
 }
 

@@ -23,8 +23,8 @@ class NearPairs {
   using Box = std::array<dReal, 6>;  ///< low and high per axis
   struct Geom {
     dGeomID id;
-    int body;  ///< among bodies_
-    bool box_is_read;
+    std::size_t body;  ///< among bodies_
+    long box_time;     ///< when the box was read
     Box box;
   };
   struct Body {
@@ -34,26 +34,33 @@ class NearPairs {
     dQuaternion orientation;
   };
   struct Pair {
-    int geom[2], body[2];  ///< among geoms_ and bodies_
-    double due_mm;         ///< sum of what both bodies have moved when it must be looked at
+    std::array<std::size_t, 2> geom;  ///< among geoms_
+    double due_mm;                    ///< sum of what both bodies have moved when it must be looked at
+  };
+  struct BodyPair {
+    std::size_t body[2];               ///< among bodies_
+    std::size_t first_pair, end_pair;  ///< of its geoms, among pairs_
+    double due_mm;                     ///< of the first of them
   };
   void moveBodies();
   bool listIsGood() const;
   void makeList();
-  void listStrangers();
-  bool areStrangers(int first, int second) const;
-  int placeOf(dBodyID body);
-  void extend(int number, const Box& box);
-  const Box& boxOf(int number);
+  void listPairs();
+  std::size_t placeOf(dBodyID body);
+  static void extend(Body& body, const Box& box);
+  void look(BodyPair& bodies, double moved_mm);
+  const Box& boxOf(std::size_t number);
   static double distanceMm(const Box& a, const Box& b);
 
   dSpaceID space_;
   bool has_subspaces_ = false;  ///< ODE is asked then
+  long time_ = 0;               ///< number of calls
   std::vector<Geom> geoms_;
   std::vector<Body> bodies_;
   std::vector<double> moved_mm_;  ///< of the bodies, at most, since the list was made
-  std::vector<char> strangers_;   ///< of every two bodies
   std::vector<Pair> pairs_;
+  std::vector<BodyPair> body_pairs_;
+  std::vector<std::array<std::size_t, 2>> found_;  ///< pairs of geoms whose boxes touch
 };
 
 }  // namespace musclesim
