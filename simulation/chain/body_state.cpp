@@ -63,14 +63,15 @@ void BodyState::integrate(double h_s, const std::vector<Vector6>& u, const BodyB
   }
 }
 
+/// A body whose pose is still the same, bit by bit, is not placed again: ODE would work out its geoms' places anew.
 void BodyState::scatter() const {
   for (int body = 0; body < count(); ++body) {
     const dBodyID id = ids_[static_cast<std::size_t>(body)];
     const BodyMotion& motion = (*this)[body];
     const Vector &x = motion.position, &v = motion.velocity, &w = motion.spin;
     const dQuaternion q = {motion.quaternion[0], motion.quaternion[1], motion.quaternion[2], motion.quaternion[3]};
-    dBodySetPosition(id, x.x(), x.y(), x.z());
-    dBodySetQuaternion(id, q);
+    if (!std::equal(x.data(), x.data() + 3, dBodyGetPosition(id))) dBodySetPosition(id, x.x(), x.y(), x.z());
+    if (!std::equal(q, q + 4, dBodyGetQuaternion(id))) dBodySetQuaternion(id, q);
     dBodySetLinearVel(id, v.x(), v.y(), v.z());
     dBodySetAngularVel(id, w.x(), w.y(), w.z());
     dBodySetForce(id, 0, 0, 0);
