@@ -34,11 +34,18 @@ void NearPairs::collide(void* data, dNearCallback* near) {
 }
 
 void NearPairs::look(BodyPair& bodies, double moved_mm) {
+  const Body &first = bodies_[bodies.body[0]], &second = bodies_[bodies.body[1]];
+  const double apart_mm = difference(first.position, second.position, 3) - first.reach_mm - second.reach_mm;
+  if (apart_mm > 0) {
+    bodies.due_mm = moved_mm + apart_mm - rounding_mm;
+    return;
+  }
   bodies.due_mm = std::numeric_limits<double>::infinity();
   for (std::size_t i = bodies.first_pair; i < bodies.end_pair; ++i) {
     Pair& pair = pairs_[i];
     if (moved_mm >= pair.due_mm) {
-      const double distance_mm = distanceMm(boxOf(pair.geom[0]), boxOf(pair.geom[1]));
+      double distance_mm = distanceMm(boxOf(pair.geom[0]), boxOf(pair.geom[1]));
+      if (distance_mm == 0) distance_mm = ownDistanceMm(geoms_[pair.geom[0]], geoms_[pair.geom[1]]);
       if (distance_mm == 0) found_.push_back(pair.geom);
       pair.due_mm = moved_mm + distance_mm - rounding_mm;
     }
@@ -61,13 +68,12 @@ void NearPairs::moveBodies() {
   }
 }
 
-/// Whether it holds the space's geoms in their present order: the space puts what has been moved in front.
+/// Whether it holds the space's geoms in their present order: the space puts what is new or has been moved in front.
 bool NearPairs::listIsGood() const {
-  const int count = dSpaceGetNumGeoms(space_);
-  if (count != static_cast<int>(geoms_.size())) return false;
-  if (has_subspaces_) return true;
-  for (int i = 0; i < count; ++i)
-    if (dSpaceGetGeom(space_, i) != geoms_[static_cast<std::size_t>(i)].id) return false;
+  const std::size_t count = geoms_.size();
+  if (count != static_cast<std::size_t>(dSpaceGetNumGeoms(space_))) return false;
+  if (has_subspaces_ || count == 0) return true;
+  if (dSpaceGetGeom(space_, 0) != geoms_.front().id) return false;
   return std::ranges::none_of(moved_mm_, [](double mm) { return mm > most_moved_mm; });
 }
 
@@ -80,7 +86,7 @@ void NearPairs::makeList() {
   for (int i = 0; i < count; ++i) {
     const dGeomID geom = dSpaceGetGeom(space_, i);
     has_subspaces_ = has_subspaces_ || dGeomIsSpace(geom);
-    geoms_.push_back({geom, dGeomIsSpace(geom) ? 0 : placeOf(dGeomGetBody(geom)), 0, {}});
+    geoms_.push_back({geom, dGeomIsSpace(geom) ? 0 : placeOf(dGeomGetBody(geom)), roundedBoxOf(geom), 0, {}});
   }
   if (has_subspaces_) return bodies_.clear();
   moved_mm_.resize(bodies_.size());
@@ -132,6 +138,51 @@ const NearPairs::Box& NearPairs::boxOf(std::size_t number) {
   if (geom.box_time != time_) dGeomGetAABB(geom.id, geom.box.data());
   geom.box_time = time_;
   return geom.box;
+}
+
+/// The geom as a box whose edges are rounded, where it is one.
+NearPairs::RoundedBox NearPairs::roundedBoxOf(dGeomID geom) {
+  RoundedBox box = {true, {}, 0};
+  switch (dGeomGetClass(geom)) {
+    case dBoxClass: {
+      dVector3 sides;
+      dGeomBoxGetLengths(geom, sides);
+      for (int i = 0; i < 3; ++i) box.half_mm[i] = sides[i] / 2;
+      return box;
+    }
+    case dCapsuleClass:
+      dGeomCapsuleGetParams(geom, &box.radius_mm, &box.half_mm[2]);
+      box.half_mm[2] /= 2;
+      return box;
+    case dSphereClass:
+      box.radius_mm = dGeomSphereGetRadius(geom);
+      return box;
+    default:
+      return {};
+  }
+}
+
+/// Along that of their own axes on which they are farthest apart; 0 where they overlap on all axes or their shapes are unknown.
+double NearPairs::ownDistanceMm(const Geom& a, const Geom& b) {
+  if (!a.shape.known || !b.shape.known) return 0;
+  const dReal *ra = dGeomGetRotation(a.id), *rb = dGeomGetRotation(b.id);
+  const dReal *xa = dGeomGetPosition(a.id), *xb = dGeomGetPosition(b.id);
+  const double way[3] = {xb[0] - xa[0], xb[1] - xa[1], xb[2] - xa[2]};
+  const auto along = [](const dReal* r, int axis, const double* v) { return r[axis] * v[0] + r[4 + axis] * v[1] + r[8 + axis] * v[2]; };
+  double reach_of_a[3] = {}, farthest = 0;  // the cores' half widths on the other's axes
+  const double radii = a.shape.radius_mm + b.shape.radius_mm;
+  for (int i = 0; i < 3; ++i) {
+    const double axis[3] = {ra[i], ra[4 + i], ra[8 + i]};
+    double reach_of_b = 0;
+    for (int j = 0; j < 3; ++j) {
+      const double cosine = std::abs(along(rb, j, axis));
+      reach_of_b += b.shape.half_mm[j] * cosine;
+      reach_of_a[j] += a.shape.half_mm[i] * cosine;
+    }
+    farthest = std::max(farthest, std::abs(along(ra, i, way)) - a.shape.half_mm[i] - reach_of_b - radii);
+  }
+  for (int j = 0; j < 3; ++j) farthest = std::max(farthest, std::abs(along(rb, j, way)) - b.shape.half_mm[j] - reach_of_a[j] - radii);
+  return farthest;
 }
 
 /// Along the axis on which they are farthest apart; 0 for boxes that overlap or touch.

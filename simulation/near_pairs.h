@@ -11,20 +11,28 @@ namespace musclesim {
 /// From one call to the next a body moves each of its points by
 ///     |x - x_0| + r angle(q, q_0)
 /// at most; x, q its pose, 0 that of the call before, r the farthest point of its geoms from x. These bounds are summed up over all calls.
-/// A pair whose bounding boxes are apart by d along their farthest axis is looked at again when the sums of its bodies have grown by d.
+/// A pair that is apart by d is looked at again when the sums of its bodies have grown by d. d is the distance of the spheres about all
+/// geoms of either body, or that of the two geoms' bounding boxes along the farthest axis, or that along the farthest of the geoms' own
+/// axes.
 class NearPairs {
  public:
   explicit NearPairs(dSpaceID space) : space_(space) {}
-  /// Calls `near` for the same pairs in the same order as dSpaceCollide, but for pairs of one body and of two that were joined at the first
-  /// call.
+  /// Calls `near` for the pairs that may touch, in the order of dSpaceCollide, but not for pairs of one body and of two that were joined at
+  /// the first call.
   void collide(void* data, dNearCallback* near);
 
  private:
   using Box = std::array<dReal, 6>;  ///< low and high per axis
+  /// A box with half sides of this length in the geom's own axes, and all that is no farther from it than the radius.
+  struct RoundedBox {
+    bool known = false;
+    double half_mm[3] = {}, radius_mm = 0;
+  };
   struct Geom {
     dGeomID id;
     std::size_t body;  ///< among bodies_
-    long box_time;     ///< when the box was read
+    RoundedBox shape;
+    long box_time;  ///< when the box was read
     Box box;
   };
   struct Body {
@@ -50,6 +58,8 @@ class NearPairs {
   static void extend(Body& body, const Box& box);
   void look(BodyPair& bodies, double moved_mm);
   const Box& boxOf(std::size_t number);
+  static RoundedBox roundedBoxOf(dGeomID geom);
+  static double ownDistanceMm(const Geom& a, const Geom& b);
   static double distanceMm(const Box& a, const Box& b);
 
   dSpaceID space_;

@@ -1,4 +1,4 @@
-/// It finds what dSpaceCollide finds, in its order.
+/// It finds what dSpaceCollide finds of what touches, in its order.
 #include "../../simulation/near_pairs.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,9 @@ using Pairs = std::vector<std::pair<dGeomID, dGeomID>>;
 
 void collect(void* pairs, dGeomID first, dGeomID second) {
   const dBodyID a = dGeomGetBody(first), b = dGeomGetBody(second);
-  if (a != b && !(a && b && dAreConnected(a, b))) static_cast<Pairs*>(pairs)->emplace_back(first, second);
+  if (a == b || (a && b && dAreConnected(a, b))) return;
+  dContactGeom contact;
+  if (dCollide(first, second, 1, &contact, sizeof contact) > 0) static_cast<Pairs*>(pairs)->emplace_back(first, second);
 }
 
 class NearPairsTest : public testing::Test {
@@ -24,7 +26,10 @@ class NearPairsTest : public testing::Test {
   NearPairsTest() {
     for (int i = 0; i < 12; ++i) {
       const dBodyID body = bodies.emplace_back(dBodyCreate(world));
-      dGeomSetBody(i % 2 ? dCreateBox(space, 30, 200, 50) : dCreateCapsule(space, 20, 150), body);
+      dGeomSetBody(i % 3 == 0   ? dCreateBox(space, 30, 200, 50)
+                   : i % 3 == 1 ? dCreateCapsule(space, 20, 150)
+                                : dCreateSphere(space, 50),
+                   body);
       dBodySetPosition(body, random.uniform(-300, 300), random.uniform(-300, 300), random.uniform(-300, 300));
     }
     dGeomSetPosition(dCreateBox(space, 100, 100, 100), 50, 0, 0);
