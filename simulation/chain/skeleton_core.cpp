@@ -33,8 +33,6 @@ void SkeletonCore::reset(const Layout& layout) {
   int next_kept = band_;
   for (std::size_t b = 0; b < bones; ++b) {
     BoneSystem& bone = bones_[b];
-    bone.mass.setZero();
-    bone.velocity.setZero();
     bone.rows.clear();
     bone.kept_place = layout.kept[b] ? next_kept : -1;
     if (layout.kept[b]) next_kept += 6;
@@ -42,6 +40,11 @@ void SkeletonCore::reset(const Layout& layout) {
   matrix_.reset(layout.row_count + kept_unknowns_);
   std::fill_n(tile_place_.begin(), bones * most_tiles_, -1);
   std::fill_n(solution_.begin(), matrix_.paddedSize(), 0.0);
+}
+
+void SkeletonCore::setBone(int bone, const Matrix6& mass, const Vector6& momentum) {
+  bones_[static_cast<std::size_t>(bone)].mass = mass;
+  bones_[static_cast<std::size_t>(bone)].velocity = momentum;
 }
 
 void SkeletonCore::addBone(int bone, const Matrix6& mass, const Vector6& momentum) {
@@ -88,6 +91,24 @@ void factoriseFrom(Matrix6& m, double per_pivot[6]) {
   }
 }
 
+/// x <- L^-1 x
+template <int first>
+void solveLowerFrom(const Matrix6& l, const double per_pivot[6], Vector6& x) {
+  for (int i = 0; i < 6; ++i) {
+    for (int j = first; j < i; ++j) x[i] -= l(i, j) * x[j];
+    x[i] *= per_pivot[i];
+  }
+}
+
+/// x <- L^-T x
+template <int first>
+void solveUpperFrom(const Matrix6& l, const double per_pivot[6], Vector6& x) {
+  for (int i = 5; i >= 0; --i) {
+    for (int j = i + 1; j < 6 && i >= first; ++j) x[i] -= l(j, i) * x[j];
+    x[i] *= per_pivot[i];
+  }
+}
+
 }  // namespace
 
 /// Where no chain ends on the bone, nothing couples its first three unknowns, and what is 0 is left out.
@@ -103,11 +124,8 @@ void SkeletonCore::factorise(BoneSystem& bone) {
 /// Factors M and replaces J^T by L^-1 J^T, g by L^-1 g.
 void SkeletonCore::reduce(BoneSystem& bone) {
   factorise(bone);
-  for (int i = 0; i < 6; ++i) {
-    double sum = bone.velocity[i];
-    for (int j = bone.first_coupled; j < i; ++j) sum -= bone.mass(i, j) * bone.reduced[j];
-    bone.reduced[i] = sum * bone.per_pivot[i];
-  }
+  bone.reduced = bone.velocity;
+  (bone.first_coupled > 0 ? solveLowerFrom<3> : solveLowerFrom<0>)(bone.mass, bone.per_pivot, bone.reduced);
   for (TileRows& rows : bone.rows) solveSixRows(rows.jacobian, bone.mass.data(), bone.per_pivot, bone.first_coupled);
   addProducts(bone);
 }
@@ -135,13 +153,9 @@ void SkeletonCore::substitute(BoneSystem& bone) const {
     bone.velocity = Eigen::Map<const Vector6>(solution_.data() + bone.kept_place);
     return;
   }
-  Vector6 y = bone.reduced;
-  for (const TileRows& rows : bone.rows) addProduct(y.data(), rows.jacobian, solution_.data() + rows.tile * tile_width);
-  for (int i = 5; i >= 0; --i) {
-    double sum = y[i];
-    for (int j = std::max(i + 1, i < bone.first_coupled ? 6 : 0); j < 6; ++j) sum -= bone.mass(j, i) * bone.velocity[j];
-    bone.velocity[i] = sum * bone.per_pivot[i];
-  }
+  bone.velocity = bone.reduced;
+  for (const TileRows& rows : bone.rows) addProduct(bone.velocity.data(), rows.jacobian, solution_.data() + rows.tile * tile_width);
+  (bone.first_coupled > 0 ? solveUpperFrom<3> : solveUpperFrom<0>)(bone.mass, bone.per_pivot, bone.velocity);
 }
 
 void SkeletonCore::solve() {

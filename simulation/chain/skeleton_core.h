@@ -23,11 +23,12 @@ class SkeletonCore {
     int row_count = 0, band = 0;
     std::vector<char> kept;  ///< of every bone: it is not eliminated first
   };
-  /// Starts a new system; everything is 0.
+  /// Starts a new system; everything is 0 but the bones, which must be set.
   void reset(const Layout& layout);
   /// The same without a band and kept bones.
   void reset(int bone_count, int row_count);
 
+  void setBone(int bone, const Matrix6& mass, const Vector6& momentum);
   void addBone(int bone, const Matrix6& mass, const Vector6& momentum);
   void addMomentum(int bone, const Vector6& momentum) { bones_[static_cast<std::size_t>(bone)].velocity += momentum; }
   void addBlock(int row, int column, double value) { matrix_.add(place(row), place(column), value); }

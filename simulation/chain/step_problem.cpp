@@ -1,5 +1,6 @@
 #include "step_problem.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -12,14 +13,12 @@ namespace {
 /// Least share of a contact's softness in its diagonal of A that makes it a soft one.
 constexpr double least_softness_ratio = 1e-3;
 
-/// Torque of Lacoursiere's implicit gyroscopic term as ODE adds it: I (I - h [L]x)^-1 L / h - L / h, L = I w.
-Vector gyroscopicTorque(const Eigen::Matrix3d& inertia, const Vector& spin, double h_s) {
-  const Vector l = inertia * spin;
+/// Torque of Lacoursiere's implicit gyroscopic term as ODE adds it: I (I - h [L]x)^-1 L / h - L / h = L x (I - h [L]x)^-1 L, L = I w.
+Vector gyroscopicTorque(const Eigen::Matrix3d& inertia, const Vector& l, double h_s) {
   Eigen::Matrix3d cross;
   cross << 0, -l.z(), l.y(), l.z(), 0, -l.x(), -l.y(), l.x(), 0;
   const Eigen::Matrix3d effective = inertia - h_s * cross;
-  const Vector rate = l / h_s;
-  return inertia * (effective.inverse() * rate) - rate;
+  return l.cross(effective.inverse() * l);
 }
 
 /// ODE's motors may rest at stops from a step that dWorldStep did.
@@ -99,10 +98,11 @@ void StepProblem::addLoads() {
   for (int i = 0; i < model_.boneCount(); ++i) {
     const Bone& bone = model_.bones[static_cast<std::size_t>(i)];
     BodyMotion& motion = model_.bodies[i];
-    Eigen::Matrix3d& inertia = bones_[static_cast<std::size_t>(i)].inertia;
-    inertia = motion.rotation * bone.inertia * motion.rotation.transpose();
+    BoneState& state = bones_[static_cast<std::size_t>(i)];
+    state.inertia = motion.rotation * bone.inertia * motion.rotation.transpose();
+    state.spin_momentum = state.inertia * motion.spin;
     if (bone.gravity) motion.force += bone.mass_g * conditions_.gravity;
-    if (bone.gyroscopic) motion.torque += gyroscopicTorque(inertia, motion.spin, conditions_.h_s);
+    if (bone.gyroscopic) motion.torque += gyroscopicTorque(state.inertia, state.spin_momentum, conditions_.h_s);
   }
   for (const Chain& chain : model_.chains)
     for (int bead = 0; bead < chain.beadCount(); ++bead)
@@ -195,7 +195,7 @@ void StepProblem::setUpBones() {
     state.mass.setZero();
     state.mass.topLeftCorner<3, 3>().diagonal().setConstant(bone.mass_g);
     state.mass.bottomRightCorner<3, 3>() = inertia;
-    state.momentum << per_h * bone.mass_g * motion.velocity + motion.force, per_h * (inertia * motion.spin) + motion.torque;
+    state.momentum << per_h * bone.mass_g * motion.velocity + motion.force, per_h * state.spin_momentum + motion.torque;
     state.per_mass = 1 / bone.mass_g;
     state.per_inertia = 3 / inertia.trace();
   }

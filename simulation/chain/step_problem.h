@@ -71,6 +71,7 @@ class StepProblem final : public BoxProblem {
   };
   struct BoneState {
     Eigen::Matrix3d inertia;  ///< in the frame of the world
+    Vector spin_momentum;     ///< I w
     Matrix6 mass;             ///< with what a fixation adds
     Vector6 momentum;         ///< M v/h + f
     double per_mass, per_inertia;

@@ -91,7 +91,7 @@ void expectSolved(const SkeletonCore::Layout& layout, RandomStream& random) {
       const Eigen::MatrixXd root = randomMatrix(random, 6, 6);
       const Matrix6 mass = root * root.transpose() + Matrix6::Identity();
       whole.block(6 * b, 6 * b, 6, 6) = mass;
-      core.addBone(b, mass, right.segment<6>(6 * b));
+      core.setBone(b, mass, right.segment<6>(6 * b));
     }
     for (int row = 0; row < rows; ++row) {
       whole(6 * bones + row, 6 * bones + row) = 0.5;
