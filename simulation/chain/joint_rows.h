@@ -53,6 +53,7 @@ struct ErrorReduction {
   double per_step;    ///< what takes its place in this step
   /// A joint that was given an ERP of its own keeps it.
   double of(double own) const { return own == registered ? per_step : own; }
+  bool operator==(const ErrorReduction&) const = default;
 };
 
 struct JointRows {

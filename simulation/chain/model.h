@@ -20,6 +20,7 @@ struct Bone {
   double mass_g = 0;
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();
   bool gravity = true, gyroscopic = true;
+  bool operator==(const Bone&) const = default;
 };
 
 /// One actuator: L links, 2L beads, joints slider, hinge, slider, ..., slider, ball at the end.

@@ -33,6 +33,7 @@ void SkeletonCore::reset(const Layout& layout) {
   int next_kept = band_;
   for (std::size_t b = 0; b < bones; ++b) {
     BoneSystem& bone = bones_[b];
+    bone.known = false;
     bone.rows.clear();
     bone.kept_place = layout.kept[b] ? next_kept : -1;
     if (layout.kept[b]) next_kept += 6;
@@ -161,11 +162,12 @@ void SkeletonCore::substitute(BoneSystem& bone) const {
 void SkeletonCore::solve() {
   for (int b = 0; b < bone_count_; ++b) {
     BoneSystem& bone = bones_[static_cast<std::size_t>(b)];
-    bone.kept_place >= 0 ? enter(bone) : reduce(bone);
+    if (!bone.known) bone.kept_place >= 0 ? enter(bone) : reduce(bone);
   }
   matrix_.factorise();
   matrix_.solve(solution_.data());
-  for (int b = 0; b < bone_count_; ++b) substitute(bones_[static_cast<std::size_t>(b)]);
+  for (int b = 0; b < bone_count_; ++b)
+    if (!bones_[static_cast<std::size_t>(b)].known) substitute(bones_[static_cast<std::size_t>(b)]);
 }
 
 }  // namespace musclesim::chain

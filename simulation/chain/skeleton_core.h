@@ -23,11 +23,13 @@ class SkeletonCore {
     int row_count = 0, band = 0;
     std::vector<char> kept;  ///< of every bone: it is not eliminated first
   };
-  /// Starts a new system; everything is 0 but the bones, which must be set.
+  /// Starts a new system; everything is 0 but the bones, each of which must be set or keep its velocity.
   void reset(const Layout& layout);
   /// The same without a band and kept bones.
   void reset(int bone_count, int row_count);
 
+  /// No row acts on the bone, and it moves as it did in the system before.
+  void keepVelocity(int bone) { bones_[static_cast<std::size_t>(bone)].known = true; }
   void setBone(int bone, const Matrix6& mass, const Vector6& momentum);
   void addBone(int bone, const Matrix6& mass, const Vector6& momentum);
   void addMomentum(int bone, const Vector6& momentum) { bones_[static_cast<std::size_t>(bone)].velocity += momentum; }
@@ -48,6 +50,7 @@ class SkeletonCore {
     double jacobian[6][tile_width] = {};  ///< J^T, then L^-1 J^T; 0 for others
   };
   struct BoneSystem {
+    bool known = false;   ///< u is known
     int kept_place = -1;  ///< where a kept bone's six unknowns stand
     Matrix6 mass;         ///< then, below the diagonal, its Cholesky factor L
     double per_pivot[6];  ///< 1 / diagonal of L

@@ -58,7 +58,22 @@ StepProblem::StepProblem(Model& model) : model_(model) {
   keeps_bones_ = chains_.size() > chains_per_bone * (bones_.size() - fixed_.size());
   layout_.kept.assign(bones_.size(), keeps_bones_ ? 1 : 0);
   for (const JointModel& joint : model.fixed) layout_.kept[static_cast<std::size_t>(joint.body[0])] = 0;
+  findLoneBones();
   reserve();
+}
+
+/// Fixed bones to which nothing else is joined.
+void StepProblem::findLoneBones() {
+  const auto join = [&](const JointModel& joint) {
+    for (const int body : joint.body)
+      if (body >= 0 && body < model_.boneCount()) bones_[static_cast<std::size_t>(body)].lone = false;
+  };
+  for (const JointModel& joint : model_.fixed) bones_[static_cast<std::size_t>(joint.body[0])].lone = true;
+  for (const JointModel& joint : model_.skeleton) join(joint);
+  for (const Chain& chain : model_.chains) {
+    join(chain.start);
+    join(chain.joints.back());
+  }
 }
 
 /// Memory for as many contacts as a robot can be expected to have, so that steps need not ask for it.
@@ -80,11 +95,13 @@ void StepProblem::reserve() {
 }
 
 bool StepProblem::begin(const Conditions& conditions, const std::vector<ContactPoint>& contacts) {
+  const bool same_conditions = conditions == conditions_;
   conditions_ = conditions;
+  if (!contacts_.make(contacts, model_.bodies, conditions.friction_force, conditions.contact_reduction / conditions.h_s)) return false;
   model_.readBones();
+  findRestingBones(same_conditions);
   addLoads();
   makeJointRows();
-  if (!contacts_.make(contacts, model_.bodies, conditions.friction_force, conditions.contact_reduction / conditions.h_s)) return false;
   setUpBundles();
   setUpBones();
   collectRows();
@@ -93,12 +110,41 @@ bool StepProblem::begin(const Conditions& conditions, const std::vector<ContactP
   return true;
 }
 
+namespace {
+
+bool isSame(const BodyMotion& a, const BodyMotion& b) {
+  return a.velocity == b.velocity && a.spin == b.spin && a.force == b.force && a.torque == b.torque && a.position == b.position &&
+         a.quaternion == b.quaternion;
+}
+
+}  // namespace
+
+/// A lone bone that nothing touches and that begins this step as it began the last one ends it in the same way.
+void StepProblem::findRestingBones(bool same_conditions) {
+  for (BoneState& state : bones_) state.touched = false;
+  for (const ContactRows& contact : contacts_.all())
+    for (const int body : contact.body)
+      if (body >= 0 && body < model_.boneCount()) bones_[static_cast<std::size_t>(body)].touched = true;
+  for (const JointModel& joint : model_.fixed) {
+    BoneState& state = bones_[static_cast<std::size_t>(joint.body[0])];
+    const Bone& bone = model_.bones[static_cast<std::size_t>(joint.body[0])];
+    const BodyMotion& motion = model_.bodies[joint.body[0]];
+    const bool alone = state.lone && !state.touched;
+    state.rests = alone && state.was_alone && same_conditions && isSame(motion, state.motion_before) && bone == state.bone_before;
+    state.was_alone = alone;
+    if (state.rests || !alone) continue;
+    state.motion_before = motion;
+    state.bone_before = bone;
+  }
+}
+
 /// Gravity, and for bones inertia in the frame of the world and the gyroscopic torque.
 void StepProblem::addLoads() {
   for (int i = 0; i < model_.boneCount(); ++i) {
+    BoneState& state = bones_[static_cast<std::size_t>(i)];
+    if (state.rests) continue;
     const Bone& bone = model_.bones[static_cast<std::size_t>(i)];
     BodyMotion& motion = model_.bodies[i];
-    BoneState& state = bones_[static_cast<std::size_t>(i)];
     state.inertia = motion.rotation * bone.inertia * motion.rotation.transpose();
     state.spin_momentum = state.inertia * motion.spin;
     if (bone.gravity) motion.force += bone.mass_g * conditions_.gravity;
@@ -138,7 +184,8 @@ void StepProblem::makeJointRows() {
     model_.skeleton[i].readLimits();
     make(model_.skeleton[i], skeleton_[i]);
   }
-  for (std::size_t i = 0; i < fixed_.size(); ++i) make(model_.fixed[i], fixed_[i]);
+  for (std::size_t i = 0; i < fixed_.size(); ++i)
+    if (!bones_[static_cast<std::size_t>(model_.fixed[i].body[0])].rests) make(model_.fixed[i], fixed_[i]);
 }
 
 /// Adds J5^T force to the loads of the joint's bodies.
@@ -188,9 +235,10 @@ void StepProblem::setUpStart(std::size_t number) {
 void StepProblem::setUpBones() {
   const double per_h = 1 / conditions_.h_s;
   for (int i = 0; i < model_.boneCount(); ++i) {
+    BoneState& state = bones_[static_cast<std::size_t>(i)];
+    if (state.rests) continue;
     const Bone& bone = model_.bones[static_cast<std::size_t>(i)];
     const BodyMotion& motion = model_.bodies[i];
-    BoneState& state = bones_[static_cast<std::size_t>(i)];
     const Eigen::Matrix3d& inertia = state.inertia;
     state.mass.setZero();
     state.mass.topLeftCorner<3, 3>().diagonal().setConstant(bone.mass_g);
@@ -201,6 +249,7 @@ void StepProblem::setUpBones() {
   }
   for (std::size_t f = 0; f < fixed_.size(); ++f) {
     BoneState& state = bones_[static_cast<std::size_t>(model_.fixed[f].body[0])];
+    if (state.rests) continue;
     const JointRows& rows = fixed_[f].rows;
     for (int row = 0; row < 6; ++row) {
       const double stiffness = conditions_.h_s / rows.softness[row];
@@ -308,6 +357,7 @@ void StepProblem::forget() {
   for (ChainState& chain : chains_)
     for (JointState& joint : chain.joints) joint.contact_before = AxisContact::none;
   for (JointState& joint : skeleton_) joint.contact_before = AxisContact::none;
+  for (BoneState& bone : bones_) bone.was_alone = false;
   contacts_.clear();
 }
 

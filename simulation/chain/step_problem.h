@@ -29,6 +29,7 @@ class StepProblem final : public BoxProblem {
     double contact_softness;   ///< ODE's CFM of a contact's normal
     double world_softness;     ///< ODE's CFM of the world, for a contact's friction
     double friction_force;     ///< bound of a contact's friction
+    bool operator==(const Conditions&) const = default;
   };
   /// Sets up the step for the bodies' present state and the actuators' tensions. Returns false if a contact touches an unknown body.
   bool begin(const Conditions& conditions, const std::vector<ContactPoint>& contacts);
@@ -75,9 +76,17 @@ class StepProblem final : public BoxProblem {
     Matrix6 mass;             ///< with what a fixation adds
     Vector6 momentum;         ///< M v/h + f
     double per_mass, per_inertia;
+    bool lone = false;       ///< fixed, and nothing else is joined to it
+    bool touched = false;    ///< by a contact
+    bool rests = false;      ///< its u is that of the last step
+    bool was_alone = false;  ///< lone and not touched in the last step, which began with
+    BodyMotion motion_before;
+    Bone bone_before;
   };
 
+  void findLoneBones();
   void reserve();
+  void findRestingBones(bool same_conditions);
   void addLoads();
   void makeJointRows();
   void addAxisForce(const JointModel& joint, const JointRows& rows, double force);

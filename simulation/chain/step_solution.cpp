@@ -173,7 +173,7 @@ void StepProblem::assembleCore() {
 void StepProblem::addBones() {
   for (int i = 0; i < model_.boneCount(); ++i) {
     const BoneState& bone = bones_[static_cast<std::size_t>(i)];
-    core_.setBone(i, bone.mass, bone.momentum);
+    bone.rests ? core_.keepVelocity(i) : core_.setBone(i, bone.mass, bone.momentum);
   }
   auto push = [&](int body, const double jacobian[6], double force) {
     if (body >= 0 && model_.placeOf(body).chain < 0) core_.addMomentum(body, force * Eigen::Map<const Vector6>(jacobian));
