@@ -14,7 +14,7 @@ void SkeletonCore::reserve(std::size_t bones, std::size_t unknowns) {
   tile_place_.resize(bones_.size() * most_tiles_);
   solution_.resize(most_tiles_ * tile_width);
   matrix_.reserve(static_cast<int>(solution_.size()));
-  for (BoneSystem& bone : bones_) bone.rows.reserve(most_tiles_);
+  for (BoneSystem& bone : bones_) bone.tiles.resize(most_tiles_);
 }
 
 void SkeletonCore::reset(int bone_count, int row_count) {
@@ -34,7 +34,7 @@ void SkeletonCore::reset(const Layout& layout) {
   for (std::size_t b = 0; b < bones; ++b) {
     BoneSystem& bone = bones_[b];
     bone.known = false;
-    bone.rows.clear();
+    bone.tile_count = 0;
     bone.kept_place = layout.kept[b] ? next_kept : -1;
     if (layout.kept[b]) next_kept += 6;
   }
@@ -73,10 +73,13 @@ void SkeletonCore::couple(int first_row, int count, int bone, const double* jaco
 SkeletonCore::TileRows& SkeletonCore::rowsOfTile(BoneSystem& system, int bone, int tile) {
   int& known = tile_place_[static_cast<std::size_t>(bone) * most_tiles_ + static_cast<std::size_t>(tile)];
   if (known < 0) {
-    known = static_cast<int>(system.rows.size());
-    system.rows.emplace_back().tile = tile;
+    known = static_cast<int>(system.tile_count++);
+    TileRows& added = system.tiles[static_cast<std::size_t>(known)];
+    added.tile = tile;
+    added.present = 0;
+    clear(added.jacobian[0], 6 * tile_width);
   }
-  return system.rows[static_cast<std::size_t>(known)];
+  return system.tiles[static_cast<std::size_t>(known)];
 }
 
 namespace {
@@ -127,15 +130,15 @@ void SkeletonCore::reduce(BoneSystem& bone) {
   factorise(bone);
   bone.reduced = bone.velocity;
   (bone.first_coupled > 0 ? solveLowerFrom<3> : solveLowerFrom<0>)(bone.mass, bone.per_pivot, bone.reduced);
-  for (TileRows& rows : bone.rows) solveSixRows(rows.jacobian, bone.mass.data(), bone.per_pivot, bone.first_coupled);
+  for (TileRows& rows : bone.rows()) solveSixRows(rows.jacobian, bone.mass.data(), bone.per_pivot, bone.first_coupled);
   addProducts(bone);
 }
 
 /// D += J M^-1 J^T,  r -= J M^-1 g
 void SkeletonCore::addProducts(const BoneSystem& bone) {
-  for (const TileRows& rows : bone.rows) {
+  for (const TileRows& rows : bone.rows()) {
     subtractCombination(solution_.data() + rows.tile * tile_width, rows.jacobian, bone.reduced.data());
-    for (const TileRows& others : bone.rows)
+    for (const TileRows& others : bone.rows())
       if (others.tile <= rows.tile) matrix_.addProducts(rows.tile, others.tile, rows.jacobian, others.jacobian, others.present);
   }
 }
@@ -155,7 +158,7 @@ void SkeletonCore::substitute(BoneSystem& bone) const {
     return;
   }
   bone.velocity = bone.reduced;
-  for (const TileRows& rows : bone.rows) addProduct(bone.velocity.data(), rows.jacobian, solution_.data() + rows.tile * tile_width);
+  for (const TileRows& rows : bone.rows()) addProduct(bone.velocity.data(), rows.jacobian, solution_.data() + rows.tile * tile_width);
   (bone.first_coupled > 0 ? solveUpperFrom<3> : solveUpperFrom<0>)(bone.mass, bone.per_pivot, bone.velocity);
 }
 

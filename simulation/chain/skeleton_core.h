@@ -9,6 +9,7 @@
 /// and is factored in the order: rows of the band, kept bones, further rows.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "body_state.h"
@@ -45,9 +46,9 @@ class SkeletonCore {
  private:
   /// Of the rows that act on a bone, those of one of the matrix's tiles.
   struct TileRows {
-    int tile = 0;
-    unsigned present = 0;                 ///< bit i: row i of the tile acts on the bone
-    double jacobian[6][tile_width] = {};  ///< J^T, then L^-1 J^T; 0 for others
+    int tile;
+    unsigned present;                ///< bit i: row i of the tile acts on the bone
+    double jacobian[6][tile_width];  ///< J^T, then L^-1 J^T; 0 for others
   };
   struct BoneSystem {
     bool known = false;   ///< u is known
@@ -57,7 +58,10 @@ class SkeletonCore {
     int first_coupled;    ///< 0 or 3: columns before it stand alone in M and L
     Vector6 velocity;     ///< first g, then u
     Vector6 reduced;      ///< L^-1 g
-    std::vector<TileRows> rows;
+    std::size_t tile_count = 0;
+    std::vector<TileRows> tiles;  ///< of them as many as there are tiles with rows that act on the bone
+    std::span<TileRows> rows() { return {tiles.data(), tile_count}; }
+    std::span<const TileRows> rows() const { return {tiles.data(), tile_count}; }
   };
   int place(int row) const { return row < band_ ? row : row + kept_unknowns_; }
   void reserve(std::size_t bones, std::size_t unknowns);

@@ -240,7 +240,6 @@ void StepProblem::setUpBones() {
     const Bone& bone = model_.bones[static_cast<std::size_t>(i)];
     const BodyMotion& motion = model_.bodies[i];
     const Eigen::Matrix3d& inertia = state.inertia;
-    state.mass.setZero();
     state.mass.topLeftCorner<3, 3>().diagonal().setConstant(bone.mass_g);
     state.mass.bottomRightCorner<3, 3>() = inertia;
     state.momentum << per_h * bone.mass_g * motion.velocity + motion.force, per_h * state.spin_momentum + motion.torque;

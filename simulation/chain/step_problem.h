@@ -71,10 +71,10 @@ class StepProblem final : public BoxProblem {
     Eigen::Matrix3d start_block;  ///< J S J^T + cfm/h of the ball at the start
   };
   struct BoneState {
-    Eigen::Matrix3d inertia;  ///< in the frame of the world
-    Vector spin_momentum;     ///< I w
-    Matrix6 mass;             ///< with what a fixation adds
-    Vector6 momentum;         ///< M v/h + f
+    Eigen::Matrix3d inertia;         ///< in the frame of the world
+    Vector spin_momentum;            ///< I w
+    Matrix6 mass = Matrix6::Zero();  ///< with what a fixation adds
+    Vector6 momentum;                ///< M v/h + f
     double per_mass, per_inertia;
     bool lone = false;       ///< fixed, and nothing else is joined to it
     bool touched = false;    ///< by a contact

@@ -8,7 +8,7 @@ void TiledMatrix::reserve(int size) {
   const auto count = static_cast<std::size_t>((size + tile_width - 1) / tile_width);
   numbers_.reserve(count * count);
   entries_.reserve(tile_size * count * (count + 1) / 2);
-  pivots_.reserve(tile_width * count);
+  per_pivots_.reserve(tile_width * count);
   scaled_.reserve(tile_size * count);
   for (std::vector<int>* list : {&rows_, &column_tiles_}) list->reserve(count);
   targets_.reserve(count);
@@ -21,7 +21,7 @@ void TiledMatrix::reset(int size) {
   used_ = 0;
   const auto count = static_cast<std::size_t>(tile_count_);
   numbers_.assign(count * count, -1);
-  pivots_.resize(tile_width * count);
+  per_pivots_.resize(tile_width * count);
   scaled_.resize(tile_size * count);
   for (int i = 0; i < tile_count_; ++i) makeTile(i, i);
   for (int i = size; i < paddedSize(); ++i) at(i, i) = 1;
@@ -30,7 +30,7 @@ void TiledMatrix::reset(int size) {
 int TiledMatrix::addTile(int tile_row, int tile_column) {
   const auto end = static_cast<std::size_t>(used_ + 1) * tile_size;
   if (entries_.size() < end) entries_.resize(std::max(end, entries_.capacity()));
-  std::fill_n(tile(used_), tile_size, 0.0);
+  clear(tile(used_), tile_size);
   return number(tile_row, tile_column) = used_++;
 }
 
@@ -46,12 +46,12 @@ void TiledMatrix::listColumn(int tile_column) const {
 
 /// L and D of a tile column, and what it subtracts from the columns behind: L D L^T.
 void TiledMatrix::eliminate(int tile_column) {
-  double* pivots = pivots_.data() + tile_column * tile_width;
+  double* per_pivots = per_pivots_.data() + tile_column * tile_width;
   double* diagonal = tile(number(tile_column, tile_column));
-  factoriseTile(diagonal, pivots);
+  factoriseTile(diagonal, per_pivots);
   listColumn(tile_column);
   const std::size_t count = rows_.size();
-  for (std::size_t i = 0; i < count; ++i) solveTile(tile(column_tiles_[i]), scaled_.data() + i * tile_size, diagonal, pivots);
+  for (std::size_t i = 0; i < count; ++i) solveTile(tile(column_tiles_[i]), scaled_.data() + i * tile_size, diagonal, per_pivots);
   for (std::size_t k = 0; k < count; ++k) {
     // Tiles may move in memory while new ones are made.
     for (std::size_t i = k; i < count; ++i) makeTile(rows_[i], rows_[k]);
@@ -73,7 +73,7 @@ void TiledMatrix::solve(double* x) const {
     listColumn(column);
     for (std::size_t i = 0; i < rows_.size(); ++i) subtractProduct(x + rows_[i] * tile_width, tile(column_tiles_[i]), part);
   }
-  for (int i = 0; i < paddedSize(); ++i) x[i] /= pivots_[static_cast<std::size_t>(i)];
+  for (int i = 0; i < paddedSize(); ++i) x[i] *= per_pivots_[static_cast<std::size_t>(i)];
   for (int column = tile_count_ - 1; column >= 0; --column) {
     double* part = x + column * tile_width;
     listColumn(column);

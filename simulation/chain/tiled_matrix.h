@@ -65,7 +65,7 @@ class TiledMatrix {
   int size_ = 0, tile_count_ = 0, used_ = 0;
   std::vector<int> numbers_;               ///< of the tiles, by tile column, then tile row; -1: there is none
   std::vector<double> entries_;            ///< tile after tile, each by columns
-  std::vector<double> pivots_;             ///< D
+  std::vector<double> per_pivots_;         ///< reciprocals of D
   std::vector<double> scaled_;             ///< L D of one tile column
   mutable std::vector<int> rows_;          ///< tile rows below the diagonal of one tile column
   mutable std::vector<int> column_tiles_;  ///< their tiles

@@ -1,5 +1,7 @@
 #include "wide.h"
 
+#include <algorithm>
+
 namespace musclesim::chain {
 
 namespace {
@@ -26,17 +28,21 @@ template <int first>
 
 }  // namespace
 
-MUSCLESIM_WIDE void factoriseTile(double* a, double* pivots) {
+void clear(double* numbers, int count) {
+  std::fill_n(numbers, count, 0.0);
+}
+
+MUSCLESIM_WIDE void factoriseTile(double* a, double* per_pivots) {
   Wide* const columns = reinterpret_cast<Wide*>(a);
   for (int k = 0; k < tile_width; ++k) {
-    const double pivot = pivots[k] = columns[k][k];
-    const Wide l = columns[k] / pivot;
+    const double per_pivot = per_pivots[k] = 1 / columns[k][k];
+    const Wide l = columns[k] * per_pivot;
     for (int c = k + 1; c < tile_width; ++c) columns[c] -= columns[k][c] * l;
     columns[k] = l;
   }
 }
 
-MUSCLESIM_WIDE void solveTile(double* a, double* scaled, const double* l, const double* pivots) {
+MUSCLESIM_WIDE void solveTile(double* a, double* scaled, const double* l, const double* per_pivots) {
   Wide columns[tile_width];
   for (int k = 0; k < tile_width; ++k) {
     Wide column = reinterpret_cast<const Wide*>(a)[k];
@@ -45,7 +51,7 @@ MUSCLESIM_WIDE void solveTile(double* a, double* scaled, const double* l, const 
   }
   for (int k = 0; k < tile_width; ++k) {
     reinterpret_cast<Wide*>(scaled)[k] = columns[k];
-    reinterpret_cast<Wide*>(a)[k] = columns[k] / pivots[k];
+    reinterpret_cast<Wide*>(a)[k] = columns[k] * per_pivots[k];
   }
 }
 
@@ -64,13 +70,23 @@ MUSCLESIM_WIDE void subtractTileProducts(double* const* targets, const double* l
 }
 
 void solveLower(const double* l, double* x) {
-  for (int k = 0; k < tile_width; ++k)
-    for (int i = k + 1; i < tile_width; ++i) x[i] -= l[k * tile_width + i] * x[k];
+  double y[width];
+  std::copy_n(x, width, y);
+#pragma GCC unroll 8
+  for (int k = 0; k < width; ++k)
+#pragma GCC unroll 8
+    for (int i = k + 1; i < width; ++i) y[i] -= l[k * width + i] * y[k];
+  std::copy_n(y, width, x);
 }
 
 void solveUpper(const double* l, double* x) {
-  for (int k = tile_width - 1; k >= 0; --k)
-    for (int i = 0; i < k; ++i) x[i] -= l[i * tile_width + k] * x[k];
+  double y[width];
+  std::copy_n(x, width, y);
+#pragma GCC unroll 8
+  for (int k = width - 1; k >= 0; --k)
+#pragma GCC unroll 8
+    for (int i = 0; i < k; ++i) y[i] -= l[i * width + k] * y[k];
+  std::copy_n(y, width, x);
 }
 
 MUSCLESIM_WIDE void subtractProduct(double* y, const double* a, const double* x) {

@@ -16,10 +16,11 @@ namespace musclesim::chain {
 /// Tiles: eight by eight numbers, one column after another. l is a unit lower triangle, of which only what is below the diagonal is used.
 inline constexpr int tile_width = 8, tile_size = tile_width * tile_width;
 
-/// a = L D L^T: below the diagonal of a stands L; above it nothing of use.
-void factoriseTile(double* a, double* pivots);
+void clear(double* numbers, int count);
+/// a = L D L^T: below the diagonal of a stands L, above it nothing of use; per_pivots are the reciprocals of D.
+void factoriseTile(double* a, double* per_pivots);
 /// scaled = a L^-T = B D,  a = B
-void solveTile(double* a, double* scaled, const double* l, const double* pivots);
+void solveTile(double* a, double* scaled, const double* l, const double* per_pivots);
 /// targets[i] -= left[i] right^T; `left` are tiles in a row.
 void subtractTileProducts(double* const* targets, const double* left, const double* right, int count);
 /// x <- L^-1 x and L^-T x
