@@ -45,18 +45,24 @@ void LineOfPull::addViaPoint(Primitive* primitive, const Vector& point_mm) {
 }
 
 void LineOfPull::locate() const {
-  arms_.clear();
-  positions_.clear();
-  directions_.clear();
+  located_.resize(points_.size());
   length_mm_ = 0;
-  for (const Point& point : points_) {
-    arms_.push_back(point.body ? Vector(rotationOf(point.body) * point.place) : point.place);
-    positions_.push_back(point.body ? Vector(musclesim::positionOf(point.body) + arms_.back()) : point.place);
-    if (positions_.size() < 2) continue;
-    const Vector segment = positions_.back() - positions_[positions_.size() - 2];
-    const double segment_mm = segment.norm();
-    directions_.push_back(segment_mm > 0 ? Vector(segment / segment_mm) : segment);
-    length_mm_ += segment_mm;
+  Located* before = nullptr;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Point& point = points_[i];
+    Located& here = located_[i];
+    here.arm = point.body ? turned(point.place, dBodyGetRotation(point.body)) : point.place;
+    here.position = point.body ? Vector(musclesim::positionOf(point.body) + here.arm) : point.place;
+    here.gradient.setZero();
+    if (before) {
+      Vector direction = here.position - before->position;
+      const double segment_mm = direction.norm();
+      if (segment_mm > 0) direction /= segment_mm;
+      before->gradient -= direction;
+      here.gradient = direction;
+      length_mm_ += segment_mm;
+    }
+    before = &here;
   }
 }
 
@@ -67,14 +73,9 @@ double LineOfPull::lengthMm() const {
 
 std::vector<Vector> LineOfPull::pointsMm() const {
   locate();
-  return positions_;
-}
-
-Vector LineOfPull::gradient(std::size_t i) const {
-  Vector sum = Vector::Zero();
-  if (i > 0) sum += directions_[i - 1];
-  if (i < directions_.size()) sum -= directions_[i];
-  return sum;
+  std::vector<Vector> result;
+  for (const Located& point : located_) result.push_back(point.position);
+  return result;
 }
 
 double LineOfPull::speed() const {
@@ -82,7 +83,7 @@ double LineOfPull::speed() const {
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const dBodyID body = points_[i].body;
     if (!body) continue;
-    sum += gradient(i).dot(fromOde(dBodyGetLinearVel(body)) + fromOde(dBodyGetAngularVel(body)).cross(arms_[i]));
+    sum += located_[i].gradient.dot(fromOde(dBodyGetLinearVel(body)) + fromOde(dBodyGetAngularVel(body)).cross(located_[i].arm));
   }
   return sum;
 }
@@ -101,7 +102,7 @@ void LineOfPull::pull(double tension_N, double maximum_length_mm, const MuscleSe
   const double force = totalForceN(tension_N, maximum_length_mm, settings, physics) * physics.force_per_N;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     if (!points_[i].body) continue;
-    const Vector f = -force * gradient(i), &x = positions_[i];
+    const Vector f = -force * located_[i].gradient, &x = located_[i].position;
     dBodyAddForceAtPos(points_[i].body, f.x(), f.y(), f.z(), x.x(), x.y(), x.z());
   }
 }
@@ -112,8 +113,8 @@ std::vector<LineOfPull::Push> LineOfPull::pushes() const {
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const dBodyID body = points_[i].body;
     if (!body) continue;
-    const Vector force = gradient(i);
-    result.push_back({body, force, arms_[i].cross(force)});
+    const auto& [arm, position, gradient] = located_[i];
+    result.push_back({body, gradient, arm.cross(gradient)});
   }
   return result;
 }

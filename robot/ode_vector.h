@@ -18,6 +18,11 @@ inline Eigen::Matrix3d matrixFromOde(const dReal* m) {
   return result;
 }
 
+/// R v
+inline Eigen::Vector3d turned(const Eigen::Vector3d& v, const dReal* r) {
+  return {r[0] * v[0] + r[1] * v[1] + r[2] * v[2], r[4] * v[0] + r[5] * v[1] + r[6] * v[2], r[8] * v[0] + r[9] * v[1] + r[10] * v[2]};
+}
+
 inline Eigen::Vector3d positionOf(dBodyID body) {
   return fromOde(dBodyGetPosition(body));
 }

@@ -56,19 +56,21 @@ class LineOfPull {
     Vector place;            ///< in the body's frame, from its centre of mass, or in the world, mm
     bool connected = false;
   };
+  /// A point in the world's frame.
+  struct Located {
+    Vector arm;  ///< from its body's centre of mass, mm
+    Vector position;
+    Vector gradient;  ///< d l / d x
+  };
   static Point pointOn(Primitive* primitive, const Vector& point_mm);
   /// Works out what follows from the bodies' present poses; what is below uses it.
   void locate() const;
   /// dl/dt in world units, positive when it gets longer.
   double speed() const;
   double totalForceN(double tension_N, double maximum_length_mm, const MuscleSettings& settings, const PhysicsSettings& physics) const;
-  /// d l / d x_i
-  Vector gradient(std::size_t i) const;
 
   std::vector<Point> points_;
-  // Kept only to save memory requests.
-  mutable std::vector<Vector> arms_, positions_;  ///< of the points, from their body's centre of mass and in the world
-  mutable std::vector<Vector> directions_;        ///< of the segments
+  mutable std::vector<Located> located_;
   mutable double length_mm_ = 0;
 };
 
