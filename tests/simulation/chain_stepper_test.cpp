@@ -141,6 +141,31 @@ TEST(ChainStepper, TakesOtherSkeletonsContactsAndForcesLikeDWorldStep) {
   EXPECT_GT(most_contacts, 0);
 }
 
+/// A fixed body that rests to the last bit is not worked out again, until something happens to it.
+TEST(ChainStepper, TakesWhatHappensToABodyAtRestLikeDWorldStep) {
+  SimulationOptions options;
+  options.stepper = StepperKind::ode;
+  Simulation ode(options);
+  options.stepper = StepperKind::chain;
+  Simulation chain(options);
+  for (Simulation* simulation : {&ode, &chain})
+    for (const double x_mm : {0.0, 300.0}) (new Box(simulation->world(), simulation->space(), {x_mm, 0, 0}, 100, 0, 10, 20, 30))->fix();
+  for (int step = 0; step < 200; ++step) {
+    for (const Simulation* simulation : {&ode, &chain}) {
+      const dBodyID body = simulation->bodies()[0]->id;
+      dMass heavy;
+      dMassSetSphereTotal(&heavy, 500, 20);
+      if (step == 60) dBodyAddForce(body, 1e9, 0, -1e9);
+      if (step == 100) dBodySetAngularVel(body, 0, 1e-3, 0);
+      if (step == 140) dBodySetMass(body, &heavy);
+      if (step == 180) dBodySetPosition(body, 0, 1e-3, 0);
+    }
+    ode.step();
+    chain.step();
+    EXPECT_LT(velocityDifference(ode, chain), 1e-9) << step;
+  }
+}
+
 TEST(ChainStepper, LeavesUniversalJointsToDWorldStepAndSaysSo) {
   SimulationOptions options;
   Simulation simulation(options);

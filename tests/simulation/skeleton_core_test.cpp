@@ -122,6 +122,24 @@ TEST(SkeletonCore, SolvesBonesAndRowsTogether) {
   }
 }
 
+TEST(SkeletonCore, KeepsTheVelocityOfABoneOnWhichNoRowActs) {
+  RandomStream random(5, "core");
+  SkeletonCore core;
+  const Vector6 momentum = randomMatrix(random, 6, 1), jacobian = randomMatrix(random, 6, 1);
+  Vector6 velocity[2];
+  for (const bool again : {false, true}) {
+    core.reset(2, 1);
+    core.setBone(0, 2 * Matrix6::Identity(), momentum);
+    again ? core.keepVelocity(1) : core.setBone(1, 4 * Matrix6::Identity(), momentum);
+    core.addBlock(0, 0, 1);
+    core.couple(0, 1, 0, jacobian.data());
+    core.solve();
+    velocity[again] = core.velocity(1);
+  }
+  EXPECT_LT((velocity[0] - momentum / 4).norm(), 1e-12);
+  EXPECT_EQ(velocity[1], velocity[0]);
+}
+
 TEST(SkeletonCore, KeepsBonesBehindTheBand) {
   RandomStream random(4, "core");
   SkeletonCore::Layout layout;
