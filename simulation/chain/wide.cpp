@@ -72,7 +72,9 @@ MUSCLESIM_WIDE void subtractTileProducts(double* const* targets, const double* l
 void solveLower(const double* l, double* x) {
   double y[width];
   std::copy_n(x, width, y);
+#pragma GCC unroll 8
   for (int k = 0; k < width; ++k)
+#pragma GCC unroll 8
     for (int i = k + 1; i < width; ++i) y[i] -= l[k * width + i] * y[k];
   std::copy_n(y, width, x);
 }
@@ -80,7 +82,9 @@ void solveLower(const double* l, double* x) {
 void solveUpper(const double* l, double* x) {
   double y[width];
   std::copy_n(x, width, y);
+#pragma GCC unroll 8
   for (int k = width - 1; k >= 0; --k)
+#pragma GCC unroll 8
     for (int i = 0; i < k; ++i) y[i] -= l[i * width + k] * y[k];
   std::copy_n(y, width, x);
 }
