@@ -189,13 +189,16 @@ void followUp(const fs::path& folder, const fs::path& key_file, const FollowUpOp
 
 json followUpTotals(const fs::path& folder) {
   std::map<std::string, std::vector<json>> entries;
+  int followed_count = 0;
   for (const std::string& name : caseNames(folder)) {
     if (!fs::exists(resultOf(folder, name))) continue;
+    ++followed_count;
     const json result = readObject(resultOf(folder, name));
     for (const auto& [part, entry] : result.items())
       if (entry.is_object()) entries[part].push_back(entry);
   }
-  json totals = json::object();
+  if (followed_count == 0) return json::object();
+  json totals = {{"followed_count", followed_count}};
   for (const auto& [part, member] :
        {std::pair("left_out", "confidently_wrong"), std::pair("left_out", "look_alike"), std::pair("experiment", "truth_first"),
         std::pair("experiment", "alone"), std::pair("fresh", "within")})

@@ -110,9 +110,11 @@ std::string groupTable(const std::string& title, const json& groups) {
 }
 
 /// What came of the answers; empty if that was not tried.
-std::string followed(const json& totals) {
+std::string followed(const json& totals, std::size_t case_count) {
   if (totals.empty()) return "";
-  std::string text = "## What came of the answers\n\nBy `musclesim blind follow`.\n\n| measure | aim | found |\n|---|---|---|\n";
+  std::string text = fmt::format(
+      "## What came of the answers\n\nBy `musclesim blind follow`, on {} of {} answers.\n\n| measure | aim | found |\n|---|---|---|\n",
+      totals.at("followed_count").get<int>(), case_count);
   auto row = [&](const char* what, const char* aim, const char* name) {
     text += fmt::format("| {} | {} | {} |\n", what, aim, longRate(totals, name));
   };
@@ -164,7 +166,8 @@ std::string pageText(const Score& score) {
          "![Share of causes found over the size of the gap](figures/blind_detectability.svg)\n\n"
          "![True stage against answered stage](figures/blind_confusion.svg)\n\n" +
          groupTable("kind", totals["by_kind"]) + groupTable("robot", totals["by_robot"]) + groupTable("size", totals["by_size"]) +
-         groupTable("effect", totals["by_effect"]) + followed(totals.value("follow_up", json::object())) + failures(score);
+         groupTable("effect", totals["by_effect"]) + followed(totals.value("follow_up", json::object()), score.cases.size()) +
+         failures(score);
 }
 
 void writePage(const Score& score, const fs::path& folder) {

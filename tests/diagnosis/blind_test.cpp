@@ -193,6 +193,7 @@ TEST_F(Blind, FollowsUpOnAnswersOnce) {
   followUp(cases(), key_file, follow);
   const fs::path file = cases() / "follow_up" / "case001.json";
   const nlohmann::json found = readObject(file);
+  EXPECT_EQ(followUpTotals(cases())["followed_count"], 1);
   EXPECT_EQ(followUpTotals(cases())["left_out_unexplained"]["count"], 1);
   EXPECT_NE(found["left_out"]["top"].get<std::string>().substr(0, truth.size() + 1), truth + "@");
   ASSERT_EQ(readObject(cases() / "answers" / "case001.json")["verdict"], "effects_found");
