@@ -128,7 +128,8 @@ std::string howFar(const Diagnosis& d) {
   if (!d.chosen.empty())
     text += shrinkFigure(d) +
             paragraph(fmt::format(
-                "Normalised gap before {:.3g}, after {:.3g}: {} removed (95 %: {:.1f} to {:.1f}). The nominal refit "
+                "Normalised gap before {:.3g}, after {:.3g}: {} removed ({:.1f} to {:.1f} expected on another recording "
+                "of this plant, 95 %). The nominal refit "
                 "re-tunes the model's own numbers without any effect; the sham is a disturbance without physical meaning with as "
                 "many parameters.",
                 d.before.normalised, d.after.normalised, percentWords(d.shrink_percent), d.shrink_low_percent, d.shrink_high_percent));
@@ -136,7 +137,7 @@ std::string howFar(const Diagnosis& d) {
     text += shrinkFigure(d) +
             paragraph(
                 fmt::format("Nothing was found that deserves belief. What comes nearest: {}. Normalised gap before {:.3g}, with it {:.3g}: "
-                            "{:.1f} % removed (95 %: {:.1f} to {:.1f}). \"After\" below means: with this.",
+                            "{:.1f} % removed ({:.1f} to {:.1f} expected on another recording, 95 %). \"After\" below means: with this.",
                             fmt::join(d.attempt.effects, ", "), d.before.normalised, d.attempt.after.normalised, d.attempt.shrink_percent,
                             d.attempt.shrink_low_percent, d.attempt.shrink_high_percent));
   text += regimeFigure(d) + signalTable(d);
