@@ -23,6 +23,7 @@ constexpr double named = 0.5;             ///< least probability of none_of_thes
 constexpr double as_good = 0.1;           ///< share of the best explanation's probability from which on one cannot be told from it
 constexpr double excited = 1;             ///< a typical effect must change some signal by that many floors
 constexpr double clear_gain_percent = 5;  ///< by which an effect must beat nominal refit and sham
+constexpr double clear_rest_share = 0.5;  ///< or this share of what they leave is all that it may leave
 
 /// Counts simulations and tells the caller.
 class Monitor {
@@ -155,8 +156,9 @@ class Run {
     const Estimate interval = shrinkInterval({held_out_, before_residual_, after},
                                              {attributor_.fitComparison(), attributor_.nominalResidual(), best.residual}, options_.seed);
     const Attempt attempt{labelsOf(model), model.effects, gap_after, shrinkOf(after), interval.low, interval.high};
-    const bool beats =
-        attempt.shrink_percent > std::max(diagnosis_.nominal_refit_shrink_percent, diagnosis_.sham_shrink_percent) + clear_gain_percent;
+    const double other_percent = std::max(diagnosis_.nominal_refit_shrink_percent, diagnosis_.sham_shrink_percent);
+    const bool beats = attempt.shrink_percent > other_percent + clear_gain_percent ||
+                       100 - attempt.shrink_percent < clear_rest_share * (100 - other_percent);
     const bool found = !none && beats;
     if (!found && attempt.shrink_percent <= 0) return;  // it does not hold beyond what it was fitted to
     diagnosis_.tuned = tunedParameters(plant_, best.tuning, best.tuning_half_width);
