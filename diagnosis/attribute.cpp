@@ -98,7 +98,7 @@ void Attributor::look() {
   fit_.goCoarse(everywhere);
   result_.suspects = suspects(plant_, options_);
   keepNearestVariants();
-  result_.signatures = screen(look_, result_.suspects, nominal, Model{}, options_.job_count, on_simulation_);
+  result_.signatures = screen(look_, result_.suspects, nominal, Model{}, Strengths::weakened, options_.job_count, on_simulation_);
 }
 
 Model Attributor::modelOf(const Explanation& explanation) const {
@@ -249,7 +249,8 @@ bool Attributor::fitFurther(std::size_t count) {
   // Where many effects act, what one changes depends on the others: they are looked at again beside what has been found.
   const bool again = options_.max_effects > few_effects;
   std::vector<Signature> signatures =
-      again ? screen(look_, result_.suspects, predicted, modelOf(best), options_.job_count, on_simulation_) : result_.signatures;
+      again ? screen(look_, result_.suspects, predicted, modelOf(best), Strengths::kept, options_.job_count, on_simulation_)
+            : result_.signatures;
   std::vector<double> log_misfit;
   for (std::size_t s = 0; s < signatures.size(); ++s) {
     if (!again) explain(look_, result_.suspects[s], left, signatures[s]);

@@ -194,7 +194,7 @@ std::vector<Probe> lateProbes(const std::vector<Suspect>& suspects) {
 }  // namespace
 
 std::vector<Signature> screen(const Comparison& comparison, std::vector<Suspect>& suspects, const Eigen::VectorXd& nominal,
-                              const Model& base, int job_count, const OnSimulation& on_simulation) {
+                              const Model& base, Strengths strengths, int job_count, const OnSimulation& on_simulation) {
   std::vector<Signature> result(suspects.size());
   for (std::size_t s = 0; s < suspects.size(); ++s) result[s].per_strength.resize(std::max<std::size_t>(1, suspects[s].strengths().size()));
   auto lookInto = [&](std::vector<Signature>& signatures, const std::vector<Probe>& probes, double strength) {
@@ -209,7 +209,7 @@ std::vector<Signature> screen(const Comparison& comparison, std::vector<Suspect>
   for (std::size_t s = 0; s < suspects.size(); ++s) result[s].excitation_ratio = excitationOf(comparison, result[s].per_strength);
   for (const int direction : {1, -1}) look(strongerProbes(comparison, suspects, result, direction), direction * strong);
   const Eigen::VectorXd residual = comparison.measured() - nominal;
-  constexpr int weakenings = 3;
+  const int weakenings = strengths == Strengths::weakened ? 3 : 0;
   for (int i = 0; i < weakenings; ++i) look(weakerProbes(comparison, suspects, result, residual), 1);
   std::vector<Signature> lately = result;
   lookInto(lately, lateProbes(suspects), late);

@@ -23,11 +23,14 @@ struct Signature {
 /// Called after each simulation, from any thread, one at a time.
 using OnSimulation = std::function<void()>;
 
+/// Whether the first look may change what z = 1 of a suspect stands for.
+enum class Strengths { weakened, kept };
+
 /// One or a few simulations per suspect on the comparison's stretches; sensor effects of one id on different signals share theirs.
 /// `nominal` is the prediction of `base`, the model beside which the suspects are tried. Strengths that change a signal by much more than
-/// what is to be explained are weakened, since what they do need not be proportional to them.
+/// what is to be explained are weakened unless they are to be kept, since what they do need not be proportional to them.
 std::vector<Signature> screen(const Comparison& comparison, std::vector<Suspect>& suspects, const Eigen::VectorXd& nominal,
-                              const Model& base, int job_count, const OnSimulation& on_simulation);
+                              const Model& base, Strengths strengths, int job_count, const OnSimulation& on_simulation);
 
 /// The amounts of a signature that remove most of a residual, by least squares weighted anew three times. Amounts of unsigned strengths
 /// stay positive. Sets amount, explained and log_misfit.

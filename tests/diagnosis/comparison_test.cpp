@@ -146,7 +146,7 @@ TEST_F(LoadedRig, FirstLookSeesThePayload) {
   std::vector<Suspect> all = suspects(plant, options);
   const Eigen::VectorXd nominal = both.predicted(Model{});
   int simulations = 0;
-  const std::vector<Signature> looks = screen(both, all, nominal, Model{}, 1, [&] { ++simulations; });
+  const std::vector<Signature> looks = screen(both, all, nominal, Model{}, Strengths::weakened, 1, [&] { ++simulations; });
   EXPECT_GT(simulations, 1);
   const double before = both.logMisfit(both.measured() - nominal);
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -171,12 +171,15 @@ TEST_F(SlightlyDampedRig, StrengthsThatDoTooMuchAreWeakened) {
   std::vector<Suspect> all = suspects(plant, options);
   const Eigen::VectorXd nominal = both.predicted(Model{});
   const double typical = all.front().valuesAt(all.front().typical()).front().second;
-  const std::vector<Signature> looks = screen(both, all, nominal, Model{}, 1, [] {});
+  const std::vector<Signature> looks = screen(both, all, nominal, Model{}, Strengths::weakened, 1, [] {});
   Eigen::VectorXd z = Eigen::VectorXd::Zero(all.front().coordinateCount());
   z[all.front().strengths().front()] = 1;
   EXPECT_LT(all.front().valuesAt(z).front().second, 0.1 * typical);
   z[all.front().strengths().front()] = looks.front().amount[0];
   EXPECT_NEAR(all.front().valuesAt(z).front().second, damping, 0.5 * damping);
+  std::vector<Suspect> fresh = suspects(plant, options);
+  screen(both, fresh, nominal, Model{}, Strengths::kept, 1, [] {});
+  EXPECT_EQ(fresh.front().valuesAt(fresh.front().typical()).front().second, typical);
   EXPECT_LT(looks.front().log_misfit, 0.6 * both.logMisfit(both.measured() - nominal));
 }
 
