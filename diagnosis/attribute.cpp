@@ -98,7 +98,7 @@ void Attributor::look() {
   fit_.goCoarse(everywhere);
   result_.suspects = suspects(plant_, options_);
   keepNearestVariants();
-  result_.signatures = screen(look_, result_.suspects, nominal, Model{}, Strengths::weakened, options_.job_count, on_simulation_);
+  result_.signatures = screen(look_, result_.suspects, nominal, Model{}, Strengths::adapted, options_.job_count, on_simulation_);
 }
 
 Model Attributor::modelOf(const Explanation& explanation) const {

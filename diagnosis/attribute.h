@@ -27,12 +27,12 @@ struct Explanation {
 /// How answers are weighed; docs/diagnosing.md says on which cases the numbers were found.
 struct Weighing {
   double per_misfit = 7;        ///< ln of the odds per unit of log misfit per affected cell
-  double per_parameter = 0.5;   ///< ln of the odds that a further parameter costs
+  double per_parameter = 1;     ///< ln of the odds that a further parameter costs
   double per_effect = 6.5;      ///< ln of the odds that a further effect costs
   double per_further_gain = 5;  ///< ln of the odds per unit of log misfit that further effects gain over the first
   double per_own_gain = 14;     ///< the same besides, of what they gain where they do more than mend the first one's law
   double mended_share = 0.5;    ///< what they gain below this share of what the first effect changes may only mend its law
-  double per_excess = 0.6;      ///< ln of the odds per e-fold by which a parameter is beyond its usual range
+  double per_excess = 1.5;      ///< ln of the odds per e-fold by which a parameter is beyond its usual range
   double shared_sensor = 3;     ///< ln of the odds of one sensor's fault against one that all sensors share
   double law_mismatch = 0.01;   ///< share of the residual that the right cause may leave since its law is not quite ours
   double none_share = 0.6;      ///< "none of these" stands for a cause that would leave this share of the log misfit without effects

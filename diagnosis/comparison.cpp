@@ -55,7 +55,12 @@ void Comparison::average(Eigen::VectorXd& values) const {
 void Comparison::goCoarse(const Eigen::VectorXd& nominal) {
   const Eigen::VectorXd coarse = predicted(Model{}, Fidelity::coarse);
   if (coarse.size() != nominal.size() || !coarse.allFinite()) return;
-  correction_ = nominal - coarse;
+  constexpr double few_floors = 5;
+  const Eigen::VectorXd correction = nominal - coarse;
+  const bool follows =
+      std::ranges::all_of(cells_, [&](const Cell& cell) { return std::sqrt(meanSquare(cell, correction)) <= few_floors * cell.floor; });
+  if (!follows) return;
+  correction_ = correction;
   fidelity_ = Fidelity::coarse;
 }
 

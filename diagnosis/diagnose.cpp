@@ -297,7 +297,8 @@ class Run {
       models.push_back(attributor_.modelOf(explanation));
     }
     monitor_.phase("planning the next experiment", static_cast<long>(6 * models.size()));
-    diagnosis_.next_experiment = nextExperiment(plant_, labels, models, options_.job_count, [this] { monitor_.count(); });
+    diagnosis_.next_experiment =
+        nextExperiment(plant_, labels, models, attributor_.lookComparison().fidelity(), options_.job_count, [this] { monitor_.count(); });
   }
 
   void finish() {

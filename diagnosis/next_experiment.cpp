@@ -117,12 +117,13 @@ bool staysInReach(const Plant& plant, const Prediction& prediction) {
 }
 
 /// The largest of a few shares of the commands' ranges with which the schedule stays in reach; the smallest if none does.
-double safeAmplitude(const Plant& plant, const Excitation& excitation, const Model& model, const OnSimulation& on_simulation) {
+double safeAmplitude(const Plant& plant, const Excitation& excitation, const Model& model, Fidelity fidelity,
+                     const OnSimulation& on_simulation) {
   constexpr double smaller = 0.7, smallest = 0.2;
   double amplitude = 1;
   for (; amplitude * smaller > smallest; amplitude *= smaller) {
     on_simulation();
-    const Prediction prediction = plant.predictSchedule(scheduled(plant.recordings(), excitation, amplitude), model);
+    const Prediction prediction = plant.predictSchedule(scheduled(plant.recordings(), excitation, amplitude), model, fidelity);
     if (!prediction.diverged && staysInReach(plant, prediction)) break;
   }
   return amplitude;
@@ -130,8 +131,8 @@ double safeAmplitude(const Plant& plant, const Excitation& excitation, const Mod
 
 }  // namespace
 
-Experiment nextExperiment(const Plant& plant, const std::vector<std::string>& labels, const std::vector<Model>& models, int job_count,
-                          const OnSimulation& on_simulation) {
+Experiment nextExperiment(const Plant& plant, const std::vector<std::string>& labels, const std::vector<Model>& models, Fidelity fidelity,
+                          int job_count, const OnSimulation& on_simulation) {
   Experiment best;
   if (models.size() < 2) return best;
   const std::vector<Excitation>& excitations = bank();
@@ -139,13 +140,13 @@ Experiment nextExperiment(const Plant& plant, const std::vector<std::string>& la
   std::vector<Recording> recordings(excitations.size());
   parallelFor(static_cast<int>(excitations.size()), job_count, [&](int i) {
     const auto index = static_cast<std::size_t>(i);
-    amplitudes[index] = safeAmplitude(plant, excitations[index], models.front(), on_simulation);
+    amplitudes[index] = safeAmplitude(plant, excitations[index], models.front(), fidelity, on_simulation);
     recordings[index] = scheduled(plant.recordings(), excitations[index], amplitudes[index]);
   });
   std::vector<Prediction> predictions(excitations.size() * models.size());
   parallelFor(static_cast<int>(predictions.size()), job_count, [&](int i) {
     const auto index = static_cast<std::size_t>(i);
-    predictions[index] = plant.predictSchedule(recordings[index / models.size()], models[index % models.size()]);
+    predictions[index] = plant.predictSchedule(recordings[index / models.size()], models[index % models.size()], fidelity);
     on_simulation();
   });
   for (std::size_t e = 0; e < excitations.size(); ++e) {

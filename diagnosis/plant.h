@@ -87,8 +87,10 @@ class Plant {
   /// The same with other commands in place of the recorded ones; `commands[row][muscle]`.
   Prediction predict(int recording, const Model& model, const std::vector<std::vector<double>>& commands, int end_row,
                      Fidelity fidelity) const;
-  /// The same for a schedule that was never recorded, coarsely.
-  Prediction predictSchedule(const Recording& schedule, const Model& model) const { return replay(schedule, model, 0, Fidelity::coarse); }
+  /// The same for a schedule that was never recorded.
+  Prediction predictSchedule(const Recording& schedule, const Model& model, Fidelity fidelity) const {
+    return replay(schedule, model, 0, fidelity);
+  }
 
   /// The robot as built.
   RobotDrawing drawing() const;

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "parallel.h"
@@ -177,6 +178,23 @@ std::vector<Probe> weakerProbes(const Comparison& comparison, std::vector<Suspec
   return result;
 }
 
+/// Leaves out the strengths of either sign that change everything by a small share of what another one of the suspect does, both of usual
+/// size: the recordings cannot tell them, and a fit would drive them anywhere.
+void leaveOutIdle(const Comparison& comparison, Suspect& suspect, Signature& look) {
+  constexpr double small_share = 0.1;
+  std::vector<double> excitation;
+  for (const Eigen::VectorXd& change : look.per_strength)
+    excitation.push_back(change.size() ? excitationOf(comparison, {change}) : std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t k = suspect.strengths().size(); k-- > 0;) {
+    const int coordinate = suspect.strengths()[k];
+    const bool idle = std::ranges::any_of(excitation, [&](double other) { return excitation[k] < small_share * other; });
+    if (!idle || !suspect.isSigned(coordinate)) continue;
+    suspect.leaveOut(coordinate);
+    look.per_strength.erase(look.per_strength.begin() + static_cast<std::ptrdiff_t>(k));
+    excitation.erase(excitation.begin() + static_cast<std::ptrdiff_t>(k));
+  }
+}
+
 /// Delays and time constants: what they do is not proportional to them.
 std::vector<Probe> lateProbes(const std::vector<Suspect>& suspects) {
   std::vector<Probe> result;
@@ -209,7 +227,9 @@ std::vector<Signature> screen(const Comparison& comparison, std::vector<Suspect>
   for (std::size_t s = 0; s < suspects.size(); ++s) result[s].excitation_ratio = excitationOf(comparison, result[s].per_strength);
   for (const int direction : {1, -1}) look(strongerProbes(comparison, suspects, result, direction), direction * strong);
   const Eigen::VectorXd residual = comparison.measured() - nominal;
-  const int weakenings = strengths == Strengths::weakened ? 3 : 0;
+  const bool adapt = strengths == Strengths::adapted;
+  for (std::size_t s = 0; adapt && s < suspects.size(); ++s) leaveOutIdle(comparison, suspects[s], result[s]);
+  const int weakenings = adapt ? 3 : 0;
   for (int i = 0; i < weakenings; ++i) look(weakerProbes(comparison, suspects, result, residual), 1);
   std::vector<Signature> lately = result;
   lookInto(lately, lateProbes(suspects), late);

@@ -23,12 +23,13 @@ struct Signature {
 /// Called after each simulation, from any thread, one at a time.
 using OnSimulation = std::function<void()>;
 
-/// Whether the first look may change what z = 1 of a suspect stands for.
-enum class Strengths { weakened, kept };
+/// Whether the first look may change what a suspect's coordinates stand for, or must take them as they are.
+enum class Strengths { adapted, kept };
 
 /// One or a few simulations per suspect on the comparison's stretches; sensor effects of one id on different signals share theirs.
-/// `nominal` is the prediction of `base`, the model beside which the suspects are tried. Strengths that change a signal by much more than
-/// what is to be explained are weakened unless they are to be kept, since what they do need not be proportional to them.
+/// `nominal` is the prediction of `base`, the model beside which the suspects are tried. Unless strengths are to be kept, those that hardly
+/// act beside another one of their suspect are left out (a force across the plane in which an elbow moves), and those that change a signal
+/// by much more than what is to be explained are weakened, since what they do need not be proportional to them.
 std::vector<Signature> screen(const Comparison& comparison, std::vector<Suspect>& suspects, const Eigen::VectorXd& nominal,
                               const Model& base, Strengths strengths, int job_count, const OnSimulation& on_simulation);
 

@@ -89,6 +89,12 @@ void Suspect::weaken(int coordinate, double share) {
   c.typical = valueOf(c, share);
 }
 
+void Suspect::leaveOut(int coordinate) {
+  coordinates_.erase(coordinates_.begin() + coordinate);
+  std::erase(strengths_, coordinate);
+  for (int& strength : strengths_) strength -= strength > coordinate;
+}
+
 bool Suspect::isTime(int coordinate) const {
   return info_.parameters[coordinates_[static_cast<std::size_t>(coordinate)].parameter].unit == "s";
 }

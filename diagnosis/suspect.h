@@ -31,6 +31,8 @@ class Suspect {
   bool isSigned(int coordinate) const;
   /// From here on z = 1 is that share of the strength that it was.
   void weaken(int coordinate, double share);
+  /// From here on a strength stays neutral and is no coordinate; those after it count one less.
+  void leaveOut(int coordinate);
   /// Whether it is a time.
   bool isTime(int coordinate) const;
   ActiveEffect at(const Eigen::VectorXd& z) const;

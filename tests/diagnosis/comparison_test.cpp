@@ -146,7 +146,7 @@ TEST_F(LoadedRig, FirstLookSeesThePayload) {
   std::vector<Suspect> all = suspects(plant, options);
   const Eigen::VectorXd nominal = both.predicted(Model{});
   int simulations = 0;
-  const std::vector<Signature> looks = screen(both, all, nominal, Model{}, Strengths::weakened, 1, [&] { ++simulations; });
+  const std::vector<Signature> looks = screen(both, all, nominal, Model{}, Strengths::adapted, 1, [&] { ++simulations; });
   EXPECT_GT(simulations, 1);
   const double before = both.logMisfit(both.measured() - nominal);
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -171,7 +171,7 @@ TEST_F(SlightlyDampedRig, StrengthsThatDoTooMuchAreWeakened) {
   std::vector<Suspect> all = suspects(plant, options);
   const Eigen::VectorXd nominal = both.predicted(Model{});
   const double typical = all.front().valuesAt(all.front().typical()).front().second;
-  const std::vector<Signature> looks = screen(both, all, nominal, Model{}, Strengths::weakened, 1, [] {});
+  const std::vector<Signature> looks = screen(both, all, nominal, Model{}, Strengths::adapted, 1, [] {});
   Eigen::VectorXd z = Eigen::VectorXd::Zero(all.front().coordinateCount());
   z[all.front().strengths().front()] = 1;
   EXPECT_LT(all.front().valuesAt(z).front().second, 0.1 * typical);
@@ -181,6 +181,27 @@ TEST_F(SlightlyDampedRig, StrengthsThatDoTooMuchAreWeakened) {
   screen(both, fresh, nominal, Model{}, Strengths::kept, 1, [] {});
   EXPECT_EQ(fresh.front().valuesAt(fresh.front().typical()).front().second, typical);
   EXPECT_LT(looks.front().log_misfit, 0.6 * both.logMisfit(both.measured() - nominal));
+}
+
+class PushedRig : public Rig {
+ protected:
+  PushedRig() : Rig({{"external_force", "hand", {{"force_y_N", -2.0}}}}, 0.05) {}
+};
+
+/// The load of the rig moves up and down only.
+TEST_F(PushedRig, StrengthsThatDoNothingAreLeftOut) {
+  options.candidates = {"external_force"};
+  std::vector<Suspect> all = suspects(plant, options), fresh = all;
+  const Eigen::VectorXd nominal = both.predicted(Model{});
+  const std::vector<Signature> looks = screen(both, all, nominal, Model{}, Strengths::adapted, 1, [] {});
+  ASSERT_EQ(all.front().coordinateCount(), 1);
+  EXPECT_EQ(looks.front().per_strength.size(), 1U);
+  const auto values = all.front().valuesAt(looks.front().amount);
+  ASSERT_EQ(values.size(), 1U);
+  EXPECT_EQ(values.front().first, "force_y_N");
+  EXPECT_NEAR(values.front().second, -2, 0.5);
+  screen(both, fresh, nominal, Model{}, Strengths::kept, 1, [] {});
+  EXPECT_EQ(fresh.front().coordinateCount(), 3);
 }
 
 TEST(Drawing, ShowsMusclesBonesAndJoints) {

@@ -33,14 +33,14 @@ TEST(NextExperiment, TellsALagFromAWeakerMuscle) {
   const Plant plant(planted::plant({}), options);
   const ActiveEffect lag{"valve_lag", "muscle_0", {{"fill_time_constant_s", 0.1}, {"vent_time_constant_s", 0.1}}},
       weaker{"force_gain", "muscle_0", {{"gain", 0.98}}};
-  const Experiment experiment = nextExperiment(plant, {"lag", "weaker"}, {{{lag}, {}}, {{weaker}, {}}}, 2, [] {});
+  const Experiment experiment = nextExperiment(plant, {"lag", "weaker"}, {{{lag}, {}}, {{weaker}, {}}}, Fidelity::coarse, 2, [] {});
   EXPECT_GT(experiment.difference, 3);
   EXPECT_EQ(experiment.separates, (std::vector<std::string>{"lag", "weaker"}));
   const Recording schedule = experimentSchedule(experiment.schedule, experiment.amplitude, plant.recordings());
   ASSERT_EQ(schedule.time_s.size(), experiment.commands.size());
   for (std::size_t row = 0; row < experiment.commands.size(); ++row)
     EXPECT_EQ(experiment.commands[row][0], schedule.find("command_0")->values[row]);
-  EXPECT_TRUE(nextExperiment(plant, {"lag"}, {{{lag}, {}}}, 1, [] {}).commands.empty());
+  EXPECT_TRUE(nextExperiment(plant, {"lag"}, {{{lag}, {}}}, Fidelity::coarse, 1, [] {}).commands.empty());
 }
 
 }  // namespace

@@ -67,6 +67,19 @@ TEST_F(PlantedRig, BitsAreRoundedAndTruncated) {
   EXPECT_NE(variants[0].at({}), variants[1].at({}));
 }
 
+TEST_F(PlantedRig, WhatIsLeftOutStaysNeutral) {
+  Suspect force = suspect("external_force", "hand");
+  const auto all = force.valuesAt(force.typical());
+  ASSERT_EQ(all.size(), 3U);
+  force.leaveOut(1);
+  EXPECT_EQ(force.strengths(), (std::vector<int>{0, 1}));
+  const auto values = force.valuesAt(force.typical());
+  ASSERT_EQ(values.size(), 2U);
+  EXPECT_EQ(values[0], all[0]);
+  EXPECT_EQ(values[1], all[2]);
+  EXPECT_EQ(std::get<double>(force.at(force.typical()).parameters.at(all[1].first)), 0);
+}
+
 /// Coarse predictions are exact without effects, and close to fine ones with them.
 TEST_F(PlantedRig, CoarseStepsAreCorrected) {
   Comparison comparison(plant_, plant_.split().fit);
@@ -81,6 +94,13 @@ TEST_F(PlantedRig, CoarseStepsAreCorrected) {
   const double error = rms(comparison.predicted(payload) - with);
   EXPECT_LT(error, 0.7 * rms(uncorrected - with));
   EXPECT_LT(error, 0.02 * rms(with - fine)) << "of the payload's own change";
+}
+
+TEST_F(PlantedRig, CoarseStepsThatLeadElsewhereAreNotTaken) {
+  Comparison comparison(plant_, plant_.split().fit);
+  const Eigen::VectorXd elsewhere = comparison.predicted(Model{}).array() + 10 * planted::noise_mm;
+  comparison.goCoarse(elsewhere);
+  EXPECT_EQ(comparison.fidelity(), Fidelity::fine);
 }
 
 }  // namespace
