@@ -13,12 +13,13 @@ namespace musclesim {
 
 namespace {
 
-constexpr int look_rows = 1500;           ///< the look's stretches have that many rows together
-constexpr std::size_t look_count = 3;     ///< recordings that are looked at
-constexpr std::size_t single_count = 14;  ///< suspects that are fitted
-constexpr std::size_t pair_count = 6;     ///< further effects that are fitted beside the best
-constexpr double least_hope = -1;         ///< ln of the odds of one more effect that leaves nothing; below, none is looked for
-constexpr int few_effects = 2;            ///< up to that many, the first look serves for all of them
+constexpr int look_rows = 1500;             ///< the look's stretches have that many rows together
+constexpr std::size_t look_count = 3;       ///< recordings that are looked at
+constexpr std::size_t single_count = 14;    ///< suspects that are fitted
+constexpr std::size_t component_count = 8;  ///< suspects on the component of the best that are fitted
+constexpr std::size_t pair_count = 6;       ///< further effects that are fitted beside the best
+constexpr double least_hope = -1;           ///< ln of the odds of one more effect that leaves nothing; below, none is looked for
+constexpr int few_effects = 2;              ///< up to that many, the first look serves for all of them
 constexpr int first_rounds = 2, more_rounds = 6, last_rounds = 2;
 constexpr int many_rounds = 12;  ///< in place of the last rounds where many effects act together
 constexpr Reach single_reach = {0.8, 0.4}, pair_reach = {0.25, 0.1};
@@ -224,10 +225,31 @@ std::vector<std::size_t> Attributor::survivors(const std::vector<double>& log_mi
 void Attributor::fitSingles() {
   std::vector<double> log_misfit;
   for (const Signature& signature : result_.signatures) log_misfit.push_back(signature.log_misfit);
-  const std::vector<std::size_t> chosen = survivors(log_misfit, single_count, true);
+  fitAlone(survivors(log_misfit, single_count, true));
+}
+
+void Attributor::fitAlone(const std::vector<std::size_t>& chosen) {
   std::vector<Explanation> candidates;
   for (const std::size_t index : chosen) candidates.push_back({{index}, startOf(index, result_.signatures[index]), {}, {}, 0, 0});
   fitTogether(std::move(candidates), look_.logMisfit(look_residual_), single_reach);
+}
+
+/// What looks alike acts on the same component; where there are many, most of it may not have been among the first.
+void Attributor::fitMoreOnTheBestComponent() {
+  if (result_.explanations.empty()) return;
+  const std::string component = result_.suspects[result_.explanations.front().suspects.front()].component();
+  std::set<std::string> fitted;
+  for (const Explanation& explanation : result_.explanations) {
+    const Suspect& suspect = result_.suspects[explanation.suspects.front()];
+    if (suspect.component() == component) fitted.insert(suspect.label());
+  }
+  if (fitted.size() >= component_count) return;
+  std::vector<double> log_misfit;
+  for (std::size_t s = 0; s < result_.suspects.size(); ++s) {
+    const bool other = result_.suspects[s].component() != component || fitted.contains(result_.suspects[s].label());
+    log_misfit.push_back(other ? std::numeric_limits<double>::infinity() : result_.signatures[s].log_misfit);
+  }
+  fitAlone(survivors(log_misfit, component_count - fitted.size(), false));
 }
 
 /// A further effect is looked for beside the likeliest explanation of `count` - 1 effects, with the first look's signatures on what that
@@ -268,10 +290,6 @@ bool Attributor::fitFurther(std::size_t count) {
   }
   fitTogether(std::move(candidates), look_.logMisfit(left), pair_reach);
   return true;
-}
-
-void Attributor::sort() {
-  std::ranges::stable_sort(result_.explanations, [](const Explanation& a, const Explanation& b) { return a.probability > b.probability; });
 }
 
 /// Mean square per cell of a share of the residual.
@@ -332,7 +350,7 @@ double Attributor::priorLogOdds(const Explanation& explanation) const {
   return odds;
 }
 
-/// odds = exp(misfit log odds) * prior odds; "none of these" and "no effect" are explanations like any other.
+/// Sorts by odds = exp(misfit log odds) * prior odds; "none of these" and "no effect" are explanations like any other.
 void Attributor::weigh() {
   const double no_effect = misfitLeftBy(nominal_residual_);
   std::vector<double> odds = {-weighing_.per_misfit * no_effect,
@@ -344,6 +362,7 @@ void Attributor::weigh() {
   result_.no_effect = odds[0] / sum;
   result_.none_of_these = odds[1] / sum;
   for (std::size_t i = 0; i < result_.explanations.size(); ++i) result_.explanations[i].probability = odds[i + 2] / sum;
+  std::ranges::stable_sort(result_.explanations, [](const Explanation& a, const Explanation& b) { return a.probability > b.probability; });
 }
 
 /// The explanation that leaves least, where every effect must be worth its while.
@@ -357,11 +376,9 @@ const Explanation& Attributor::nearest() const {
 void Attributor::decide() {
   fitSingles();
   weigh();
-  sort();
-  for (int count = 2; count <= options_.max_effects && fitFurther(static_cast<std::size_t>(count)); ++count) {
-    weigh();
-    sort();
-  }
+  fitMoreOnTheBestComponent();
+  weigh();
+  for (int count = 2; count <= options_.max_effects && fitFurther(static_cast<std::size_t>(count)); ++count) weigh();
 }
 
 }  // namespace musclesim

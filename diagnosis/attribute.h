@@ -75,6 +75,8 @@ class Attributor {
   std::vector<std::size_t> survivors(const std::vector<double>& log_misfit, std::size_t count, bool from_every_stage) const;
   Eigen::VectorXd startOf(std::size_t index, const Signature& signature) const;
   void fitSingles();
+  void fitAlone(const std::vector<std::size_t>& chosen);
+  void fitMoreOnTheBestComponent();
   bool fitFurther(std::size_t count);
   Eigen::VectorXd mismatchOf(double share, const Eigen::VectorXd& residual) const;
   double weighedMisfit(const Eigen::VectorXd& residual, const Eigen::VectorXd& mismatch) const;
@@ -84,7 +86,6 @@ class Attributor {
   double misfitLogOdds(const Explanation& explanation) const;
   double priorLogOdds(const Explanation& explanation) const;
   void weigh();
-  void sort();
 
   const Plant& plant_;
   const DiagnosisOptions& options_;
