@@ -9,18 +9,28 @@
 
 namespace musclesim {
 
+namespace {
+
+constexpr double nearly_all = 99.95;  ///< percent; what is above must not read as 100.0
+
+/// "a = 1 (0.9 to 1.1), b = 2 (1 to 3)", without what the data left out.
+std::string parameterWords(const FoundEffect& effect, int digits) {
+  std::vector<std::string> words;
+  for (const auto& [name, estimate] : effect.parameters)
+    if (estimate.value != 0 || estimate.low != 0 || estimate.high != 0)
+      words.push_back(
+          fmt::format("{} = {:.{}g} ({:.{}g} to {:.{}g})", name, estimate.value, digits, estimate.low, digits, estimate.high, digits));
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+}  // namespace
+
 std::string effectSentence(const FoundEffect& effect) {
-  std::string text = effect.label();
-  const char* separator = ": ";
-  for (const auto& [name, estimate] : effect.parameters) {
-    text += fmt::format("{}{} = {:.4g} ({:.4g} to {:.4g})", separator, name, estimate.value, estimate.low, estimate.high);
-    separator = ", ";
-  }
-  return text;
+  const std::string parameters = parameterWords(effect, 4);
+  return effect.label() + (parameters.empty() ? "" : ": " + parameters);
 }
 
 std::string percentWords(double percent) {
-  constexpr double nearly_all = 99.95;
   return percent > nearly_all && percent < 100 ? "more than 99.9 %" : fmt::format("{:.1f} %", percent);
 }
 
@@ -35,7 +45,7 @@ std::string probabilityWords(double probability) {
 
 std::string shrinkWords(const Diagnosis& d) {
   const std::string words = percentWords(d.shrink_percent);
-  if (percentWords(d.shrink_low_percent) == words && percentWords(d.shrink_high_percent) == words) return words;
+  if (d.shrink_low_percent > nearly_all) return words;
   return fmt::format("{} ({:.1f} to {:.1f})", words, d.shrink_low_percent, d.shrink_high_percent);
 }
 
@@ -67,10 +77,7 @@ std::string effectWords(const Diagnosis& d, const std::string& label) {
   const auto found = std::ranges::find_if(d.effects, [&](const FoundEffect& effect) { return effect.label() == label; });
   std::string words = labelWords(label);
   if (found == d.effects.end() || d.chosen.size() != 1) return words;
-  std::string parameters;
-  for (const auto& [name, estimate] : found->parameters)
-    parameters +=
-        fmt::format("{}{} = {:.3g} ({:.3g} to {:.3g})", parameters.empty() ? "" : ", ", name, estimate.value, estimate.low, estimate.high);
+  const std::string parameters = parameterWords(*found, 3);
   return parameters.empty() ? words : words + " with " + parameters;
 }
 

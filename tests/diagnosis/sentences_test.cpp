@@ -39,6 +39,18 @@ TEST(VerdictSentence, SaysWhereWhichHowFarAndWhatElse) {
     EXPECT_TRUE(contains(text, part)) << part << "\n" << text;
 }
 
+TEST(VerdictSentence, LeavesOutWhatSaysNothing) {
+  Diagnosis d = lagFound();
+  d.effects.front().parameters["fill_time_constant_s"] = {};
+  d.shrink_percent = 99.99;
+  d.shrink_low_percent = 99.97;
+  d.shrink_high_percent = 100;
+  const std::string text = verdictSentence(d);
+  EXPECT_FALSE(contains(text, "fill_time_constant_s")) << text;
+  EXPECT_TRUE(contains(text, "more than 99.9 % of the gap")) << text;
+  EXPECT_EQ(effectSentence(d.effects.front()), "valve_lag@muscle_1: vent_time_constant_s = 0.081 (0.077 to 0.085)");
+}
+
 TEST(VerdictSentence, SaysWhatIsLeftWhereItStandsOut) {
   Diagnosis d = lagFound();
   d.after.normalised = 2;
