@@ -129,8 +129,7 @@ std::string diagnosisSummary(const Diagnosis& d) {
     text += fmt::format("{:<9} {:>4.0f} %  {}\n", i == 0 ? "which" : "", 100 * d.effects[i].probability, effectSentence(d.effects[i]));
   if (d.verdict != Verdict::no_gap) text += fmt::format("          {:>4.0f} %  none of these\n", 100 * d.none_of_these);
   if (!d.chosen.empty())
-    text += fmt::format("how far   {} ({} to {} expected elsewhere, 95 %) of the gap on {}; nominal refit {:.1f} %, sham {:.1f} %\n",
-                        percentWords(d.shrink_percent), percentWords(d.shrink_low_percent), percentWords(d.shrink_high_percent), d.held_out,
+    text += fmt::format("how far   {} of the gap on {}; nominal refit {:.1f} %, sham {:.1f} %\n", shrinkElsewhereWords(d), d.held_out,
                         d.nominal_refit_shrink_percent, d.sham_shrink_percent);
   if (!d.next_experiment.commands.empty()) text += fmt::format("next      record next.csv, {}\n", d.next_experiment.why);
   return text;

@@ -128,12 +128,10 @@ std::string howFar(const Diagnosis& d) {
   if (!d.chosen.empty())
     text += shrinkFigure(d) +
             paragraph(fmt::format(
-                "Normalised gap before {:.3g}, after {:.3g}: {} removed ({} to {} expected on another recording "
-                "of this plant, 95 %). The nominal refit "
-                "re-tunes the model's own numbers without any effect; the sham is a disturbance without physical meaning with as "
-                "many parameters.",
-                d.before.normalised, d.after.normalised, percentWords(d.shrink_percent), percentWords(d.shrink_low_percent),
-                percentWords(d.shrink_high_percent)));
+                "Normalised gap before {:.3g}, after {:.3g}: {} removed. Elsewhere means on another recording of this plant. The "
+                "nominal refit re-tunes the model's own numbers without any effect; the sham is a disturbance without physical "
+                "meaning with as many parameters.",
+                d.before.normalised, d.after.normalised, shrinkElsewhereWords(d)));
   if (!d.attempt.effects.empty())
     text += shrinkFigure(d) +
             paragraph(

@@ -43,10 +43,10 @@ std::string probabilityWords(double probability) {
   return probability > nearly_certain ? "over 99 %" : fmt::format("{:.0f} %", 100 * probability);
 }
 
-std::string shrinkWords(const Diagnosis& d) {
-  const std::string words = percentWords(d.shrink_percent);
-  if (d.shrink_low_percent > nearly_all) return words;
-  return fmt::format("{} ({:.1f} to {:.1f})", words, d.shrink_low_percent, d.shrink_high_percent);
+std::string shrinkElsewhereWords(const Diagnosis& d) {
+  if (d.shrink_low_percent > nearly_all) return percentWords(d.shrink_percent) + ", as is expected elsewhere,";
+  return fmt::format("{} ({:.1f} to {:.1f} expected elsewhere, 95 %)", percentWords(d.shrink_percent), d.shrink_low_percent,
+                     d.shrink_high_percent);
 }
 
 std::string componentWords(const std::string& component) {
@@ -63,6 +63,12 @@ std::string whereSentence(const Diagnosis& d) {
 }
 
 namespace {
+
+std::string shrinkWords(const Diagnosis& d) {
+  const std::string words = percentWords(d.shrink_percent);
+  if (d.shrink_low_percent > nearly_all) return words;
+  return fmt::format("{} ({:.1f} to {:.1f})", words, d.shrink_low_percent, d.shrink_high_percent);
+}
 
 constexpr double likely = 0.5;  ///< probability from which a candidate must have failed on data held back
 

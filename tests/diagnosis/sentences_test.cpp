@@ -48,6 +48,8 @@ TEST(VerdictSentence, LeavesOutWhatSaysNothing) {
   const std::string text = verdictSentence(d);
   EXPECT_FALSE(contains(text, "fill_time_constant_s")) << text;
   EXPECT_TRUE(contains(text, "more than 99.9 % of the gap")) << text;
+  EXPECT_EQ(shrinkElsewhereWords(d), "more than 99.9 %, as is expected elsewhere,");
+  EXPECT_EQ(shrinkElsewhereWords(lagFound()), "96.2 % (94.0 to 97.5 expected elsewhere, 95 %)");
   EXPECT_EQ(effectSentence(d.effects.front()), "valve_lag@muscle_1: vent_time_constant_s = 0.081 (0.077 to 0.085)");
 }
 
