@@ -36,3 +36,30 @@ build_preset() {
   rm -f "$output"
   return "$status"
 }
+
+# section_line first|last NAME COMMAND: the lines between which COMMAND writes the section NAME of a document.
+section_line() {
+  case $1 in
+    first) printf '<!-- %s: written by %s -->\n' "$2" "$3" ;;
+    last) printf '<!-- end of %s -->\n' "$2" ;;
+  esac
+}
+
+# require_section DOCUMENT NAME COMMAND: ends the script if the document has no such section.
+require_section() {
+  local first last
+  first=$(section_line first "$2" "$3") last=$(section_line last "$2" "$3")
+  grep -qxF -- "$first" "$1" && grep -qxF -- "$last" "$1" && return
+  say "${0##*/}: $1 has no section \"$first\" .. \"$last\""
+  exit 1
+}
+
+# write_section DOCUMENT NAME COMMAND TEXT: replaces what stands in the section.
+write_section() {
+  local document
+  document=$(awk -v first="$(section_line first "$2" "$3")" -v last="$(section_line last "$2" "$3")" -v text="$4" '
+    $0 == first { print; print ""; print text; print ""; inside = 1; next }
+    $0 == last { inside = 0 }
+    !inside { print }' "$1")
+  printf '%s\n' "$document" >"$1"
+}

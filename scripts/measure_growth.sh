@@ -3,14 +3,13 @@
 # depend on what else the machine does, and writes the table into docs/stepper.md. Needs valgrind; some minutes.
 # Usage: scripts/measure_growth.sh [BUILD_FOLDER]      default: build/release
 set -euo pipefail
-cd "$(dirname "${BASH_SOURCE[0]}")/.."
+root=$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")
+cd "$root"
+# shellcheck source=scripts/common.sh
+source "$root/scripts/common.sh"
 program="${1:-build/release}/musclesim"
 document=docs/stepper.md
-first='<!-- growth: written by scripts/measure_growth.sh -->' last='<!-- end of growth -->'
-if ! grep -qxF -- "$first" "$document" || ! grep -qxF -- "$last" "$document"; then
-  echo "measure_growth.sh: $document has no section \"$first\" .. \"$last\"" >&2
-  exit 1
-fi
+require_section "$document" growth scripts/measure_growth.sh
 command -v valgrind >/dev/null || { echo "measure_growth.sh: there is no valgrind" >&2; exit 1; }
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
@@ -44,8 +43,4 @@ measured="$(
   row 'with contacts'
   row 'with contacts, viscous joints' --joint-friction viscous
 )"
-awk -v first="$first" -v last="$last" -v measured="$measured" '
-  $0 == first { print; print ""; print measured; print ""; inside = 1; next }
-  $0 == last { inside = 0 }
-  !inside { print }' "$document" >"$work/document"
-cat "$work/document" >"$document"
+write_section "$document" growth scripts/measure_growth.sh "$measured"

@@ -3,14 +3,13 @@
 # docs/stepper.md.
 # Usage: scripts/measure_parts.sh [BUILD_FOLDER]      default: build/release, with targets robustness_study and parts_benchmark
 set -euo pipefail
-cd "$(dirname "${BASH_SOURCE[0]}")/.."
+root=$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")
+cd "$root"
+# shellcheck source=scripts/common.sh
+source "$root/scripts/common.sh"
 programs="${1:-build/release}/tests/bench"
 document=docs/stepper.md
-first='<!-- parts: written by scripts/measure_parts.sh -->' last='<!-- end of parts -->'
-if ! grep -qxF -- "$first" "$document" || ! grep -qxF -- "$last" "$document"; then
-  echo "measure_parts.sh: $document has no section \"$first\" .. \"$last\"" >&2
-  exit 1
-fi
+require_section "$document" parts scripts/measure_parts.sh
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 
@@ -65,8 +64,4 @@ benchmarks() {
 }
 
 measured="$(profile; echo; benchmarks)"
-awk -v first="$first" -v last="$last" -v measured="$measured" '
-  $0 == first { print; print ""; print measured; print ""; inside = 1; next }
-  $0 == last { inside = 0 }
-  !inside { print }' "$document" >"$work/document"
-cat "$work/document" >"$document"
+write_section "$document" parts scripts/measure_parts.sh "$measured"
