@@ -79,6 +79,7 @@ Actuator::Actuator(dWorldID world, dSpaceID space, const std::vector<Vector>& po
   else
     buildLinks(dSimpleSpaceCreate(space), points);
   simulation_.actuators_.emplace_back(this);
+  ++simulation_.revision_;
   updateTension();
 }
 
@@ -135,10 +136,13 @@ void Actuator::buildLinks(dSpaceID beads, const std::vector<Vector>& points) {
   }
 }
 
-Joint* Actuator::connect(dBodyID bead, const Vector& anchor, Primitive* primitive, const std::string& which) {
+void Actuator::requireSameSimulation(const Primitive* primitive, const std::string& which) const {
   if (primitive && dBodyGetWorld(primitive->body().id) != simulation_.world())
     throw BadParameter(
         fmt::format("the {} of {} cannot be connected to {}: they belong to different simulations", which, name_, primitive->name()));
+}
+
+Joint* Actuator::connect(dBodyID bead, const Vector& anchor, Primitive* primitive, const std::string& which) {
   const dJointID ball = dJointCreateBall(simulation_.world(), nullptr);
   dJointAttach(ball, bead, primitive ? primitive->body().id : nullptr);
   dJointSetBallAnchor(ball, anchor.x(), anchor.y(), anchor.z());
@@ -147,12 +151,14 @@ Joint* Actuator::connect(dBodyID bead, const Vector& anchor, Primitive* primitiv
 }
 
 void Actuator::connectStartTo(Primitive* primitive) {
+  requireSameSimulation(primitive, "start");
   if (line_) return line_->connect(LineOfPull::End::start, primitive, name_);
   if (start_joint_) throw BadParameter("the start of " + name_ + " is already connected");
   start_joint_ = connect(links_.front().bead[0], start_mm_, primitive, "start");
 }
 
 void Actuator::connectEndTo(Primitive* primitive) {
+  requireSameSimulation(primitive, "end");
   if (line_) return line_->connect(LineOfPull::End::end, primitive, name_);
   if (end_joint_) throw BadParameter("the end of " + name_ + " is already connected");
   end_joint_ = connect(links_.back().bead[1], end_mm_, primitive, "end");
@@ -160,6 +166,7 @@ void Actuator::connectEndTo(Primitive* primitive) {
 
 void Actuator::addViaPoint(Primitive* primitive, const Vector& point_mm) {
   if (!line_) throw BadParameter("via points are for line muscles (muscle.model = line), and " + name_ + " is a chain");
+  requireSameSimulation(primitive, "via point");
   line_->addViaPoint(primitive, point_mm);
   updateTension();
 }

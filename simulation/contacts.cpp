@@ -17,10 +17,10 @@ void Contacts::soften(double error_reduction, double softness) {
   surface_.soft_cfm = softness;
 }
 
-void Contacts::collide() {
+void Contacts::collide(long revision) {
   dJointGroupEmpty(joints_);
   points_.clear();
-  near_.collide(this, &Contacts::onNear);
+  near_.collide(revision, this, &Contacts::onNear);
 }
 
 void Contacts::onNear(void* contacts, dGeomID first, dGeomID second) {

@@ -24,7 +24,8 @@ class Contacts {
   Contacts& operator=(const Contacts&) = delete;
 
   /// Finds all contacts in the present pose and makes their joints; those of the step before are removed.
-  void collide();
+  /// `revision`: Simulation::revision().
+  void collide(long revision);
   /// Error reduction and softness of contacts from now on, in ODE's terms; without them they are the world's.
   void soften(double error_reduction, double softness);
   /// Memory for that many contacts, so that steps need not ask for it.

@@ -19,10 +19,12 @@ double difference(const dReal* a, const dReal* b, int count) {
 
 }  // namespace
 
-void NearPairs::collide(void* data, dNearCallback* near) {
-  moveBodies();
-  if (!listIsGood()) makeList();
-  if (has_subspaces_) return dSpaceCollide(space_, data, near);
+void NearPairs::collide(long revision, void* data, dNearCallback* near) {
+  const bool known = revision == revision_ && holdsTheGeoms();
+  if (known) moveBodies();
+  if (!known || haveMovedFar()) makeList();
+  revision_ = revision;
+  if (left_to_space_) return dSpaceCollide(space_, data, near);
   ++time_;
   found_.clear();
   for (BodyPair& bodies : body_pairs_) {
@@ -68,13 +70,15 @@ void NearPairs::moveBodies() {
   }
 }
 
-/// Whether it holds the space's geoms in their present order: the space puts what is new or has been moved in front.
-bool NearPairs::listIsGood() const {
+/// In their present order: the space puts what is new or has been moved in front.
+bool NearPairs::holdsTheGeoms() const {
   const std::size_t count = geoms_.size();
   if (count != static_cast<std::size_t>(dSpaceGetNumGeoms(space_))) return false;
-  if (has_subspaces_ || count == 0) return true;
-  if (dSpaceGetGeom(space_, 0) != geoms_.front().id) return false;
-  return std::ranges::none_of(moved_mm_, [](double mm) { return mm > most_moved_mm; });
+  return left_to_space_ || count == 0 || dSpaceGetGeom(space_, 0) == geoms_.front().id;
+}
+
+bool NearPairs::haveMovedFar() const {
+  return std::ranges::any_of(moved_mm_, [](double mm) { return mm > most_moved_mm; });
 }
 
 void NearPairs::makeList() {
@@ -82,13 +86,13 @@ void NearPairs::makeList() {
   bodies_.clear();
   moved_mm_.clear();
   const int count = dSpaceGetNumGeoms(space_);
-  has_subspaces_ = false;
+  left_to_space_ = dSpaceGetClass(space_) != dSimpleSpaceClass;
   for (int i = 0; i < count; ++i) {
     const dGeomID geom = dSpaceGetGeom(space_, i);
-    has_subspaces_ = has_subspaces_ || dGeomIsSpace(geom);
+    left_to_space_ = left_to_space_ || dGeomIsSpace(geom);
     geoms_.push_back({geom, dGeomIsSpace(geom) ? 0 : placeOf(dGeomGetBody(geom)), roundedBoxOf(geom), 0, {}});
   }
-  if (has_subspaces_) return bodies_.clear();
+  if (left_to_space_) return bodies_.clear();
   moved_mm_.resize(bodies_.size());
   time_ = 1;
   for (std::size_t i = 0; i < geoms_.size(); ++i) extend(bodies_[geoms_[i].body], boxOf(i));
@@ -127,10 +131,12 @@ std::size_t NearPairs::placeOf(dBodyID body) {
 
 /// One of the body's geoms fills this box.
 void NearPairs::extend(Body& body, const Box& box) {
-  double farthest[3];
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    farthest[axis] = std::max(std::abs(box[2 * axis] - body.position[axis]), std::abs(box[2 * axis + 1] - body.position[axis]));
-  body.reach_mm = std::max(body.reach_mm, std::hypot(farthest[0], farthest[1], farthest[2]));
+  double square = 0;  // infinite for a plane
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double farthest = std::max(std::abs(box[2 * axis] - body.position[axis]), std::abs(box[2 * axis + 1] - body.position[axis]));
+    square += farthest * farthest;
+  }
+  body.reach_mm = std::max(body.reach_mm, std::sqrt(square));
 }
 
 const NearPairs::Box& NearPairs::boxOf(std::size_t number) {

@@ -17,9 +17,10 @@ namespace musclesim {
 class NearPairs {
  public:
   explicit NearPairs(dSpaceID space) : space_(space) {}
-  /// Calls `near` for the pairs that may touch, in the order of dSpaceCollide, but not for pairs of one body and of two that were joined at
-  /// the first call.
-  void collide(void* data, dNearCallback* near);
+  /// Calls `near` for the pairs that may touch, in the order of dSpaceCollide, but not for pairs of one body and of two that are joined.
+  /// `revision` must be another one wherever bodies, joints or geoms have been added, removed or put together. Spaces that are not simple,
+  /// or hold others, are left to dSpaceCollide. All geoms must be enabled and meet all others.
+  void collide(long revision, void* data, dNearCallback* near);
 
  private:
   using Box = std::array<dReal, 6>;  ///< low and high per axis
@@ -51,7 +52,8 @@ class NearPairs {
     double due_mm;                     ///< of the first of them
   };
   void moveBodies();
-  bool listIsGood() const;
+  bool holdsTheGeoms() const;
+  bool haveMovedFar() const;
   void makeList();
   void listPairs();
   std::size_t placeOf(dBodyID body);
@@ -63,7 +65,8 @@ class NearPairs {
   static double distanceMm(const Box& a, const Box& b);
 
   dSpaceID space_;
-  bool has_subspaces_ = false;  ///< ODE is asked then
+  bool left_to_space_ = false;  ///< ODE is asked
+  long revision_ = -1;          ///< at the last call
   long time_ = 0;               ///< number of calls
   std::vector<Geom> geoms_;
   std::vector<Body> bodies_;

@@ -287,7 +287,7 @@ void Simulation::collide(double h_s) {
     const auto stop = PhysicsSettings::stop(physics_.contact_compliance, physics_.contact_time_constant_s, h_s);
     contacts_->soften(stop.error_reduction, stop.softness);
   }
-  contacts_->collide();
+  contacts_->collide(revision_);
 }
 
 void Simulation::requireFinite() const {
@@ -380,24 +380,29 @@ void Simulation::stop() {
 }
 
 void Simulation::disown(const Primitive& primitive) {
+  ++revision_;
   release(primitives_, primitive);
 }
 
 void Simulation::disown(const Actuator& actuator) {
+  ++revision_;
   release(actuators_, actuator);
 }
 
 Body& Simulation::addBody(dBodyID id, Primitive& part) {
+  ++revision_;
   bodies_.push_back(std::make_unique<Body>(Body{id, {&part}, false}));
   return *bodies_.back();
 }
 
 void Simulation::removeBody(Body& body) {
+  ++revision_;
   dBodyDestroy(body.id);
   std::erase_if(bodies_, [&](const auto& b) { return b.get() == &body; });
 }
 
 Joint& Simulation::addJoint(Joint::Kind kind, dJointID id, const std::string& name) {
+  ++revision_;
   joints_.push_back(std::make_unique<Joint>(kind, id, name));
   return *joints_.back();
 }

@@ -14,15 +14,11 @@ ChainStepper::ChainStepper(const Simulation& simulation, const Contacts& contact
 ChainStepper::~ChainStepper() = default;
 
 bool ChainStepper::upToDate() const {
-  return prepared_ && joint_count_ == simulation_.joints().size() && body_count_ == simulation_.bodies().size() &&
-         actuator_count_ == simulation_.actuators().size();
+  return revision_ == simulation_.revision();
 }
 
 void ChainStepper::prepare() {
-  joint_count_ = simulation_.joints().size();
-  body_count_ = simulation_.bodies().size();
-  actuator_count_ = simulation_.actuators().size();
-  prepared_ = true;
+  revision_ = simulation_.revision();
   registered_reduction_ = simulation_.physics().errorReductionPerStep(simulation_.internalStepS());
   problem_.reset();
   state_is_current_ = false;

@@ -51,9 +51,8 @@ class ChainStepper final : public Stepper {
   BodyBounds bounds_;
   bool strict_;
   double registered_reduction_ = 0;  ///< ODE's ERP of the world as the simulation set it
-  bool prepared_ = false;
-  std::size_t joint_count_ = 0, body_count_ = 0, actuator_count_ = 0;
-  std::string reason_;  ///< why dWorldStep is used; empty: it is not
+  long revision_ = -1;               ///< of the simulation when the model was registered
+  std::string reason_;               ///< why dWorldStep is used; empty: it is not
   chain::Model model_;
   std::unique_ptr<chain::StepProblem> problem_;
   chain::BoxActiveSet active_set_;

@@ -77,7 +77,8 @@ void setAnchorRows(const JointModel& joint, const Pair& pair, double k, JointRow
 /// The stop that is reached at a position, as ODE tests it: before the step.
 AxisContact stopAt(const AxisLimits& limits, double position, bool active) {
   if (active && limits.low_stop <= limits.high_stop) {
-    if (position <= limits.low_stop) return limits.low_stop == limits.high_stop ? AxisContact::locked : AxisContact::low_stop;
+    if (limits.low_stop == limits.high_stop) return AxisContact::locked;
+    if (position <= limits.low_stop) return AxisContact::low_stop;
     if (position >= limits.high_stop) return AxisContact::high_stop;
   }
   return limits.motor_force > 0 ? AxisContact::motor : AxisContact::none;
@@ -197,15 +198,32 @@ int JointModel::positionRowCount() const {
   return kind == Joint::Kind::ball ? 3 : kind == Joint::Kind::fixed ? 6 : 5;
 }
 
+namespace {
+
+/// A number that ODE keeps of a slider or hinge.
+double parameterOf(const JointModel& joint, int which) {
+  const dJointID id = joint.joint->id();
+  return joint.kind == Joint::Kind::slider ? dJointGetSliderParam(id, which) : dJointGetHingeParam(id, which);
+}
+
+}  // namespace
+
 void JointModel::readLimits() {
-  const dJointID id = joint->id();
-  const auto get = [&](int which) {
-    return kind == Joint::Kind::slider ? dJointGetSliderParam(id, which) : dJointGetHingeParam(id, which);
-  };
   if (kind != Joint::Kind::slider && kind != Joint::Kind::hinge) return;
-  limits.low_stop = get(dParamLoStop);
-  limits.high_stop = get(dParamHiStop);
-  limits.motor_force = get(dParamFMax);
+  limits.low_stop = parameterOf(*this, dParamLoStop);
+  limits.high_stop = parameterOf(*this, dParamHiStop);
+  limits.motor_force = parameterOf(*this, dParamFMax);
+}
+
+void JointModel::readAxis() {
+  if (kind != Joint::Kind::slider && kind != Joint::Kind::hinge) return;
+  readLimits();
+  limits.motor_velocity = parameterOf(*this, dParamVel);
+  limits.fudge_ratio = parameterOf(*this, dParamFudgeFactor);
+  limits.bounce_ratio = parameterOf(*this, dParamBounce);
+  limits.motor_softness = parameterOf(*this, dParamCFM);
+  limits.stop_softness = parameterOf(*this, dParamStopCFM);
+  limits.stop_reduction = parameterOf(*this, dParamStopERP);
 }
 
 JointModel registerJoint(const Joint& joint, const BodyState& bodies) {
@@ -226,16 +244,7 @@ JointModel registerJoint(const Joint& joint, const BodyState& bodies) {
     model.reduction = dJointGetFixedParam(id, dParamERP);
     model.softness = dJointGetFixedParam(id, dParamCFM);
   } else {
-    const auto get = [&](int which) {
-      return model.kind == Joint::Kind::slider ? dJointGetSliderParam(id, which) : dJointGetHingeParam(id, which);
-    };
-    model.limits.motor_velocity = get(dParamVel);
-    model.limits.fudge_ratio = get(dParamFudgeFactor);
-    model.limits.bounce_ratio = get(dParamBounce);
-    model.limits.motor_softness = get(dParamCFM);
-    model.limits.stop_softness = get(dParamStopCFM);
-    model.limits.stop_reduction = get(dParamStopERP);
-    model.readLimits();
+    model.readAxis();
   }
   return model;
 }

@@ -62,13 +62,17 @@ StepProblem::StepProblem(Model& model) : model_(model) {
   reserve();
 }
 
-/// Fixed bones to which nothing else is joined.
+/// Bones that are fixed once and to which nothing else is joined.
 void StepProblem::findLoneBones() {
   const auto join = [&](const JointModel& joint) {
     for (const int body : joint.body)
       if (body >= 0 && body < model_.boneCount()) bones_[static_cast<std::size_t>(body)].lone = false;
   };
-  for (const JointModel& joint : model_.fixed) bones_[static_cast<std::size_t>(joint.body[0])].lone = true;
+  std::vector<int> fixations(bones_.size());
+  for (const JointModel& joint : model_.fixed) {
+    const auto bone = static_cast<std::size_t>(joint.body[0]);
+    bones_[bone].lone = ++fixations[bone] == 1;
+  }
   for (const JointModel& joint : model_.skeleton) join(joint);
   for (const Chain& chain : model_.chains) {
     join(chain.start);
@@ -181,7 +185,7 @@ void StepProblem::makeJointRows() {
     make(chain.start, chains_[c].start);
   }
   for (std::size_t i = 0; i < skeleton_.size(); ++i) {
-    model_.skeleton[i].readLimits();
+    model_.skeleton[i].readAxis();
     make(model_.skeleton[i], skeleton_[i]);
   }
   for (std::size_t i = 0; i < fixed_.size(); ++i)

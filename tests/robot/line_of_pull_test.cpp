@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <vector>
 
 #include "musclesim/robot/muscle.h"
 #include "musclesim/simulation/simulation.h"
@@ -105,6 +107,17 @@ TEST(LineMuscle, TwiceConnectedEndsAndViaPointsOfChainsAreRefused) {
   Simulation chains;
   auto* chain = lineBetween(chains, {0, 0, 0}, {0, -210, 0});
   EXPECT_TRUE(contains(messageOf<BadParameter>([&] { chain->addViaPoint(nullptr, {0, 0, 0}); }), "is a chain"));
+}
+
+TEST(LineMuscle, IsNotTiedToAnotherSimulation) {
+  Simulation simulation(lineOptions()), other(lineOptions());
+  auto* line = lineBetween(simulation, {0, 0, 0}, {0, -210, 0});
+  auto* bone = new Sphere(other.world(), nullptr, {0, -210, 0}, 1000, 0, 5);
+  for (const auto& tie : std::vector<std::function<void()>>{[&] { line->connectStartTo(bone); }, [&] { line->connectEndTo(bone); },
+                                                            [&] {
+                                                              line->addViaPoint(bone, {0, -100, 0});
+                                                            }})
+    EXPECT_TRUE(contains(messageOf<BadParameter>(tie), "different simulations"));
 }
 
 }  // namespace

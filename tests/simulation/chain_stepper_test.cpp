@@ -148,14 +148,17 @@ TEST(ChainStepper, TakesWhatHappensToABodyAtRestLikeDWorldStep) {
   Simulation ode(options);
   options.stepper = StepperKind::chain;
   Simulation chain(options);
-  for (Simulation* simulation : {&ode, &chain})
+  for (Simulation* simulation : {&ode, &chain}) {
     for (const double x_mm : {0.0, 300.0}) (new Box(simulation->world(), simulation->space(), {x_mm, 0, 0}, 100, 0, 10, 20, 30))->fix();
+    simulation->primitives()[1]->fix();  // twice
+  }
   for (int step = 0; step < 200; ++step) {
     for (const Simulation* simulation : {&ode, &chain}) {
       const dBodyID body = simulation->bodies()[0]->id;
       dMass heavy;
       dMassSetSphereTotal(&heavy, 500, 20);
       if (step == 60) dBodyAddForce(body, 1e9, 0, -1e9);
+      if (step >= 60 && step < 80) dBodyAddForce(simulation->bodies()[1]->id, 0, 1e9, 0);
       if (step == 100) dBodySetAngularVel(body, 0, 1e-3, 0);
       if (step == 140) dBodySetMass(body, &heavy);
       if (step == 180) dBodySetPosition(body, 0, 1e-3, 0);
@@ -164,6 +167,62 @@ TEST(ChainStepper, TakesWhatHappensToABodyAtRestLikeDWorldStep) {
     chain.step();
     EXPECT_LT(velocityDifference(ode, chain), 1e-9) << step;
   }
+}
+
+/// Joints without play, and motors that are given another speed on the way.
+TEST(ChainStepper, TakesEqualStopsAndChangedMotorsLikeDWorldStep) {
+  SimulationOptions options;
+  options.substeps = 1;
+  options.step_s = 1e-3;
+  options.stepper = StepperKind::ode;
+  Simulation ode(options);
+  options.stepper = StepperKind::chain;
+  Simulation chain(options);
+  std::vector<dJointID> motors;
+  for (Simulation* simulation : {&ode, &chain})
+    for (int i = 0; i < 3; ++i) {
+      const double x_mm = 100.0 * i, limit_deg = i == 2 ? 90 : 0;
+      auto* box = new Box(simulation->world(), simulation->space(), {x_mm, 0, 0}, 100, 0, 10, 60, 30);
+      const dJointID hinge = box->attachHinge(nullptr, {x_mm, 30, 0}, {0, 0, 1}, -limit_deg, limit_deg)->id();
+      dJointSetHingeParam(hinge, dParamFMax, 1e5);
+      dJointSetHingeParam(hinge, dParamVel, 1);
+      dBodySetAngularVel(simulation->bodies()[static_cast<std::size_t>(i)]->id, 0, 0, i == 0 ? 5 : -5);
+      motors.push_back(hinge);
+    }
+  for (int step = 0; step < 200; ++step) {
+    if (step == 100)
+      for (const dJointID hinge : motors) dJointSetHingeParam(hinge, dParamVel, -3);
+    copyState(ode, chain);
+    ode.step();
+    chain.step();
+    ASSERT_LT(velocityDifference(ode, chain), exactness) << step;
+  }
+  EXPECT_EQ(chain.stepper().name(), "chain");
+}
+
+/// As many bodies as before, but others.
+TEST(ChainStepper, TakesBodiesPutTogetherLaterLikeDWorldStep) {
+  SimulationOptions options;
+  options.plane = true;
+  options.stepper = StepperKind::ode;
+  Simulation ode(options);
+  options.stepper = StepperKind::chain;
+  Simulation chain(options);
+  for (Simulation* simulation : {&ode, &chain}) {
+    for (const double x_mm : {0.0, 40.0, 300.0}) new Box(simulation->world(), simulation->space(), {x_mm, -491, 0}, 100, 0, 30, 20, 30);
+    simulation->step();
+    simulation->primitives()[0]->compositeWithPrimitive(simulation->primitives()[1].get());
+    new Box(simulation->world(), simulation->space(), {10, -472, 5}, 300, 0, 30, 20, 30);
+  }
+  int most_contacts = 0;
+  for (int step = 0; step < 50; ++step) {
+    makeComparable(ode, chain);
+    ode.step();
+    chain.step();
+    most_contacts = std::max(most_contacts, chain.contactCount());
+    ASSERT_LT(velocityDifference(ode, chain), exactness) << step;
+  }
+  EXPECT_GT(most_contacts, 1);
 }
 
 TEST(ChainStepper, LeavesUniversalJointsToDWorldStepAndSaysSo) {

@@ -33,6 +33,7 @@ class NearPairsTest : public testing::Test {
       dBodySetPosition(body, random.uniform(-300, 300), random.uniform(-300, 300), random.uniform(-300, 300));
     }
     dGeomSetPosition(dCreateBox(space, 100, 100, 100), 50, 0, 0);
+    dCreatePlane(space, 0, 1, 0, -250);
     const dJointID joint = dJointCreateBall(world, nullptr);
     dJointAttach(joint, bodies[0], bodies[1]);
   }
@@ -69,7 +70,7 @@ TEST_F(NearPairsTest, AreThoseOfAllPairsInTheSameOrder) {
     stir(step % 100 == 99 ? 200 : 1.5, 0.02);
     Pairs all, listed;
     dSpaceCollide(space, &all, &collect);
-    near.collide(&listed, &collect);
+    near.collide(0, &listed, &collect);
     ASSERT_EQ(listed, all) << "step " << step;
     found += all.size();
   }
@@ -78,10 +79,42 @@ TEST_F(NearPairsTest, AreThoseOfAllPairsInTheSameOrder) {
 
 TEST_F(NearPairsTest, TakeGeomsThatAreAddedLater) {
   Pairs before, after;
-  near.collide(&before, &collect);
+  near.collide(0, &before, &collect);
   dGeomSetPosition(dCreateBox(space, 1000, 1000, 1000), 0, 0, 0);
-  near.collide(&after, &collect);
+  near.collide(0, &after, &collect);
   EXPECT_GE(after.size(), before.size() + 6);
+}
+
+TEST_F(NearPairsTest, ForgetBodiesThatWerePutTogether) {
+  Pairs before, all, listed;
+  near.collide(0, &before, &collect);
+  dGeomSetBody(dBodyGetFirstGeom(bodies[5]), bodies[4]);
+  dBodyDestroy(bodies[5]);
+  bodies.erase(bodies.begin() + 5);
+  stir(100, 0.5);
+  dSpaceCollide(space, &all, &collect);
+  near.collide(1, &listed, &collect);
+  EXPECT_EQ(listed, all);
+}
+
+TEST(NearPairs, LeaveSpacesOfOtherKindsToOde) {
+  const Simulation ode_is_running;
+  const dWorldID world = dWorldCreate();
+  const dSpaceID space = dHashSpaceCreate(nullptr);
+  RandomStream random{8, "near_pairs"};
+  for (int i = 0; i < 40; ++i) {
+    const dBodyID body = dBodyCreate(world);
+    dGeomSetBody(dCreateBox(space, 30, 200, 50), body);
+    dBodySetPosition(body, random.uniform(-200, 200), random.uniform(-200, 200), random.uniform(-200, 200));
+  }
+  NearPairs near{space};
+  Pairs all, listed;
+  dSpaceCollide(space, &all, &collect);
+  near.collide(0, &listed, &collect);
+  EXPECT_EQ(listed, all);
+  EXPECT_GT(all.size(), 10u);
+  dSpaceDestroy(space);
+  dWorldDestroy(world);
 }
 
 }  // namespace

@@ -9,8 +9,12 @@ namespace musclesim {
 /// Of the calling thread.
 inline thread_local long allocation_count = 0;
 
+/// Not inline where it is called: compilers would see malloc and free where they expect new and delete.
+[[gnu::noinline]] inline void freeAllocation(void* memory) noexcept {
+  std::free(memory);
+}
 /// malloc, or aligned_alloc where `alignment` is not 0; throws std::bad_alloc.
-inline void* countedAllocation(std::size_t size, std::size_t alignment = 0) {
+[[gnu::noinline]] inline void* countedAllocation(std::size_t size, std::size_t alignment = 0) {
   ++allocation_count;
   if (void* memory = alignment ? std::aligned_alloc(alignment, size) : std::malloc(size)) return memory;
   throw std::bad_alloc();
@@ -32,20 +36,20 @@ void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   return std::malloc(size);
 }
 void operator delete(void* memory) noexcept {
-  std::free(memory);
+  musclesim::freeAllocation(memory);
 }
 void operator delete[](void* memory) noexcept {
-  std::free(memory);
+  musclesim::freeAllocation(memory);
 }
 void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
+  musclesim::freeAllocation(memory);
 }
 void operator delete[](void* memory, std::size_t) noexcept {
-  std::free(memory);
+  musclesim::freeAllocation(memory);
 }
 void operator delete(void* memory, std::align_val_t) noexcept {
-  std::free(memory);
+  musclesim::freeAllocation(memory);
 }
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-  std::free(memory);
+  musclesim::freeAllocation(memory);
 }

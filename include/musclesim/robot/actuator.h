@@ -137,6 +137,7 @@ class Actuator {
   void setViscousMotors();
   void setFriction(dJointID joint, double force, double speed) const;
   void buildLinks(dSpaceID beads, const std::vector<Vector>& points);
+  void requireSameSimulation(const Primitive* primitive, const std::string& which) const;
   Joint* connect(dBodyID bead, const Vector& anchor, Primitive* primitive, const std::string& which);
 
   Simulation& simulation_;

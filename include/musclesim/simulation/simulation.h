@@ -101,6 +101,8 @@ class Simulation {
   const std::vector<std::unique_ptr<Actuator>>& actuators() const { return actuators_; }
   const std::vector<std::unique_ptr<Joint>>& joints() const { return joints_; }
   const std::vector<std::unique_ptr<Body>>& bodies() const { return bodies_; }
+  /// Goes up whenever a body, a joint, a shape or a muscle is added or removed.
+  long revision() const { return revision_; }
   int contactCount() const;
   /// Number of messages from ODE's solver ("LCP internal error") during this simulation's steps.
   long solverMessageCount() const { return solver_message_count_; }
@@ -150,6 +152,7 @@ class Simulation {
   int substeps_ = 1;
   bool substeps_given_ = false;
   std::size_t prepared_actuator_count_ = 0;
+  long revision_ = 0;
   double error_reduction_ = 0;  ///< ODE's ERP as set by this class
   std::uint64_t seed_;
   double start_time_s_ = 0, internal_time_s_ = 0;
