@@ -75,6 +75,7 @@ BenchRun measure(const Candidate& candidate, int muscle_count, const BenchArgume
   RandomStream random(1, "bench.pressures");
   musclesim::Action command(static_cast<std::size_t>(muscle_count));
   BenchRun run;
+  run.muscle_count = muscle_count;
   const double begin = cpuSeconds();
   const auto goesOn = [&] {
     const double cpu_s = cpuSeconds() - begin;
@@ -102,29 +103,33 @@ BenchRun measure(const Candidate& candidate, int muscle_count, const BenchArgume
 /// The run with the median ratio.
 BenchRun median(std::vector<BenchRun> runs) {
   std::sort(runs.begin(), runs.end(), [](const BenchRun& a, const BenchRun& b) { return a.ratio < b.ratio; });
-  return runs[runs.size() / 2];
+  BenchRun result = runs[runs.size() / 2];
+  result.repeat_count = static_cast<int>(runs.size());
+  result.spread = runs.back().ratio / runs.front().ratio;
+  return result;
 }
 
 int bench(const ModelOptions& model, const BenchArguments& arguments) {
   if (!(arguments.duration_s >= 0.05)) throw BadParameter("duration", fmt::format("{} s", arguments.duration_s), "be at least 0.05 s");
   if (arguments.repeat_count < 1) throw BadParameter("repeats", fmt::format("{}", arguments.repeat_count), "be at least 1");
-  std::vector<BenchCurve> curves;
-  for (const Candidate& candidate : candidates()) curves.push_back({candidate.name, {}});
-  // Candidates in turn, not one after the other: what else the machine does meets all of them.
-  for (const int count : arguments.muscle_counts)
-    for (std::size_t c = 0; c < curves.size(); ++c) {
-      std::vector<BenchRun> runs;
-      for (int i = 0; i < arguments.repeat_count && interruptSignal() == 0; ++i) {
-        runs.push_back(measure(candidates()[c], count, arguments));
-        if (runs.back().cut_short) break;  // too slow to be repeated
+  const std::vector<Candidate> all = candidates();
+  std::vector<std::vector<std::vector<BenchRun>>> runs(all.size());  // by candidate, number of muscles, repeat
+  for (auto& of_candidate : runs) of_candidate.resize(arguments.muscle_counts.size());
+  // Every repeat goes through everything, candidates in turn: what else the machine does for a while meets one repeat of many.
+  for (int repeat = 0; repeat < arguments.repeat_count; ++repeat)
+    for (std::size_t n = 0; n < arguments.muscle_counts.size(); ++n)
+      for (std::size_t c = 0; c < all.size(); ++c) {
+        if (repeat > 0 && runs[c][n].back().cut_short) continue;  // too slow to be repeated
+        runs[c][n].push_back(measure(all[c], arguments.muscle_counts[n], arguments));
+        if (interruptSignal()) return interrupted_base + interruptSignal();
+        say(model, fmt::format("{} of {}: {} muscles, {}: r = {:.3g}", repeat + 1, arguments.repeat_count, arguments.muscle_counts[n],
+                               all[c].name, runs[c][n].back().ratio));
       }
-      if (interruptSignal()) return interrupted_base + interruptSignal();
-      BenchRun run = median(runs);
-      run.muscle_count = count;
-      run.repeat_count = static_cast<int>(runs.size());
-      curves[c].runs.push_back(run);
-      say(model, fmt::format("{} muscles, {}: r = {:.3g}", count, curves[c].name, run.ratio));
-    }
+  std::vector<BenchCurve> curves;
+  for (std::size_t c = 0; c < all.size(); ++c) {
+    curves.push_back({all[c].name, {}});
+    for (const auto& repeats : runs[c]) curves.back().runs.push_back(median(repeats));
+  }
   const std::filesystem::path folder(arguments.out);
   std::filesystem::create_directories(folder / "figures");
   const std::string table = benchTable(curves, arguments.duration_s, shortest_cpu_s, arguments.time_limit_s);

@@ -41,6 +41,15 @@ std::string cell(const BenchRun& run) {
                       : fmt::format("{:.3g}{}", run.ratio, run.cut_short ? "*" : "");
 }
 
+std::string spreadWords(const BenchCurve& curve) {
+  std::vector<double> spreads;
+  for (const BenchRun& run : curve.runs)
+    if (run.repeat_count > 1) spreads.push_back(run.spread);
+  if (spreads.empty()) return "";
+  std::sort(spreads.begin(), spreads.end());
+  return fmt::format("{:.2f} .. {:.2f}", spreads[spreads.size() / 2], spreads.back());
+}
+
 /// Logarithmic axes of the figure.
 struct Plane {
   SvgBox box{70, 40, 560, 520};
@@ -86,16 +95,16 @@ std::string benchTable(const std::vector<BenchCurve>& curves, double duration_s,
       "clock, as in the paper.\n\n";
   text += fmt::format(
       "All of it is one process' work; every number is the median of its repeats over {:g} true seconds or, where that is longer, {:g} s "
-      "of CPU time. `*`: cut short after {:g} s of "
-      "CPU\n"
-      "time and not repeated. Exponent: of n in a power law through the points from n = 10 on.\n\n",
+      "of CPU time. `*`: cut short after {:g} s of CPU time and not repeated. Exponent: of n in a power law through the points from n = 10 "
+      "on. "
+      "Spread: the largest over the smallest of the repeats, median and worst over all n; far from 1 where the machine had other work.\n\n",
       duration_s, shortest_cpu_s, time_limit_s);
   text += "| |";
   std::string rule = "|---|";
   for (const BenchRun& run : curves.front().runs) text += fmt::format(" n = {} |", run.muscle_count), rule += "---|";
-  text += " exponent | internal steps | joint gap mm | contacts |\n" + rule + "---|---|---|---|\n| paper, 2007 |";
+  text += " exponent | spread | internal steps | joint gap mm | contacts |\n" + rule + "---|---|---|---|---|\n| paper, 2007 |";
   for (const BenchRun& run : curves.front().runs) text += fmt::format(" {:.3g} |", paperRatio(run.muscle_count));
-  text += " 3.2 | 1 | | |\n";
+  text += " 3.2 | | 1 | | |\n";
   for (const BenchCurve& curve : curves) {
     text += "| " + curve.name + " |";
     double gap_mm = 0;
@@ -105,7 +114,8 @@ std::string benchTable(const std::vector<BenchCurve>& curves, double duration_s,
       gap_mm = std::max(gap_mm, run.gap_mm);
       contacts = std::max(contacts, run.contact_count);
     }
-    text += fmt::format(" {:.2f} | {} | {:.2g} | {} |\n", fittedExponent(curve, 10), curve.runs.back().substeps, gap_mm, contacts);
+    text += fmt::format(" {:.2f} | {} | {} | {:.2g} | {} |\n", fittedExponent(curve, 10), spreadWords(curve), curve.runs.back().substeps,
+                        gap_mm, contacts);
   }
   text +=
       "\nInternal steps: per control step of 0.01 s. Joint gap: the largest over all n; dWorldQuickStep is fast because it leaves gaps.\n";
@@ -154,7 +164,10 @@ nlohmann::json benchJson(const std::vector<BenchCurve>& curves) {
   json["command"] = "bench";
   json["status"] = "done";
   for (const BenchCurve& curve : curves)
-    for (const BenchRun& run : curve.runs) json["ratio"][curve.name][std::to_string(run.muscle_count)] = run.ratio;
+    for (const BenchRun& run : curve.runs) {
+      json["ratio"][curve.name][std::to_string(run.muscle_count)] = run.ratio;
+      json["spread"][curve.name][std::to_string(run.muscle_count)] = run.spread;
+    }
   return json;
 }
 

@@ -9,7 +9,8 @@ namespace musclesim::program {
 
 struct BenchRun {
   int muscle_count = 0, repeat_count = 0, substeps = 0, contact_count = 0;
-  double ratio = 0;  ///< CPU time over simulated time
+  double ratio = 0;   ///< CPU time over simulated time
+  double spread = 1;  ///< largest over smallest ratio of the repeats
   double simulated_s = 0, gap_mm = 0;
   bool cut_short = false, diverged = false;
 };
