@@ -22,7 +22,7 @@ shares() {
     /^ *[0-9.]+%/ {
       share = $1 + 0
       if (/ChainBundle/) part = "chains"
-      else if (/Tile|solveLower|solveUpper|subtractProduct|subtractTransposed|SkeletonCore|CoreOrder|combineSixRows/) part = "core: solve"
+      else if (/Tile|solveLower|solveUpper|subtractProduct|subtractTransposed|SkeletonCore|CoreOrder|solveSixRows|subtractCombination|addProduct/) part = "core: solve"
       else if (/addChain|addContact|addShared|addSkeleton|addBones|throughBead|numberRows|chooseBand|findStiff|assembleCore/) part = "core: assembly"
       else if (/makeRows|Rows\(|planeAcross|turnOf|axisVelocity|setAxisRow|hingeAngle|atan2|readLimits|ContactSet/) part = "rows"
       else if (/BodyState|dBody|dGeomMoved|dRfromQ|dxSafeNormalize|gapOf/) part = "bodies: read, move, write"

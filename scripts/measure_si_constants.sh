@@ -5,13 +5,12 @@
 set -euo pipefail
 recording="$(realpath "${1:?usage: scripts/measure_si_constants.sh RECORDING.csv [internal_step_study]}")"
 program="$(realpath "${2:-$(dirname "${BASH_SOURCE[0]}")/../build/release/tests/bench/internal_step_study}")"
-cd "$(dirname "${BASH_SOURCE[0]}")/.."
+root=$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")
+cd "$root"
+# shellcheck source=scripts/common.sh
+source "$root/scripts/common.sh"
 document=docs/parameters.md
-first='<!-- constants: written by scripts/measure_si_constants.sh -->' last='<!-- end of constants -->'
-if ! grep -qxF -- "$first" "$document" || ! grep -qxF -- "$last" "$document"; then
-  echo "measure_si_constants.sh: $document has no section \"$first\" .. \"$last\"" >&2
-  exit 1
-fi
+require_section "$document" constants scripts/measure_si_constants.sh
 
 # A row "description | distances | gap": the first internal step in ms against a run of its own with 0.05 ms.
 row() {
@@ -32,7 +31,6 @@ contacts() {
 table() {
   local rate=physics.error_reduction_rate_per_s bare
   bare="physics.contacts=off $(stops 0 0 0.002)"
-  echo
   echo '| varied; internal step 1 ms | at 0.1 s mm | at 0.3 s mm | largest until 0.3 s mm | joint gap mm |'
   echo '|---|---|---|---|---|'
   # Words are meant to be split.
@@ -51,16 +49,6 @@ table() {
     row 'the defaults without the inertia that beads gain' 1 physics.geometric_inertia_ratio=0
     row 'the defaults with twice of it' 1 physics.geometric_inertia_ratio=0.5
   }
-  echo
 }
 
-new="$(mktemp "$document.XXXXXX")"
-trap 'rm -f "$new"' EXIT
-measured="$(table)"
-awk -v first="$first" -v last="$last" -v measured="$measured" '
-  $0 == first { print; print measured; print ""; inside = 1; next }
-  $0 == last { inside = 0 }
-  !inside { print }' "$document" >"$new"
-chmod 644 "$new"
-mv "$new" "$document"
-trap - EXIT
+write_section "$document" constants scripts/measure_si_constants.sh "$(table)"

@@ -28,7 +28,6 @@ class ChainBundle {
   /// Chains of different length are aligned at their ends; the shorter one's first nodes are empty. Bead counts are even; 0: empty lane.
   explicit ChainBundle(const std::array<int, lane_count>& bead_counts);
 
-  int beadCount(int lane) const { return bead_count_[static_cast<std::size_t>(lane)]; }
   int nodeCount() const { return static_cast<int>(nodes_.size()); }
 
   /// Rows of joint k of a chain, for the step h.

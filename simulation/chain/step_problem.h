@@ -1,4 +1,4 @@
-/// The box-constrained problem of one step, solved by elimination: beads, chains, bones, dense core.
+/// The box-constrained problem of one step, solved by elimination: beads, chains, bones, core.
 ///
 ///     M u - J^T l = M v/h + f,   J u + cfm/h l = c/h + w,   lower <= l <= upper, w complementary      u = v+ / h
 /// A row at a bound takes no part; its force acts on its bodies like any other.
