@@ -7,6 +7,7 @@
 #include <mutex>
 #include <set>
 
+#include "data_checks.h"
 #include "parallel.h"
 
 namespace musclesim {
@@ -23,13 +24,6 @@ constexpr int few_effects = 2;              ///< up to that many, the first look
 constexpr int first_rounds = 2, more_rounds = 6, last_rounds = 2;
 constexpr int many_rounds = 12;  ///< in place of the last rounds where many effects act together
 constexpr Reach single_reach = {0.8, 0.4}, pair_reach = {0.25, 0.1};
-
-bool sameCommands(const Recording& a, const Recording& b) {
-  return std::ranges::all_of(a.signals, [&](const Signal& signal) {
-    const Signal* other = b.find(signal.name);
-    return !signal.name.starts_with("command_") || (other && other->values == signal.values);
-  });
-}
 
 /// The beginnings of the first recordings with different commands.
 std::vector<Stretch> lookStretches(const Plant& plant) {
@@ -81,7 +75,9 @@ void Attributor::keepNearestVariants() {
   std::set<std::size_t> dropped;
   for (auto& [label, members] : variants) {
     std::ranges::stable_sort(members, {}, [&](std::size_t i) { return log_misfit[i]; });
-    dropped.insert(members.begin() + static_cast<std::ptrdiff_t>(std::min(kept, members.size())), members.end());
+    if (members.size() <= kept) continue;
+    dropped.insert(members.begin() + static_cast<std::ptrdiff_t>(kept), members.end());
+    result_.thinned.insert(label);
   }
   std::vector<Suspect> rest;
   for (std::size_t i = 0; i < all.size(); ++i)
@@ -97,8 +93,9 @@ void Attributor::look() {
   nominal_residual_ = fit_.measured() - everywhere;
   look_.goCoarse(nominal);
   fit_.goCoarse(everywhere);
-  result_.suspects = suspects(plant_, options_);
+  result_.suspects = suspects(plant_, DiagnosisOptions{});
   keepNearestVariants();
+  for (const Suspect& suspect : result_.suspects) result_.allowed.push_back(allows(options_, suspect.info().id));
   result_.signatures = screen(look_, result_.suspects, nominal, Model{}, Strengths::adapted, options_.job_count, on_simulation_);
 }
 
@@ -166,6 +163,7 @@ void Attributor::weakenStart(Explanation& candidate, double without) const {
   constexpr double share = 0.3;
   constexpr int weakenings = 4;
   const Suspect& last = result_.suspects[candidate.suspects.back()];
+  if (last.strengths().empty()) return;
   for (int i = 0; i < weakenings && !plant_.interrupted(); ++i) {
     const Eigen::VectorXd predicted = look_.predicted(modelOf(candidate));
     on_simulation_();
@@ -212,7 +210,7 @@ std::vector<std::size_t> Attributor::survivors(const std::vector<double>& log_mi
   std::map<Stage, int> per_stage;
   for (const std::size_t index : order) {
     const Suspect& suspect = result_.suspects[index];
-    if (!std::isfinite(log_misfit[index]) || labels.contains(suspect.label())) continue;
+    if (!result_.allowed[index] || !std::isfinite(log_misfit[index]) || labels.contains(suspect.label())) continue;
     const bool first_of_stage = from_every_stage && per_stage[suspect.info().stage] == 0;
     if (chosen.size() >= count && !first_of_stage) continue;
     chosen.push_back(index);
@@ -352,6 +350,7 @@ double Attributor::priorLogOdds(const Explanation& explanation) const {
 
 /// Sorts by odds = exp(misfit log odds) * prior odds; "none of these" and "no effect" are explanations like any other.
 void Attributor::weigh() {
+  if (result_.explanations.empty() && plant_.interrupted()) return;  // nothing is known yet
   const double no_effect = misfitLeftBy(nominal_residual_);
   std::vector<double> odds = {-weighing_.per_misfit * no_effect,
                               -weighing_.per_misfit * weighing_.none_share * no_effect - weighing_.per_parameter};

@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "comparison.h"
@@ -39,7 +41,9 @@ struct Weighing {
 };
 
 struct Attribution {
-  std::vector<Suspect> suspects;
+  std::vector<Suspect> suspects;          ///< of the whole catalogue: where the gap lies does not depend on what may be an answer
+  std::vector<char> allowed;              ///< of every suspect: it may be an answer
+  std::set<std::string> thinned;          ///< labels of which not all variants are among the suspects
   std::vector<Signature> signatures;      ///< of all suspects, on the first look
   std::vector<Explanation> explanations;  ///< best first
   double none_of_these = 0, no_effect = 0;
@@ -54,7 +58,7 @@ class Attributor {
  public:
   Attributor(const Plant& plant, const DiagnosisOptions& options, OnSimulation on_simulation);
 
-  /// The first look. `nominal` is the prediction without effects on look().
+  /// The first look: what every effect of the catalogue would change.
   void look();
   /// Fits, pairs, probabilities.
   void decide();

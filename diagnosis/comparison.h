@@ -15,6 +15,7 @@ inline constexpr double steady_share = 0.2;    ///< of a noise floor that does n
 /// smaller, and what is weak but slow stands out.
 class Comparison {
  public:
+  static constexpr int fewest_rows = 10;  ///< a signal with fewer numbers in a stretch is not compared there
   struct Cell {
     std::size_t stretch;
     int signal;

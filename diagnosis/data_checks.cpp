@@ -82,6 +82,35 @@ std::vector<std::string> dataNotes(const std::vector<Recording>& recordings) {
   return notes;
 }
 
+bool sameCommands(const Recording& a, const Recording& b) {
+  if (a.time_s != b.time_s || a.muscleCount() != b.muscleCount()) return false;
+  for (int i = 0; i < a.muscleCount(); ++i) {
+    const std::string name = "command_" + std::to_string(i);
+    if (a.find(name)->values != b.find(name)->values) return false;
+  }
+  return true;
+}
+
+void requireDifferentMeasurements(const std::vector<Recording>& recordings) {
+  const auto same = [](const Recording& a, const Recording& b) {
+    bool measured = false;
+    for (const Signal& signal : a.signals) {
+      if (signal.name.starts_with("command_")) continue;
+      const Signal* other = b.find(signal.name);
+      if (!other) continue;
+      measured = true;
+      if (!std::ranges::equal(signal.values, other->values, [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); }))
+        return false;
+    }
+    return measured;
+  };
+  for (std::size_t i = 0; i < recordings.size(); ++i)
+    for (std::size_t j = i + 1; j < recordings.size(); ++j)
+      if (sameCommands(recordings[i], recordings[j]) && same(recordings[i], recordings[j]))
+        throw BadFile(recordings[j].file,
+                      fmt::format("it holds the same numbers as {}: a repeat is a second measurement", recordings[i].file));
+}
+
 void requireUnits(const Plant& plant, int recording, const Prediction& prediction) {
   for (std::size_t i = 0; i < plant.signals().size(); ++i) {
     const double measured = medianSize(plant.measured(recording, static_cast<int>(i))), predicted = medianSize(prediction.values[i]);
@@ -89,11 +118,10 @@ void requireUnits(const Plant& plant, int recording, const Prediction& predictio
     const double ratio = measured / predicted;
     for (const double factor : {ratio, 1 / ratio})
       if (factor > thousand_low && factor < thousand_high)
-        throw BadParameter(
-            plant.signals()[i].name + " of " + plant.recordings()[static_cast<std::size_t>(recording)].file,
-            fmt::format("about {:.3g}", measured),
-            fmt::format("be in the unit of its name: the model's values are about {:.3g}, which is about a thousand times {}", predicted,
-                        ratio > 1 ? "less" : "more"));
+        throw BadFile(plant.recordings()[static_cast<std::size_t>(recording)].file,
+                      fmt::format("{} is about {:.3g}, but must be in the unit of its name: the model's values are about {:.3g}, which is "
+                                  "about a thousand times {}",
+                                  plant.signals()[i].name, measured, predicted, ratio > 1 ? "less" : "more"));
   }
 }
 

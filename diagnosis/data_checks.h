@@ -17,7 +17,13 @@ bool neverChanges(const std::vector<Recording>& recordings, const std::string& n
 /// Gaps in time (more than ten usual steps) and rows without a number, in sentences.
 std::vector<std::string> dataNotes(const std::vector<Recording>& recordings);
 
-/// Throws BadParameter if a signal's size is about a thousand times that of the model's or a thousandth of it: m in place of mm, kPa in
+/// Whether both have the same commands at the same times.
+bool sameCommands(const Recording& a, const Recording& b);
+
+/// Throws BadFile if one recording is another one again: what they differ by would pass for noise, and the held-out one would be known.
+void requireDifferentMeasurements(const std::vector<Recording>& recordings);
+
+/// Throws BadFile if a signal's size is about a thousand times that of the model's or a thousandth of it: m in place of mm, kPa in
 /// place of fractions.
 void requireUnits(const Plant& plant, int recording, const Prediction& prediction);
 

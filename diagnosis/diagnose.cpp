@@ -1,8 +1,13 @@
 // The order of a diagnosis: gap, where, which, how far, what next.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <mutex>
+#include <set>
+#include <variant>
 
 #include "attribute.h"
 #include "data_checks.h"
@@ -24,6 +29,23 @@ constexpr double as_good = 0.1;           ///< share of the best explanation's p
 constexpr double excited = 1;             ///< a typical effect must change some signal by that many floors
 constexpr double clear_gain_percent = 5;  ///< by which an effect must beat nominal refit and sham
 constexpr double clear_rest_share = 0.5;  ///< or this share of what they leave is all that it may leave
+
+/// Of the program, for a model of the recordings' robot.
+std::string modelOptions(const RecordingInfo& info) {
+  std::string options = "--robot " + info.robot;
+  for (const auto& [name, value] : info.robot_parameters) {
+    options += " --set " + (name.find('.') == std::string::npos ? info.robot + "." : "") + name + "=";
+    options += std::visit(
+        [](const auto& any) {
+          if constexpr (std::is_same_v<std::decay_t<decltype(any)>, double>)
+            return fmt::format("{}", any);
+          else
+            return std::string(any);
+        },
+        value);
+  }
+  return options;
+}
 
 /// Counts simulations and tells the caller.
 class Monitor {
@@ -85,13 +107,14 @@ class Run {
  private:
   void describe() {
     diagnosis_.robot = plant_.robot();
+    diagnosis_.model_options = modelOptions(plant_.recordings().front().info);
     for (const Recording& recording : plant_.recordings()) {
       diagnosis_.recordings.push_back(recording.file);
       for (const std::string& note : recording.notes) diagnosis_.notes.push_back(note);
     }
     for (const std::string& note : plant_.notes()) diagnosis_.notes.push_back(note);
+    for (const auto& [name, value] : plant_.nominalParameters()) diagnosis_.refitted.push_back(name);
     diagnosis_.held_out = plant_.split().held_out_words;
-    diagnosis_.is_held_out = true;
     if (std::ranges::any_of(plant_.signals(), [](const auto& s) { return s.floor.source == NoiseFloor::Source::quiet_rows; }))
       diagnosis_.notes.push_back("no repeats and no noise_std: the noise floor was estimated from quiet rows");
   }
@@ -114,23 +137,30 @@ class Run {
   }
 
   void explain() {
-    monitor_.phase("looking at every effect once", 0);
+    monitor_.phase("looking at every effect once", static_cast<long>(suspects(plant_, DiagnosisOptions{}).size()));
     attributor_.look();
     const Attribution& attribution = attributor_.result();
     const Location location =
         locate(attributor_.lookComparison(), attribution.suspects, attribution.signatures, attributor_.lookResidual());
     diagnosis_.where = location.places;
     diagnosis_.where_method = location.method;
-    for (std::size_t i = 0; i < attribution.suspects.size(); ++i)
-      if (attribution.signatures[i].excitation_ratio < excited &&
-          std::ranges::find(diagnosis_.not_excited, attribution.suspects[i].label()) == diagnosis_.not_excited.end())
-        diagnosis_.not_excited.push_back(attribution.suspects[i].label());
+    listNotExcited();
     monitor_.phase("fitting the likely ones", 600);
     attributor_.decide();
-    choose();
+    if (!plant_.interrupted()) choose();
     list();
     listTrials();
     if (!plant_.interrupted()) proposeExperiment();
+  }
+
+  /// What none of its variants would have shown; not what was never simulated.
+  void listNotExcited() {
+    const Attribution& attribution = attributor_.result();
+    std::set<std::string> shown = attribution.thinned;
+    for (std::size_t i = 0; i < attribution.suspects.size(); ++i)
+      if (!(attribution.signatures[i].excitation_ratio.value_or(excited) < excited)) shown.insert(labelOf(i));
+    for (std::size_t i = 0; i < attribution.suspects.size(); ++i)
+      if (attribution.allowed[i] && shown.insert(labelOf(i)).second) diagnosis_.not_excited.push_back(labelOf(i));
   }
 
   void choose() {
@@ -156,7 +186,7 @@ class Run {
     const Estimate interval = shrinkInterval({held_out_, before_residual_, after},
                                              {attributor_.fitComparison(), attributor_.nominalResidual(), best.residual}, options_.seed);
     const Attempt attempt{labelsOf(model), model.effects, gap_after, shrinkOf(after), interval.low, interval.high};
-    const double other_percent = std::max(diagnosis_.nominal_refit_shrink_percent, diagnosis_.sham_shrink_percent);
+    const double other_percent = std::max({0.0, diagnosis_.nominal_refit_shrink_percent, diagnosis_.sham_shrink_percent});
     const bool beats = attempt.shrink_percent > other_percent + clear_gain_percent ||
                        100 - attempt.shrink_percent < clear_rest_share * (100 - other_percent);
     const bool found = !none && beats;
@@ -222,7 +252,7 @@ class Run {
     const Attribution& attribution = attributor_.result();
     const double all = attributor_.lookComparison().logMisfit(attributor_.lookResidual());
     for (std::size_t i = 0; i < attribution.suspects.size(); ++i)
-      diagnosis_.looks.push_back({labelOf(i), all > 0 ? 1 - attribution.signatures[i].log_misfit / all : 0});
+      if (attribution.allowed[i]) diagnosis_.looks.push_back({labelOf(i), all > 0 ? 1 - attribution.signatures[i].log_misfit / all : 0});
     std::ranges::stable_sort(diagnosis_.looks, [](const auto& a, const auto& b) { return a.removed > b.removed; });
     const Comparison& fitted = attributor_.fitComparison();
     auto rmsOf = [&](const Eigen::VectorXd& residual) {
@@ -262,21 +292,40 @@ class Run {
     return result;
   }
 
-  /// Explanations with as many effects as the best that are not much less probable.
+  /// Explanations with as many effects as the best that are not much less probable, the best among them.
+  std::vector<const Explanation*> asGood() const {
+    std::vector<const Explanation*> result;
+    const auto& all = attributor_.result().explanations;
+    for (const Explanation& explanation : all)
+      if (explanation.suspects.size() == all.front().suspects.size() && explanation.probability >= as_good * all.front().probability)
+        result.push_back(&explanation);
+    return result;
+  }
+
   void ambiguity() {
-    const Attribution& attribution = attributor_.result();
-    if (attribution.explanations.empty()) return;
-    const Explanation& best = attribution.explanations.front();
-    for (const Explanation& explanation : attribution.explanations) {
-      if (explanation.suspects.size() != best.suspects.size() || explanation.probability < as_good * best.probability) continue;
-      for (const std::size_t index : explanation.suspects)
+    const std::vector<const Explanation*> likely = asGood();
+    for (const Explanation* explanation : likely)
+      if (likely.size() > 1) diagnosis_.alternatives.push_back(ownWords(*explanation, likely));
+    for (const Explanation* explanation : likely)
+      for (const std::size_t index : explanation->suspects)
         if (std::ranges::find(diagnosis_.ambiguity_set, labelOf(index)) == diagnosis_.ambiguity_set.end())
           diagnosis_.ambiguity_set.push_back(labelOf(index));
-    }
+  }
+
+  /// What tells an explanation from others: its effects but those that all of them hold.
+  std::string ownWords(const Explanation& explanation, const std::vector<const Explanation*>& others) const {
+    std::vector<std::string> own;
+    for (const std::size_t index : explanation.suspects)
+      if (!std::ranges::all_of(others, [&](const Explanation* other) {
+            return std::ranges::any_of(other->suspects, [&](std::size_t member) { return labelOf(member) == labelOf(index); });
+          }))
+        own.push_back(labelOf(index));
+    return fmt::format("{}", fmt::join(own, " + "));
   }
 
   double singleShrink(const std::string& label) {
     const Attribution& attribution = attributor_.result();
+    if (plant_.interrupted()) return 0;
     for (const Explanation& explanation : attribution.explanations) {
       if (explanation.suspects.size() != 1 || labelOf(explanation.suspects.front()) != label) continue;
       const Eigen::VectorXd predicted = held_out_.predicted(attributor_.modelOf(explanation));
@@ -286,15 +335,15 @@ class Run {
   }
 
   void proposeExperiment() {
-    const Attribution& attribution = attributor_.result();
+    constexpr std::size_t most = 4;
+    std::vector<const Explanation*> likely = asGood();
+    if (likely.size() < 2) return;
+    likely.resize(std::min(most, likely.size()));
     std::vector<std::string> labels;
     std::vector<Model> models;
-    for (const Explanation& explanation : attribution.explanations) {
-      if (explanation.suspects.size() != 1 || models.size() >= 4) continue;
-      const std::string label = labelOf(explanation.suspects.front());
-      if (std::ranges::find(diagnosis_.ambiguity_set, label) == diagnosis_.ambiguity_set.end()) continue;
-      labels.push_back(label);
-      models.push_back(attributor_.modelOf(explanation));
+    for (const Explanation* explanation : likely) {
+      labels.push_back(ownWords(*explanation, likely));
+      models.push_back(attributor_.modelOf(*explanation));
     }
     monitor_.phase("planning the next experiment", static_cast<long>(6 * models.size()));
     diagnosis_.next_experiment =
@@ -322,7 +371,6 @@ class Run {
       const int recording = held_out_.stretches()[cell.stretch].recording;
       Trace trace{plant_.recordings()[static_cast<std::size_t>(recording)].file,
                   plant_.signals()[static_cast<std::size_t>(cell.signal)].name,
-                  true,
                   {},
                   {},
                   {},

@@ -64,7 +64,7 @@ Json gapJson(const Diagnosis& d) {
           {"after", toJson(d.after)},
           {"shrink_percent", d.shrink_percent},
           {"shrink_ci95_percent", {d.shrink_low_percent, d.shrink_high_percent}},
-          {"held_out", d.is_held_out},
+          {"held_out", true},
           {"nominal_refit_shrink_percent", d.nominal_refit_shrink_percent},
           {"sham_shrink_percent", d.sham_shrink_percent}};
 }
@@ -126,8 +126,9 @@ std::string diagnosisSummary(const Diagnosis& d) {
   if (!d.tuned.empty()) text += fmt::format("tuned     {} numbers of the model first, see nominal.toml\n", d.tuned.size());
   if (!d.where.empty()) text += fmt::format("where     {}\n", whereSentence(d));
   for (std::size_t i = 0; i < std::min<std::size_t>(3, d.effects.size()); ++i)
-    text += fmt::format("{:<9} {:>4.0f} %  {}\n", i == 0 ? "which" : "", 100 * d.effects[i].probability, effectSentence(d.effects[i]));
-  if (d.verdict != Verdict::no_gap) text += fmt::format("          {:>4.0f} %  none of these\n", 100 * d.none_of_these);
+    text +=
+        fmt::format("{:<9} {:>11}  {}\n", i == 0 ? "which" : "", probabilityWords(d.effects[i].probability), effectSentence(d.effects[i]));
+  if (d.none_of_these > 0) text += fmt::format("{:<9} {:>11}  none of these\n", "", probabilityWords(d.none_of_these));
   if (!d.chosen.empty())
     text += fmt::format("how far   {} of the gap on {}; nominal refit {:.1f} %, sham {:.1f} %\n", shrinkElsewhereWords(d), d.held_out,
                         d.nominal_refit_shrink_percent, d.sham_shrink_percent);

@@ -74,7 +74,9 @@ Eigen::VectorXd residualUnderMeasuredPressures(const Comparison& comparison) {
     for (int muscle = 0; muscle < plant.muscleCount(); ++muscle) {
       const std::vector<double>& p = plant.measured(stretch.recording, signalNumber(plant, fmt::format("pressure_{}", muscle)));
       if (p.size() != rows) return {};
-      double last = 0;
+      const auto first = std::ranges::find_if(p, [](double value) { return std::isfinite(value); });
+      if (first == p.end()) return {};
+      double last = std::clamp(*first, 0.0, 1.0);
       for (std::size_t row = 0; row < rows; ++row) {
         if (std::isfinite(p[row])) last = std::clamp(p[row], 0.0, 1.0);
         commands[row][static_cast<std::size_t>(muscle)] = last;
@@ -205,11 +207,16 @@ Location locate(const Comparison& comparison, const std::vector<Suspect>& suspec
   if (allPressuresMeasured(comparison.plant())) {
     const double ratio = ratioOf(comparison, residual, "pressure_").value_or(1);
     const Eigen::VectorXd left = residualUnderMeasuredPressures(comparison);
-    const double before = motionMisfit(comparison, residual), after = left.size() ? motionMisfit(comparison, left) : before;
+    const double before = motionMisfit(comparison, residual), after = left.size() ? motionMisfit(comparison, left) : 0;
     if (ratio < agrees) {
       command *= hardly;
       pressure *= hardly;
       reasons.push_back("measured pressures are as predicted, so the gap arises behind the pressure stage");
+    } else if (!left.size()) {
+      reasons.push_back(
+          "pressures differ from the predicted ones, but the model cannot follow them or they are not complete: shares say how much "
+          "typical "
+          "disturbances of each stage resemble the gap");
     } else if (before > 0.1 && after < 0.5 * before) {
       for (double* weight : {&force, &body, &sensor}) *weight *= hardly;
       reasons.push_back(

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <optional>
+
+#include "data_checks.h"
 
 namespace musclesim {
 
@@ -17,35 +20,45 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-bool sameCommands(const Recording& a, const Recording& b) {
-  if (a.time_s != b.time_s || a.muscleCount() != b.muscleCount()) return false;
-  for (int i = 0; i < a.muscleCount(); ++i) {
-    const std::string name = "command_" + std::to_string(i);
-    if (a.find(name)->values != b.find(name)->values) return false;
-  }
-  return true;
-}
-
 /// Sum of squared differences of one signal and their number.
 struct Differences {
   double sum_of_squares = 0;
   long count = 0;
-  void add(const std::vector<double>& a, const std::vector<double>& b) {
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      const double difference = a[i] - b[i];
-      if (!std::isfinite(difference)) continue;
-      sum_of_squares += difference * difference;
-      ++count;
-    }
+  void add(double difference) {
+    if (!std::isfinite(difference)) return;
+    sum_of_squares += difference * difference;
+    ++count;
   }
 };
 
+/// Whether a sidecar calls one the repeat of the other.
+bool isCalledRepeat(const Recording& a, const Recording& b) {
+  const auto names = [](const Recording& one, const Recording& other) {
+    return !one.info.repeat_of.empty() && one.info.repeat_of == std::filesystem::path(other.file).stem().string();
+  };
+  return names(a, b) || names(b, a);
+}
+
+/// Between the rows before and after a time; NaN outside the recording.
+double interpolated(const std::vector<double>& time_s, const std::vector<double>& values, double at_s) {
+  const auto after = std::ranges::upper_bound(time_s, at_s);
+  if (after == time_s.begin()) return std::nan("");
+  const auto i = static_cast<std::size_t>(after - time_s.begin()) - 1;
+  if (after == time_s.end()) return at_s == time_s[i] ? values[i] : std::nan("");
+  const double share = (at_s - time_s[i]) / (time_s[i + 1] - time_s[i]);
+  return share == 0 ? values[i] : values[i] + share * (values[i + 1] - values[i]);
+}
+
+/// Of recordings with the same commands at the same times, and of those that a sidecar calls repeats, whose rows need not coincide.
 std::optional<double> fromRepeats(const std::vector<Recording>& recordings, const std::string& name) {
   Differences differences;
   for (std::size_t i = 0; i < recordings.size(); ++i)
     for (std::size_t j = i + 1; j < recordings.size(); ++j) {
-      const Signal *a = recordings[i].find(name), *b = recordings[j].find(name);
-      if (a && b && sameCommands(recordings[i], recordings[j])) differences.add(a->values, b->values);
+      const Recording &first = recordings[i], &second = recordings[j];
+      const Signal *a = first.find(name), *b = second.find(name);
+      if (!a || !b || !(sameCommands(first, second) || isCalledRepeat(first, second))) continue;
+      for (std::size_t row = 0; row < a->values.size(); ++row)
+        differences.add(a->values[row] - interpolated(second.time_s, b->values, first.time_s[row]));
     }
   if (differences.count < 20) return std::nullopt;
   return std::sqrt(differences.sum_of_squares / static_cast<double>(differences.count) / 2);
@@ -104,6 +117,7 @@ double finestLattice(const std::vector<Recording>& recordings, const std::string
 }  // namespace
 
 double latticeStep(const std::vector<double>& values) {
+  constexpr std::size_t fewest_levels = 8;  // fewer may stand anywhere
   std::vector<double> sorted;
   for (const double value : values)
     if (std::isfinite(value)) sorted.push_back(value);
@@ -113,7 +127,9 @@ double latticeStep(const std::vector<double>& values) {
     const double difference = sorted[i] - sorted[i - 1];
     if (difference > 1e-9 && (step == 0 || difference < step)) step = difference;
   }
-  if (step == 0) return 0;
+  std::size_t levels = 1;
+  for (std::size_t i = 1; i < sorted.size(); ++i) levels += sorted[i] - sorted[i - 1] > 1e-9 ? 1 : 0;
+  if (step == 0 || levels < fewest_levels) return 0;
   for (std::size_t i = 1; i < sorted.size(); ++i) {
     const double multiple = (sorted[i] - sorted[0]) / step;
     if (std::abs(multiple - std::round(multiple)) > 0.05 + 1e-6 * multiple) return 0;

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "../effect/components.h"
+#include "comparison.h"
 #include "data_checks.h"
 #include "drawing.h"
 #include "musclesim/error.h"
@@ -16,7 +17,6 @@ namespace musclesim {
 
 namespace {
 
-constexpr int fewest_rows = 20;
 constexpr double ms_per_s = 1000;
 constexpr int fewest_to_coarsen = 8;  ///< with fewer internal steps than that a simulation is cheap and as coarse as it can be
 constexpr int coarse_ratio = 4;       ///< internal steps that a coarse simulation makes one of
@@ -30,17 +30,14 @@ void requireDiagnosable(const std::vector<Recording>& recordings) {
   const Recording& first = recordings.front();
   for (const Recording& recording : recordings) {
     if (recording.info.robot != first.info.robot)
-      throw BadParameter("robot of " + recording.file, recording.info.robot, fmt::format("be {}, as in {}", first.info.robot, first.file));
+      throw BadFile(recording.file,
+                    fmt::format("its robot is {}, but that of {} is {}", recording.info.robot, first.file, first.info.robot));
     if (recording.info.robot_parameters != first.info.robot_parameters)
-      throw BadParameter("robot_parameters of " + recording.file, "others",
-                         "be those of " + first.file + ": one plant is diagnosed at a time");
+      throw BadFile(recording.file, fmt::format("its robot_parameters are not those of {}: one plant is diagnosed at a time", first.file));
     if (recording.muscleCount() == 0)
-      throw BadParameter("commands of " + recording.file, "none",
-                         "be columns command_0, command_1, ...: without them nothing can be simulated");
-    if (static_cast<int>(recording.time_s.size()) < fewest_rows)
-      throw BadParameter("number of rows of " + recording.file, fmt::format("{}", recording.time_s.size()),
-                         fmt::format("be at least {}", fewest_rows));
+      throw BadFile(recording.file, "it has no columns command_0, command_1, ...: without them nothing can be simulated");
   }
+  requireDifferentMeasurements(recordings);
 }
 
 /// Without its folder.
@@ -73,6 +70,8 @@ bool hasNumbers(const Signal& signal) {
 }  // namespace
 
 Plant::Plant(std::vector<Recording> recordings, const DiagnosisOptions& options) : recordings_(std::move(recordings)), options_(options) {
+  if (options.model.robot)
+    for (Recording& recording : recordings_) recording.info.robot = *options.model.robot;
   requireDiagnosable(recordings_);
   for (const auto* ids : {&options.candidates, &options.exclude})
     for (const std::string& id : *ids) effectInfo(id);  // throws for an unknown one
@@ -81,12 +80,32 @@ Plant::Plant(std::vector<Recording> recordings, const DiagnosisOptions& options)
   reference_ = std::make_unique<Simulation>(simulationOptionsFor(info, sidecarPath(recordings_.front().file), options_.model));
   reference_->build(info.robot);
   reference_->parameters().requireAllKnown();
+  for (const std::string& name : options.tune) tuned_.push_back(numberNamed(name));
   for (const Parameter& parameter : reference_->parameters().declared())
     if (std::ranges::find(nominal_names, parameter.name) != std::end(nominal_names) ||
         std::ranges::find(options.tune, parameter.name) != options.tune.end())
       nominal_.emplace_back(parameter.name, std::get<double>(parameter.value));
-  for (const std::string& name : options.tune) tuned_.push_back(numberNamed(name));
   compareSignals();
+  for (const auto* part : {&split_.fit, &split_.held_out}) requireNumbers(*part);
+}
+
+/// Enough of some signal in a part of the recordings.
+void Plant::requireNumbers(const std::vector<Stretch>& part) const {
+  const auto numbersIn = [&](const Stretch& stretch, std::size_t signal) {
+    const std::vector<double>& y = measured(stretch.recording, static_cast<int>(signal));
+    const auto end = std::min(static_cast<std::size_t>(stretch.end_row), y.size());
+    int count = 0;
+    for (auto row = static_cast<std::size_t>(stretch.first_row); row < end; ++row) count += std::isfinite(y[row]) ? 1 : 0;
+    return count;
+  };
+  for (const Stretch& stretch : part)
+    for (std::size_t signal = 0; signal < signals_.size(); ++signal)
+      if (numbersIn(stretch, signal) >= Comparison::fewest_rows) return;
+  const Stretch& stretch = part.front();
+  throw BadFile(recordings_[static_cast<std::size_t>(stretch.recording)].file,
+                fmt::format("its rows {} to {}, {}, hold fewer than {} numbers of every signal that can be compared", stretch.first_row + 1,
+                            stretch.end_row, &part == &split_.fit ? "which the effects are fitted to" : "on which the result is measured",
+                            Comparison::fewest_rows));
 }
 
 void Plant::compareSignals() {
@@ -111,8 +130,8 @@ void Plant::compareSignals() {
     }
   }
   if (signals_.empty())
-    throw BadParameter("signals of " + recordings_.front().file, "none that can be compared",
-                       "include one that changes and that the model also has, for example length_0_mm");
+    throw BadFile(recordings_.front().file,
+                  "it has no signal that can be compared: one that changes and that the model also has, for example length_0_mm");
 }
 
 const std::vector<double>& Plant::measured(int recording, int signal) const {

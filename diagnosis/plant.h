@@ -103,6 +103,7 @@ class Plant {
   static constexpr double farthest_tuning = 4;  ///< bound of |ln(value / value in force)|
 
   void compareSignals();
+  void requireNumbers(const std::vector<Stretch>& part) const;
   Parameter numberNamed(const std::string& name) const;
   Prediction replay(Recording recording, const Model& model, int end_row, Fidelity fidelity) const;
   void holdWhereMeasured(int recording, const Model& model, Prediction& prediction) const;

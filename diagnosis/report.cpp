@@ -58,8 +58,9 @@ std::string which(const Diagnosis& d) {
   for (const FoundEffect& effect : d.effects) {
     std::string parameters;
     for (const auto& [name, estimate] : effect.parameters)
-      parameters += fmt::format("{}{} = {:.4g} ({:.4g} to {:.4g})", parameters.empty() ? "" : "<br>", breakable(name), estimate.value,
-                                estimate.low, estimate.high);
+      if (estimate.value != 0 || estimate.low != 0 || estimate.high != 0)
+        parameters += fmt::format("{}{} = {:.4g} ({:.4g} to {:.4g})", parameters.empty() ? "" : "<br>", breakable(name), estimate.value,
+                                  estimate.low, estimate.high);
     rows += fmt::format("<tr><td>{}</td><td class=number>{}</td><td>{}</td><td class=number>{}</td></tr>\n", breakableCode(effect.label()),
                         probabilityWords(effect.probability), parameters,
                         triedAlone(d, effect) ? percentWords(effect.shrink_percent) : "not tried alone");
@@ -69,8 +70,7 @@ std::string which(const Diagnosis& d) {
                      "<div class=scroll><table><tr><th>effect</th><th class=number>probability</th><th>parameters (95 % interval)</th>"
                      "<th class=number>removes alone</th></tr>\n" +
                      rows + "</table></div>\n";
-  if (d.ambiguity_set.size() > 1)
-    text += paragraph(fmt::format("These recordings cannot tell apart: {}.", fmt::join(d.ambiguity_set, ", ")));
+  if (!d.alternatives.empty()) text += paragraph(fmt::format("These recordings cannot tell apart: {}.", fmt::join(d.alternatives, ", ")));
   return text;
 }
 
@@ -129,9 +129,9 @@ std::string howFar(const Diagnosis& d) {
     text += shrinkFigure(d) +
             paragraph(fmt::format(
                 "Normalised gap before {:.3g}, after {:.3g}: {} removed. Elsewhere means on another recording of this plant. The "
-                "nominal refit re-tunes the model's own numbers without any effect; the sham is a disturbance without physical "
+                "nominal refit re-tunes numbers of the model without any effect ({}); the sham is a disturbance without physical "
                 "meaning with as many parameters.",
-                d.before.normalised, d.after.normalised, shrinkElsewhereWords(d)));
+                d.before.normalised, d.after.normalised, shrinkElsewhereWords(d), fmt::join(d.refitted, ", ")));
   if (!d.attempt.effects.empty())
     text += shrinkFigure(d) +
             paragraph(
@@ -213,8 +213,9 @@ std::string whatElse(const Diagnosis& d) {
   if (!d.chosen.empty() || !d.attempt.effects.empty()) {
     const std::string options =
         std::string(d.tuned.empty() ? "" : "--config nominal.toml ") + "--effects " + (d.chosen.empty() ? "attempt.json" : "effects.json");
-    text += heading("Use it") + "<p><code>musclesim replay NEW.csv " + options + "</code> and <code>musclesim " + options +
-            "</code> run the model with what " + (d.chosen.empty() ? "comes nearest" : "was found") + ".</p>\n";
+    text += heading("Use it") + "<p><code>musclesim replay NEW.csv " + options + "</code> and <code>musclesim " +
+            escapedXml(d.model_options) + " " + options + "</code> run the model with what " +
+            (d.chosen.empty() ? "comes nearest" : "was found") + ".</p>\n";
   }
   text += heading("How it was computed") +
           paragraph(fmt::format("musclesim {}; robot {}; recordings {}; {} simulations of {:.0f} s in all, {:.0f} s on the clock.",

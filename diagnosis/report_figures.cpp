@@ -1,11 +1,13 @@
 #include "report_figures.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <sstream>
 
 #include "../log/axis.h"
 #include "../log/curve.h"
@@ -77,6 +79,29 @@ std::string stagesFigure(const std::vector<Place>& where) {
   return with(svg, markup);
 }
 
+namespace {
+
+/// What of the drawing a place means: "signal_length_0" the muscle, "signal_angle_elbow" the joint, "muscle_0+muscle_1" both.
+std::vector<std::string> drawnComponents(const RobotDrawing& drawing, const Place& place) {
+  std::string name = place.component;
+  for (const char* quantity : {"length_", "force_", "pressure_"})
+    if (name.starts_with(std::string("signal_") + quantity)) name = "muscle_" + name.substr(7 + std::string(quantity).size());
+  if (name.starts_with("signal_angle_")) name = "joint_" + name.substr(13);
+  if (name.starts_with("signal_hand")) name = "hand";
+  std::vector<std::string> names;
+  for (std::istringstream parts(name); std::getline(parts, name, '+');) names.push_back(name);
+  const bool all_muscles = place.component == "all" && place.stage != "body" && place.stage != "sensor";
+  std::vector<std::string> drawn;
+  for (const RobotDrawing::Line& line : drawing.lines)
+    if (!line.component.empty() && (all_muscles || std::ranges::find(names, line.component) != names.end()))
+      drawn.push_back(line.component);
+  for (const RobotDrawing::Point& point : drawing.points)
+    if (std::ranges::find(names, point.component) != names.end()) drawn.push_back(point.component);
+  return drawn;
+}
+
+}  // namespace
+
 std::string robotFigure(const RobotDrawing& drawing, const Place& place) {
   if (drawing.lines.empty()) return "";
   Eigen::AlignedBox2d box;
@@ -89,8 +114,9 @@ std::string robotFigure(const RobotDrawing& drawing, const Place& place) {
   auto pixel = [&](const Eigen::Vector2d& p) {
     return SvgPoint{width / 2 + (p.x() - box.center().x()) * scale, height / 2 - (p.y() - box.center().y()) * scale};
   };
-  const bool all_muscles = place.component == "all" && place.stage != "body" && place.stage != "sensor";
-  const Svg svg(width, height, "The robot from the front; marked: " + place.component);
+  const std::vector<std::string> marked = drawnComponents(drawing, place);
+  const auto isMarked = [&](const std::string& component) { return std::ranges::find(marked, component) != marked.end(); };
+  const Svg svg(width, height, "The robot from the front" + (marked.empty() ? "" : fmt::format("; marked: {}", fmt::join(marked, ", "))));
   std::string markup, labels;
   auto label = [](SvgPoint at, const std::string& component) {
     return fmt::format(
@@ -98,7 +124,7 @@ std::string robotFigure(const RobotDrawing& drawing, const Place& place) {
         at.y, guilty_color, escapedXml(component));
   };
   for (const RobotDrawing::Line& line : drawing.lines) {
-    const bool muscle = !line.component.empty(), guilty = line.component == place.component || (all_muscles && muscle);
+    const bool muscle = !line.component.empty(), guilty = muscle && isMarked(line.component);
     std::vector<SvgPoint> points;
     for (const Eigen::Vector2d& point : line.points_mm) points.push_back(pixel(point));
     markup += fmt::format(
@@ -109,13 +135,13 @@ std::string robotFigure(const RobotDrawing& drawing, const Place& place) {
         : muscle ? "#9a9a9a"
                  : "#dcdcdc",
         std::max(2.0, line.width_mm * scale) + (guilty ? 2 : 0), muscle ? line.component : "bone");
-    if (guilty && !all_muscles) {
+    if (guilty && place.component != "all") {
       const SvgPoint before = points[(points.size() - 1) / 2], behind = points[points.size() / 2];
       labels += label({0.5 * (before.x + behind.x) + 14, 0.5 * (before.y + behind.y) - 12}, line.component);
     }
   }
   for (const RobotDrawing::Point& point : drawing.points) {
-    if (point.component != place.component) continue;
+    if (!isMarked(point.component)) continue;
     const SvgPoint at = pixel(point.point_mm);
     markup += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"11\" fill=\"none\" stroke=\"{}\" stroke-width=\"4\"/>", at.x, at.y,
                           guilty_color);

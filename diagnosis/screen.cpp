@@ -80,7 +80,6 @@ double excitationOf(const Comparison& comparison, const std::vector<Eigen::Vecto
 void explain(const Comparison& comparison, const Suspect& suspect, const Eigen::VectorXd& residual, Signature& signature) {
   const auto count = static_cast<Eigen::Index>(signature.per_strength.size());
   signature.amount = Eigen::VectorXd::Zero(count);
-  signature.explained = Eigen::VectorXd::Zero(residual.size());
   signature.log_misfit = comparison.logMisfit(residual);
   Eigen::MatrixXd columns(residual.size(), count);
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -105,7 +104,6 @@ void explain(const Comparison& comparison, const Suspect& suspect, const Eigen::
     if (misfit < signature.log_misfit || suspect.strengths().empty()) {
       signature.log_misfit = misfit;
       signature.amount = amount;
-      signature.explained = residual - left;
     }
   }
 }
@@ -224,7 +222,9 @@ std::vector<Signature> screen(const Comparison& comparison, std::vector<Suspect>
   };
   auto look = [&](const std::vector<Probe>& probes, double strength) { lookInto(result, probes, strength); };
   look(probes(comparison, suspects), 1);
-  for (std::size_t s = 0; s < suspects.size(); ++s) result[s].excitation_ratio = excitationOf(comparison, result[s].per_strength);
+  for (Signature& signature : result)
+    if (std::ranges::all_of(signature.per_strength, [](const Eigen::VectorXd& change) { return change.size() > 0; }))
+      signature.excitation_ratio = excitationOf(comparison, signature.per_strength);
   for (const int direction : {1, -1}) look(strongerProbes(comparison, suspects, result, direction), direction * strong);
   const Eigen::VectorXd residual = comparison.measured() - nominal;
   const bool adapt = strengths == Strengths::adapted;

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "comparison.h"
@@ -14,10 +15,10 @@ namespace musclesim {
 struct Signature {
   /// Change of the prediction by each strength alone, at z = 1; empty columns where the model diverged.
   std::vector<Eigen::VectorXd> per_strength;
-  Eigen::VectorXd amount;       ///< multiple of each that removes most
-  Eigen::VectorXd explained;    ///< sum of amount times per_strength
-  double log_misfit = 0;        ///< of what is left
-  double excitation_ratio = 0;  ///< largest RMS of a typical strength's change in any cell, over that cell's floor
+  Eigen::VectorXd amount;  ///< multiple of each that removes most
+  double log_misfit = 0;   ///< of what is left
+  /// Largest RMS of a typical strength's change in any cell, over that cell's floor; nothing where not all of them could be simulated.
+  std::optional<double> excitation_ratio;
 };
 
 /// Called after each simulation, from any thread, one at a time.
@@ -34,7 +35,7 @@ std::vector<Signature> screen(const Comparison& comparison, std::vector<Suspect>
                               const Model& base, Strengths strengths, int job_count, const OnSimulation& on_simulation);
 
 /// The amounts of a signature that remove most of a residual, by least squares weighted anew three times. Amounts of unsigned strengths
-/// stay positive. Sets amount, explained and log_misfit.
+/// stay positive. Sets amount and log_misfit.
 void explain(const Comparison& comparison, const Suspect& suspect, const Eigen::VectorXd& residual, Signature& signature);
 
 }  // namespace musclesim

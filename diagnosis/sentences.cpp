@@ -40,7 +40,8 @@ std::string leftWords(double percent) {
 
 std::string probabilityWords(double probability) {
   constexpr double nearly_certain = 0.995;
-  return probability > nearly_certain ? "over 99 %" : fmt::format("{:.0f} %", 100 * probability);
+  if (probability > nearly_certain) return "over 99 %";
+  return probability < 1 - nearly_certain ? "under 1 %" : fmt::format("{:.0f} %", 100 * probability);
 }
 
 std::string shrinkElsewhereWords(const Diagnosis& d) {
@@ -109,8 +110,9 @@ std::string otherwise(const Diagnosis& d) {
   if (others.empty()) return "";
   const std::string place = d.chosen.size() > 1 ? " in place of " + labelWords(d.chosen.back()) : "";
   others.front().front() = static_cast<char>(std::toupper(static_cast<unsigned char>(others.front().front())));
+  const char* which = d.next_experiment.separates.size() > others.size() ? "them" : "the likeliest of them";
   return fmt::format(" {} would explain it as well{}{}.", fmt::join(others, " or "), place,
-                     d.next_experiment.commands.empty() ? "" : "; record the schedule in next.csv to tell them apart");
+                     d.next_experiment.commands.empty() ? "" : fmt::format("; record the schedule in next.csv to tell {} apart", which));
 }
 
 std::string mostProbable(const Diagnosis& d) {
@@ -140,6 +142,7 @@ std::string verdictSentence(const Diagnosis& d) {
     case Verdict::not_excited:
       return "I cannot tell: the commands rest, so the recordings do not show what the plant does.";
     case Verdict::unexplained: {
+      if (d.partial) return "There is a gap; the search for its cause was interrupted.";
       std::string text = "There is a gap that I cannot explain";
       if (!d.effects.empty()) text += d.effects.front().probability > likely ? notConfirmed(d) : mostProbable(d);
       text += ".";
@@ -152,11 +155,11 @@ std::string verdictSentence(const Diagnosis& d) {
     }
     case Verdict::effects_found: {
       std::string text = d.where.empty() ? "" : whereSentence(d) + ". ";
-      const auto& first = std::ranges::find_if(d.effects, [&](const FoundEffect& effect) { return effect.label() == d.chosen.front(); });
+      const auto best = std::ranges::find(d.explanations, d.chosen, &ExplanationProbability::effects);
       text += fmt::format(
           "The best explanation ({} likely) is {}; adding {} removes {} of the gap on data that neither "
           "fitting nor choosing had seen.",
-          probabilityWords(first == d.effects.end() ? 0 : first->probability), listWords(d, d.chosen, " together with "),
+          probabilityWords(best == d.explanations.end() ? 0 : best->probability), listWords(d, d.chosen, " together with "),
           d.chosen.size() > 1 ? "them" : "it", shrinkWords(d));
       return text + remainder(d) + otherwise(d);
     }

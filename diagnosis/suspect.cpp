@@ -240,11 +240,15 @@ std::vector<Suspect> Suspect::variants(const Plant& plant) const {
   return result;
 }
 
+bool allows(const DiagnosisOptions& options, const std::string& id) {
+  auto contains = [&](const std::vector<std::string>& ids) { return std::ranges::find(ids, id) != ids.end(); };
+  return (options.candidates.empty() || contains(options.candidates)) && !contains(options.exclude);
+}
+
 std::vector<Suspect> suspects(const Plant& plant, const DiagnosisOptions& options) {
-  auto contains = [](const std::vector<std::string>& ids, const std::string& id) { return std::ranges::find(ids, id) != ids.end(); };
   std::vector<Suspect> result;
   for (const EffectInfo& info : effectCatalogue()) {
-    if ((!options.candidates.empty() && !contains(options.candidates, info.id)) || contains(options.exclude, info.id)) continue;
+    if (!allows(options, info.id)) continue;
     for (const std::string& component : plant.componentsFor(info)) {
       // A wall stands before one joint or the hand.
       if (component == "all" && info.acts_on.size() > 1) continue;

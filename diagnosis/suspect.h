@@ -69,6 +69,8 @@ class Suspect {
   std::vector<int> strengths_;
 };
 
+/// Whether the options' candidates and exclude let an effect be an answer.
+bool allows(const DiagnosisOptions& options, const std::string& id);
 /// All suspects that the options allow on this plant.
 std::vector<Suspect> suspects(const Plant& plant, const DiagnosisOptions& options);
 

@@ -100,7 +100,7 @@ Action addDiagnose(CLI::App& command, ModelOptions& model) {
                   "Numbers of the model that nobody measured, by name, separated by commas: fitted first, written to nominal.toml")
       ->delimiter(',');
   command.add_option("--max-effects", arguments->max_effects, "Effects at once, found one after the other (default 2)")
-      ->check(CLI::Range(0, 6));
+      ->check(CLI::Range(1, 6));
   command.add_option("--ignore-columns", arguments->ignore_columns, "Columns to skip, separated by commas")->delimiter(',');
   addModelOptions(command, model);
   command.remove_option(command.get_option("--json"));

@@ -13,6 +13,7 @@
 #include "run.h"
 #include "score.h"
 #include "seal.h"
+#include "sha256.h"
 #include "truth.h"
 
 namespace musclesim::blind {
@@ -158,6 +159,16 @@ fs::path resultOf(const fs::path& folder, const std::string& name) {
   return folder / "follow_up" / (name + ".json");
 }
 
+/// SHA-256 of what is followed up on.
+std::string fingerprintOf(const fs::path& folder, const std::string& name) {
+  return sha256OfFiles(folder, {"answers/" + name + ".json"});
+}
+
+/// It was made from the present answer.
+bool isFollowed(const fs::path& folder, const std::string& name) {
+  return fs::exists(resultOf(folder, name)) && readObject(resultOf(folder, name)).value("answer_sha256", "") == fingerprintOf(folder, name);
+}
+
 json rateOf(const std::vector<json>& entries, const std::string& member) {
   Rate rate;
   for (const json& entry : entries) rate.add(entry.at(member).get<bool>());
@@ -172,15 +183,16 @@ void followUp(const fs::path& folder, const fs::path& key_file, const FollowUpOp
   fs::create_directories(folder / "follow_up");
   std::vector<std::string> open;
   for (const std::string& name : caseNames(folder))
-    if (!fs::exists(resultOf(folder, name))) open.push_back(name);
+    if (!isFollowed(folder, name)) open.push_back(name);
   std::mutex one_at_a_time;
   int done = 0;
   parallelFor(static_cast<int>(open.size()), options.job_count, [&](int i) {
     const std::string& name = open[static_cast<std::size_t>(i)];
     if (options.interrupted()) return;
     const Answered one{name, key.at("cases").at(name), readObject(folder / "answers" / (name + ".json")), recordingsOf(folder, name)};
-    const auto result = followed(one, folder, options);
+    auto result = followed(one, folder, options);
     if (!result) return;
+    (*result)["answer_sha256"] = fingerprintOf(folder, name);
     writeObject(*result, resultOf(folder, name));
     const std::lock_guard lock(one_at_a_time);
     options.progress(++done, static_cast<int>(open.size()));
@@ -191,7 +203,7 @@ json followUpTotals(const fs::path& folder) {
   std::map<std::string, std::vector<json>> entries;
   int followed_count = 0;
   for (const std::string& name : caseNames(folder)) {
-    if (!fs::exists(resultOf(folder, name))) continue;
+    if (!isFollowed(folder, name)) continue;
     ++followed_count;
     const json result = readObject(resultOf(folder, name));
     for (const auto& [part, entry] : result.items())

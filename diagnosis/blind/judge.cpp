@@ -94,20 +94,30 @@ Patterns truthsOf(const std::vector<std::string>& ids, const Patterns& acceptabl
   return truths;
 }
 
+/// Of the first effect, of none of them and of no effect at all.
+double largestProbability(const Judgement& j) {
+  return std::max({j.top_probability, j.none_of_these, j.no_effect});
+}
+
+/// What was said with the largest probability; nothing where no answer was given.
+std::optional<Claim> claimOf(const Judgement& j, bool right) {
+  if (j.verdict == "failed") return std::nullopt;
+  return Claim{largestProbability(j), right};
+}
+
 void judgeFound(Judgement& j, const json& key, const json& answer, const std::vector<Answer>& candidates) {
   const auto acceptable = key.at("acceptable").get<Patterns>();
   const Patterns truths = truthsOf(j.true_ids, acceptable);
   judgeRanking(j, candidates, acceptable, flat(truths));
   judgeShrink(j, answer, candidates, flat(truths));
   judgeSets(j, answer, acceptable, truths);
-  if (j.kind == "single")
-    j.claim = Claim{std::max(j.top_probability, j.none_of_these), *j.acceptable && j.top_probability >= j.none_of_these};
+  if (j.kind == "single") j.claim = claimOf(j, *j.acceptable && j.top_probability == largestProbability(j));
 }
 
 void judgeOpen(Judgement& j) {
   constexpr double confident = 0.5;
   j.open_detected = j.verdict == "unexplained" || (!j.verdict.empty() && j.verdict != "failed" && j.top_probability <= confident);
-  j.claim = Claim{std::max(j.top_probability, j.none_of_these), j.none_of_these >= j.top_probability};
+  j.claim = claimOf(j, j.none_of_these == largestProbability(j));
 }
 
 Judgement head(const std::string& name, const json& key) {
@@ -137,6 +147,8 @@ Judgement judge(const std::string& name, const json& key, const json& answer) {
     j.top_probability = candidates.front().probability;
   }
   j.none_of_these = answer.value("none_of_these", 0.0);
+  for (const json& explanation : answer.value("explanations", json::array()))
+    if (explanation.at("effects").empty()) j.no_effect = explanation.at("probability");
   if (j.kind == "null") {
     j.false_alarm = j.verdict != "no_gap" && j.verdict != "not_excited";
     return j;

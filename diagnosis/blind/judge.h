@@ -16,18 +16,18 @@ struct Judgement {
   std::vector<std::string> true_ids, true_stages;
   double gap_over_noise = 0;
 
-  std::string verdict;                            ///< given
-  bool verdict_right = false;                     ///< null: no_gap; open: unexplained; else effects_found
-  std::string top;                                ///< the most probable effect, "id@component"; empty if there is none
-  double top_probability = 0, none_of_these = 0;  ///< as answered
-  std::optional<bool> top1, top3;                 ///< the true id is first, among the first three
-  std::optional<bool> acceptable, acceptable3;    ///< an acceptable answer is
-  std::optional<bool> component;                  ///< of the first entry, if its id is right
-  std::optional<bool> stage;                      ///< the first entry of "where" is a true stage
-  std::optional<bool> covered;                    ///< the truth is in the ambiguity set or chosen; of doubles both
-  std::optional<bool> pair;                       ///< doubles: both causes, or acceptable ones, are chosen
-  std::optional<bool> open_detected;              ///< open: "unexplained", or no effect above probability 0.5
-  std::optional<bool> false_alarm;                ///< null: a gap was seen
+  std::string verdict;                                           ///< given
+  bool verdict_right = false;                                    ///< null: no_gap; open: unexplained; else effects_found
+  std::string top;                                               ///< the most probable effect, "id@component"; empty if there is none
+  double top_probability = 0, none_of_these = 0, no_effect = 0;  ///< as answered
+  std::optional<bool> top1, top3;                                ///< the true id is first, among the first three
+  std::optional<bool> acceptable, acceptable3;                   ///< an acceptable answer is
+  std::optional<bool> component;                                 ///< of the first entry, if its id is right
+  std::optional<bool> stage;                                     ///< the first entry of "where" is a true stage
+  std::optional<bool> covered;                                   ///< the truth is in the ambiguity set or chosen; of doubles both
+  std::optional<bool> pair;                                      ///< doubles: both causes, or acceptable ones, are chosen
+  std::optional<bool> open_detected;                             ///< open: "unexplained", or no effect above probability 0.5
+  std::optional<bool> false_alarm;                               ///< null: a gap was seen
   std::optional<double> probability_of_truth, probability_of_acceptable, set_size;
   std::optional<double> shrink_percent, nominal_refit_percent;  ///< single and double
   std::optional<double> oracle_share;  ///< shrink over that of the true effect's best fit; only if the answer lists it

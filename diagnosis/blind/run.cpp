@@ -63,6 +63,8 @@ std::optional<json> answered(const fs::path& folder, const std::string& name, co
     return answer;
   } catch (const BadParameter& error) {
     return json{{"verdict", "failed"}, {"message", error.what()}};
+  } catch (const BadFile& error) {
+    return json{{"verdict", "failed"}, {"message", error.what()}};
   } catch (const Diverged& error) {
     return json{{"verdict", "failed"}, {"message", error.what()}};
   }
@@ -111,7 +113,10 @@ void writeSummary(const fs::path& folder, const std::vector<std::string>& names,
 
 std::vector<std::string> answerFiles(const fs::path& folder) {
   std::vector<std::string> files;
-  for (const std::string& name : caseNames(folder)) files.push_back("answers/" + name + ".json");
+  for (const std::string& name : caseNames(folder)) {
+    files.push_back("answers/" + name + ".json");
+    if (fs::exists(effectsOf(folder, name))) files.push_back("answers/" + name + ".effects.json");
+  }
   return files;
 }
 

@@ -81,15 +81,18 @@ TEST(Diagnose, ReportIsOneSelfContainedPage) {
 TEST(Diagnose, RefusesRecordingsItCannotUse) {
   std::vector<Recording> recordings = plant({});
   recordings[1].info.robot = "elbow";
-  EXPECT_THROW(diagnose(recordings), BadParameter);
+  EXPECT_THROW(diagnose(recordings), BadFile);
   recordings = plant({});
   recordings[0].signals.pop_back();
   recordings[1].signals.pop_back();
-  EXPECT_THROW(diagnose(recordings), BadParameter);
+  EXPECT_THROW(diagnose(recordings), BadFile);
   recordings = {recorded({}, 0.1, 3)};
-  recordings[0].time_s.resize(3);
-  for (Signal& signal : recordings[0].signals) signal.values.resize(3);
-  EXPECT_THROW(diagnose(recordings), BadParameter);
+  recordings[0].time_s.resize(21);
+  for (Signal& signal : recordings[0].signals) signal.values.resize(21);
+  EXPECT_TRUE(contains(messageOf<BadFile>([&] { diagnose(recordings); }), "fewer than 10 numbers"));
+  recordings = plant({});
+  recordings[1] = recordings[0];
+  EXPECT_TRUE(contains(messageOf<BadFile>([&] { diagnose(recordings); }), "a repeat is a second measurement"));
   EXPECT_THROW(diagnose({}), BadParameter);
   EXPECT_THROW(diagnose(plant({}), few({"no_such_effect"})), BadParameter);
 }
@@ -112,7 +115,7 @@ TEST(Diagnose, RefusesLengthsInMetres) {
   try {
     diagnose(recordings);
     FAIL();
-  } catch (const BadParameter& error) {
+  } catch (const BadFile& error) {
     const std::string message = error.what();
     EXPECT_NE(message.find("length_0_mm"), std::string::npos);
     EXPECT_NE(message.find("thousand"), std::string::npos);
@@ -123,7 +126,7 @@ TEST(Diagnose, RefusesRecordingsWhoseOnlySignalIsDead) {
   std::vector<Recording> recordings = plant({});
   for (Recording& recording : recordings)
     for (double& value : lengthOf(recording).values) value = 240;
-  EXPECT_THROW(diagnose(recordings), BadParameter);
+  EXPECT_THROW(diagnose(recordings), BadFile);
 }
 
 TEST(Diagnose, SaysWhatRowsAreMissing) {
@@ -182,6 +185,9 @@ TEST(Diagnose, FindsASecondCauseOfItsOwn) {
   Diagnosis found = diagnose(recordings, few({"payload", "transport_delay", "force_gain", "viscous_loss"}));
   std::ranges::sort(found.chosen);
   EXPECT_EQ(found.chosen, (std::vector<std::string>{"payload@hand", "transport_delay@muscle_0"})) << diagnosisSummary(found);
+  EXPECT_TRUE(found.alternatives.empty()) << "a pair is not its own alternative";
+  EXPECT_TRUE(found.next_experiment.commands.empty());
+  EXPECT_TRUE(contains(diagnosisReport(found), "--robot rig"));
 }
 
 TEST(Diagnose, TakesNoSecondCauseThatOnlyMendsTheLawOfTheFirst) {
@@ -213,6 +219,27 @@ TEST(Diagnose, EffectsThatThePlantCannotTakeAreNoCandidates) {
   for (double& value : recording.signals[1].values) value += 3;
   const Diagnosis found = diagnose({recording}, few({"payload", "sensor_bias"}));
   EXPECT_EQ(found.chosen, std::vector<std::string>{"sensor_bias@signal_length_0"}) << diagnosisSummary(found);
+}
+
+/// What was never looked at is not said to be invisible, and nothing is weighed.
+TEST(Diagnose, AnInterruptedSearchClaimsNothing) {
+  DiagnosisOptions options = few({"payload", "transport_delay"});
+  int simulations = 0;
+  options.progress = [&](const DiagnosisProgress& now) { simulations = static_cast<int>(now.done); };
+  options.job_count = 1;
+  options.interrupted = [&] { return simulations >= 1; };
+  const Diagnosis found = diagnose(plant({{"payload", "hand", {{"mass_kg", 0.3}}}}), options);
+  EXPECT_TRUE(found.partial);
+  EXPECT_TRUE(found.effects.empty());
+  EXPECT_EQ(found.none_of_these, 0);
+  EXPECT_TRUE(std::ranges::find(found.not_excited, "transport_delay@muscle_0") == found.not_excited.end());
+  EXPECT_TRUE(contains(diagnosisSummary(found), "the search for its cause was interrupted"));
+}
+
+TEST(Diagnose, AnotherRobotIsTakenForAllRecordings) {
+  DiagnosisOptions options = few({"payload"});
+  options.model.robot = "elbow";
+  EXPECT_THROW(diagnose(plant({}), options), Error) << "one command is no elbow's";
 }
 
 TEST(Diagnose, RestingCommandsAreNotExcited) {

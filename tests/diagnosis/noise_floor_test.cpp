@@ -63,7 +63,8 @@ TEST(NoiseFloor, IsNeverBelowTheResolutionOfTheValues) {
 }
 
 TEST(LatticeStep, IsTheStepOfRoundedValuesAndZeroForOthers) {
-  EXPECT_DOUBLE_EQ(latticeStep({0.25, 1.5, 0.75, 1.0}), 0.25);
+  EXPECT_DOUBLE_EQ(latticeStep({0.25, 1.5, 0.75, 1.0, 2.75, 3.0, 0.5, 2.0}), 0.25);
+  EXPECT_EQ(latticeStep({0.2, 0.8, 0.2, 0.8, 1.4}), 0) << "a few values are no lattice";
   EXPECT_EQ(latticeStep({0, 1, std::sqrt(2.0), 3}), 0);
   EXPECT_EQ(latticeStep({1, 1, 1}), 0);
 }

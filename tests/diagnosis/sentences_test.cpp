@@ -16,6 +16,7 @@ TEST(Words, NothingIsCertainOrComplete) {
   EXPECT_EQ(leftWords(0.0004), "less than 0.1 %");
   EXPECT_EQ(probabilityWords(0.93), "93 %");
   EXPECT_EQ(probabilityWords(1), "over 99 %");
+  EXPECT_EQ(probabilityWords(0), "under 1 %");
 }
 
 Diagnosis lagFound() {
@@ -24,6 +25,7 @@ Diagnosis lagFound() {
   d.where = {{"pressure", "muscle_1", "venting", 0.81}};
   d.effects = {{"valve_lag", "muscle_1", 0.931, {{"vent_time_constant_s", {0.081, 0.077, 0.085}}}, 96.2}};
   d.chosen = {"valve_lag@muscle_1"};
+  d.explanations = {{d.chosen, 0.931}};
   d.ambiguity_set = {"valve_lag@muscle_1", "flow_limit@muscle_1"};
   d.shrink_percent = 96.2;
   d.shrink_low_percent = 94;
@@ -59,6 +61,30 @@ TEST(VerdictSentence, SaysWhatIsLeftWhereItStandsOut) {
   EXPECT_FALSE(contains(verdictSentence(d), "What is left"));
   d.after.normalised = 24;
   EXPECT_TRUE(contains(verdictSentence(d), "What is left is still 5.0 times the noise"));
+}
+
+TEST(VerdictSentence, GivesAPairTheProbabilityOfThePair) {
+  Diagnosis d = lagFound();
+  d.effects.push_back({"payload", "hand", 0.55, {{"mass_kg", {0.3, 0.2, 0.4}}}, 10});
+  d.chosen = {"valve_lag@muscle_1", "payload@hand"};
+  d.explanations = {{d.chosen, 0.55}, {{"valve_lag@muscle_1"}, 0.38}};
+  EXPECT_TRUE(contains(verdictSentence(d), "(55 % likely) is valve lag on muscle 1 together with payload on hand"));
+}
+
+TEST(VerdictSentence, SaysWhetherTheExperimentTellsAllApart) {
+  Diagnosis d = lagFound();
+  d.next_experiment.commands = {{0.5}};
+  d.next_experiment.separates = d.ambiguity_set;
+  EXPECT_TRUE(contains(verdictSentence(d), "record the schedule in next.csv to tell them apart"));
+  d.ambiguity_set.push_back("leak@muscle_1");
+  EXPECT_TRUE(contains(verdictSentence(d), "to tell the likeliest of them apart"));
+}
+
+TEST(VerdictSentence, SaysThatASearchWasInterrupted) {
+  Diagnosis d;
+  d.verdict = Verdict::unexplained;
+  d.partial = true;
+  EXPECT_EQ(verdictSentence(d), "There is a gap; the search for its cause was interrupted.");
 }
 
 TEST(VerdictSentence, AdmitsWhatItCannotTell) {

@@ -27,7 +27,7 @@ struct DiagnosisOptions {
   std::vector<std::string> candidates;                     ///< ids of effects to consider; empty: the whole catalogue
   std::vector<std::string> exclude;                        ///< ids not to consider
   std::vector<std::string> tune;                           ///< numbers of the model to fit first: those that nobody measured
-  int max_effects = 2;                                     ///< how many effects an explanation may have, 0..6
+  int max_effects = 2;                                     ///< how many effects an explanation may have, 1..6
   int job_count = 0;                                       ///< threads; 0: one per core. The answer does not depend on it
   std::uint64_t seed = 1;                                  ///< of the bootstrap and the sham
   std::function<void(const DiagnosisProgress&)> progress;  ///< called from one thread at a time
@@ -126,7 +126,6 @@ struct RobotDrawing {
 /// Curves for the report: one recording, one signal.
 struct Trace {
   std::string recording, signal;
-  bool held_out = false;
   std::vector<double> time_s, measured, before, after;
 };
 
@@ -160,8 +159,10 @@ struct Diagnosis {
   Gap before, after;
   Attempt attempt;       ///< of the verdict `unexplained`; without effects if there was nothing to try
   std::string held_out;  ///< what the gap was measured on, in words
-  bool is_held_out = false;
   double shrink_percent = 0, shrink_low_percent = 0, shrink_high_percent = 0;
+  std::vector<std::string> alternatives;  ///< where explanations cannot be told apart: of each, what the others do not hold
+  std::string model_options;              ///< of the program, for the robot of the recordings: "--robot rig --set rig.load_kg=2"
+  std::vector<std::string> refitted;      ///< numbers of the model that the nominal refit re-tunes
   double nominal_refit_shrink_percent = 0, sham_shrink_percent = 0, unexplained_percent = 0;
   std::vector<TunedParameter> tuned;     ///< of DiagnosisOptions::tune; before and after are gaps of the model with these
   std::vector<std::string> not_excited;  ///< effects that these recordings could not have shown

@@ -1,0 +1,65 @@
+// musclesim diagnose: what it refuses, and with which exit status.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "src/program.h"
+#include "support/support.h"
+
+namespace musclesim {
+namespace {
+
+namespace fs = std::filesystem;
+
+class DiagnoseCommand : public testing::Test {
+ protected:
+  void SetUp() override { fs::create_directories(folder_); }
+  void TearDown() override { fs::remove_all(folder_); }
+  /// A rig's recording of so many rows; lengths times `unit`.
+  void write(const std::string& stem, int rows, double unit, const std::string& robot = "rig") const {
+    std::ofstream(folder_ / (stem + ".json")) << fmt::format(R"({{"format": "musclesim-recording-1", "robot": "{}"}})", robot);
+    std::ofstream file(folder_ / (stem + ".csv"));
+    file << "time_s,command_0,length_0_mm\n";
+    for (int row = 0; row < rows; ++row)
+      file << fmt::format("{:.2f},{},{:.7f}\n", 0.01 * row, row < rows / 2 ? 0.3 : 0.5,
+                          unit * (row < rows / 2 ? 240 + 0.01 * (row % 7) : 220.0));
+  }
+  ProgramResult diagnose(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), {"diagnose", "--quiet"});
+    return runProgram(arguments, folder_);
+  }
+  const fs::path folder_ = fs::temp_directory_path() / ("musclesim_diagnose_test_" + std::to_string(getpid()));
+};
+
+TEST_F(DiagnoseCommand, BadRecordingsAreBadFiles) {
+  write("few", 12, 1);
+  write("metres", 60, 1e-3);
+  write("other", 60, 1, "elbow");
+  write("good", 60, 1);
+  for (const auto& [file, words] : {std::pair("few.csv", "hold fewer than 10 numbers"), std::pair("metres.csv", "a thousand times")}) {
+    const ProgramResult result = diagnose({file});
+    EXPECT_EQ(result.status, 3) << file << ": " << result.err;
+    EXPECT_TRUE(contains(result.err, words) && contains(result.err, file)) << result.err;
+  }
+  EXPECT_EQ(diagnose({"good.csv", "other.csv"}).status, 3);
+  EXPECT_EQ(diagnose({"good.csv", "good.csv"}).status, 3);
+}
+
+TEST_F(DiagnoseCommand, WrongOptionsAreUsageErrors) {
+  write("good", 60, 1);
+  for (const std::vector<std::string>& options : {std::vector<std::string>{"--candidates", "nonsense"},
+                                                  {"--tune", "muscle.model"},
+                                                  {"--tune", "rig.lod_kg"},
+                                                  {"--max-effects", "0"},
+                                                  {"--jobs", "0"}}) {
+    std::vector<std::string> arguments = options;
+    arguments.push_back("good.csv");
+    EXPECT_EQ(diagnose(arguments).status, 2) << options[0] << " " << options[1];
+  }
+}
+
+}  // namespace
+}  // namespace musclesim
