@@ -3,6 +3,8 @@
 
 #include <memory>
 
+#include "../../simulation/chain/chain_bundle.h"
+#include "../../simulation/chain/step_problem.h"
 #include "../../simulation/chain/tiled_matrix.h"
 #include "../../simulation/contacts.h"
 #include "simulation/step_comparison.h"
@@ -39,7 +41,7 @@ BENCHMARK_CAPTURE(wholeStep, line, "muscle.model=line")->Arg(1)->Arg(10)->Arg(30
 void collision(benchmark::State& state) {
   const auto simulation = movingArm(static_cast<int>(state.range(0)));
   Contacts contacts(simulation->world(), simulation->space(), 0);
-  for (auto _ : state) contacts.collide();
+  for (auto _ : state) contacts.collide(simulation->revision());
 }
 BENCHMARK(collision)->Arg(1)->Arg(10)->Arg(30);
 
@@ -78,7 +80,67 @@ void jointRows(benchmark::State& state) {
 }
 BENCHMARK(jointRows)->Arg(10)->Arg(30);
 
-/// Factoring and solving the dense core of so many rows.
+/// Elimination and back substitution of four chains of so many beads, each with the three rows of its start.
+void fourChains(benchmark::State& state) {
+  const auto bead_count = static_cast<int>(state.range(0));
+  RandomStream random(1, "benchmark");
+  chain::ChainBundle bundle({bead_count, bead_count, bead_count, bead_count});
+  bundle.reserve(3);
+  for (int lane = 0; lane < chain::lane_count; ++lane) {
+    bundle.setInertia(lane, {0.1, 0.02});
+    for (int joint = 0; joint < bead_count; ++joint) {
+      chain::JointRows rows;
+      rows.row_count = joint + 1 < bead_count ? 6 : 3;
+      for (int row = 0; row < rows.row_count; ++row) {
+        rows.softness[row] = 1e-3;
+        for (auto& body : rows.jacobian)
+          for (double& entry : body[row]) entry = random.normal();
+      }
+      bundle.setJoint(lane, joint, rows, 8e-4);
+      bundle.setFreeMotion(lane, joint, chain::Vector6::Ones());
+    }
+    for (int row = 0; row < 3; ++row) {
+      double jacobian[6];
+      for (double& entry : jacobian) entry = random.normal();
+      bundle.addBorder(lane, row, 0, jacobian);
+    }
+  }
+  bundle.makeBlocks();
+  for (auto _ : state) {
+    bundle.eliminate();
+    bundle.substitute();
+    benchmark::DoNotOptimize(bundle.largestVelocity());
+  }
+}
+BENCHMARK(fourChains)->Arg(8)->Arg(12);
+
+/// One linear solve of the active set, with all chains eliminated anew.
+void linearSolve(benchmark::State& state) {
+  const auto simulation = movingArm(static_cast<int>(state.range(0)));
+  const PhysicsSettings& physics = simulation->physics();
+  Contacts contacts(simulation->world(), simulation->space(), physics.contact_friction_N * physics.force_per_N);
+  contacts.collide(simulation->revision());
+  chain::Model model;
+  chain::registerModel(*simulation, model);
+  chain::StepProblem problem(model);
+  model.bodies.gather();
+  chain::StepProblem::Conditions conditions;
+  conditions.h_s = simulation->internalStepS();
+  conditions.gravity = simulation->gravityMmPerS2();
+  conditions.force_per_N = physics.force_per_N;
+  conditions.friction_force = contacts.frictionLimit();
+  conditions.reduction = {0.4, 0.4};
+  conditions.contact_reduction = 0.4;
+  conditions.world_softness = conditions.contact_softness = dWorldGetCFM(simulation->world());
+  if (!problem.begin(conditions, contacts.points())) return state.SkipWithError("the problem cannot be set up");
+  for (auto _ : state) {
+    for (std::size_t row = 0; row < problem.rows().size(); ++row) problem.changed(static_cast<int>(row));
+    problem.solve(problem.rows());
+  }
+}
+BENCHMARK(linearSolve)->Arg(10)->Arg(30);
+
+/// Factoring and solving a full matrix of so many rows.
 void denseCore(benchmark::State& state) {
   const auto size = static_cast<int>(state.range(0));
   chain::TiledMatrix matrix;
