@@ -215,8 +215,7 @@ Location locate(const Comparison& comparison, const std::vector<Suspect>& suspec
     } else if (!left.size()) {
       reasons.push_back(
           "pressures differ from the predicted ones, but the model cannot follow them or they are not complete: shares say how much "
-          "typical "
-          "disturbances of each stage resemble the gap");
+          "typical disturbances of each stage resemble the gap");
     } else if (before > 0.1 && after < 0.5 * before) {
       for (double* weight : {&force, &body, &sensor}) *weight *= hardly;
       reasons.push_back(

@@ -31,7 +31,7 @@ std::string effectSentence(const FoundEffect& effect) {
 }
 
 std::string percentWords(double percent) {
-  return percent > nearly_all && percent < 100 ? "more than 99.9 %" : fmt::format("{:.1f} %", percent);
+  return percent > nearly_all ? "more than 99.9 %" : fmt::format("{:.1f} %", percent);
 }
 
 std::string leftWords(double percent) {

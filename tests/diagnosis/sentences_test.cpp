@@ -11,6 +11,7 @@ namespace {
 TEST(Words, NothingIsCertainOrComplete) {
   EXPECT_EQ(percentWords(96.24), "96.2 %");
   EXPECT_EQ(percentWords(99.97), "more than 99.9 %");
+  EXPECT_EQ(percentWords(100), "more than 99.9 %");
   EXPECT_EQ(percentWords(-3), "-3.0 %");
   EXPECT_EQ(leftWords(3.81), "3.81 %");
   EXPECT_EQ(leftWords(0.0004), "less than 0.1 %");
