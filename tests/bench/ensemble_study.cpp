@@ -72,7 +72,8 @@ int main(int argc, char** argv) {
   double load[1] = {0};
   getloadavg(load, 1);
   const std::string text = fmt::format(
-      "{} arms in `si`, 1 s each: {:.2f} s on one thread, {:.2f} s on two, added up over the simulations, without waiting for a processor:\n"
+      "{} arms in `si`, 1 s each: {:.2f} s on one thread, {:.2f} s on two, added up over the simulations, without waiting for a "
+      "processor:\n"
       "throughput x {:.2f}. Wall time of all {:.2f} s and {:.2f} s, x {:.2f}, with a load of {:.1f} on {} processors. Bits of the hands' "
       "positions: {}.\n",
       simulation_count, serial.own_s, parallel.own_s, 2 * serial.own_s / parallel.own_s, serial.wall_s, parallel.wall_s,
