@@ -39,14 +39,19 @@ bool isCalledRepeat(const Recording& a, const Recording& b) {
   return names(a, b) || names(b, a);
 }
 
+struct Interpolated {
+  double value, noise_share;  ///< noise_share: of the variance of one row's noise, less between two rows
+};
+
 /// Between the rows before and after a time; NaN outside the recording.
-double interpolated(const std::vector<double>& time_s, const std::vector<double>& values, double at_s) {
+Interpolated interpolated(const std::vector<double>& time_s, const std::vector<double>& values, double at_s) {
   const auto after = std::ranges::upper_bound(time_s, at_s);
-  if (after == time_s.begin()) return std::nan("");
+  if (after == time_s.begin()) return {std::nan(""), 1};
   const auto i = static_cast<std::size_t>(after - time_s.begin()) - 1;
-  if (after == time_s.end()) return at_s == time_s[i] ? values[i] : std::nan("");
+  if (at_s == time_s[i]) return {values[i], 1};
+  if (after == time_s.end()) return {std::nan(""), 1};
   const double share = (at_s - time_s[i]) / (time_s[i + 1] - time_s[i]);
-  return share == 0 ? values[i] : values[i] + share * (values[i + 1] - values[i]);
+  return {values[i] + share * (values[i + 1] - values[i]), share * share + (1 - share) * (1 - share)};
 }
 
 /// Of recordings with the same commands at the same times, and of those that a sidecar calls repeats, whose rows need not coincide.
@@ -57,8 +62,10 @@ std::optional<double> fromRepeats(const std::vector<Recording>& recordings, cons
       const Recording &first = recordings[i], &second = recordings[j];
       const Signal *a = first.find(name), *b = second.find(name);
       if (!a || !b || !(sameCommands(first, second) || isCalledRepeat(first, second))) continue;
-      for (std::size_t row = 0; row < a->values.size(); ++row)
-        differences.add(a->values[row] - interpolated(second.time_s, b->values, first.time_s[row]));
+      for (std::size_t row = 0; row < a->values.size(); ++row) {
+        const Interpolated other = interpolated(second.time_s, b->values, first.time_s[row]);
+        differences.add((a->values[row] - other.value) * std::sqrt(2 / (1 + other.noise_share)));
+      }
     }
   if (differences.count < 20) return std::nullopt;
   return std::sqrt(differences.sum_of_squares / static_cast<double>(differences.count) / 2);

@@ -9,7 +9,7 @@ namespace musclesim {
 
 /// Standard deviation of one signal's noise, the same for all recordings of a plant, in the signal's unit. The first that there is of:
 ///   repeats      RMS difference of recordings under identical commands / sqrt(2), or of one and what its sidecar calls its repeat_of,
-///                interpolated to the other's times
+///                interpolated to the other's times (which takes noise away; the difference is scaled up for it)
 ///   sidecar      noise_std
 ///   quiet rows   1.4826 median |d - median d| / sqrt(6) of the second differences d over the quieter half of the rows
 /// and never less than the step of the lattice on which the values lie / sqrt(12). Never the residual of a fit.

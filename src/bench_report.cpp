@@ -96,8 +96,8 @@ std::string benchTable(const std::vector<BenchCurve>& curves, double duration_s,
   text += fmt::format(
       "All of it is one process' work; every number is the median of its repeats over {:g} true seconds or, where that is longer, {:g} s "
       "of CPU time. `*`: cut short after {:g} s of CPU time and not repeated. Exponent: of n in a power law through the points from n = 10 "
-      "on. "
-      "Spread: the largest over the smallest of the repeats, median and worst over all n; far from 1 where the machine had other work.\n\n",
+      "on. Spread: the largest over the smallest of the repeats, median and worst over all n; far from 1 where the machine had other "
+      "work.\n\n",
       duration_s, shortest_cpu_s, time_limit_s);
   text += "| |";
   std::string rule = "|---|";

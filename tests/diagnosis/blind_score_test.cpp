@@ -103,10 +103,21 @@ TEST(BlindJudge, KnowsOpenCausesAndFalseAlarms) {
   EXPECT_TRUE(*judge("e", null, answerOf("unexplained", {}, 0)).false_alarm);
 }
 
+/// "No gap" where there is one is as wrong a claim as a wrong cause.
+TEST(BlindJudge, AMissedGapIsAWrongClaim) {
+  const json nothing = {{"explanations", json::array({{{"effects", json::array()}, {"probability", 1.0}}})}};
+  for (const json& key : {keyOf("single", {lag}, {{"valve_lag@*"}}), keyOf("open", {shaker}, {})}) {
+    const Judgement missed = judge("g", key, answerOf("no_gap", {}, 0, nothing));
+    EXPECT_DOUBLE_EQ(missed.claim->probability, 1);
+    EXPECT_FALSE(missed.claim->right);
+  }
+}
+
 TEST(BlindJudge, CountsAFailedDiagnosisAsWrong) {
   const json failed = {{"verdict", "failed"}, {"message", "..."}};
   const Judgement single = judge("f", keyOf("single", {lag}, {{"valve_lag@*"}}), failed);
-  EXPECT_FALSE(single.verdict_right || *single.top3 || *single.acceptable || *single.covered || single.claim->right);
+  EXPECT_FALSE(single.verdict_right || *single.top3 || *single.acceptable || *single.covered);
+  EXPECT_FALSE(single.claim) << "no answer is no claim";
   EXPECT_FALSE(*judge("f", keyOf("open", {shaker}, {}), failed).open_detected);
   EXPECT_TRUE(*judge("f", keyOf("null", {}, {}, 0), failed).false_alarm);
 }

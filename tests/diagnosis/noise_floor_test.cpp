@@ -34,6 +34,17 @@ TEST(NoiseFloor, ComesFromRepeatsFirst) {
   EXPECT_NEAR(floor.value, std_mm, 0.05 * std_mm);
 }
 
+TEST(NoiseFloor, RepeatsThatAreCalledSoNeedNotHaveTheSameTimes) {
+  std::vector<Recording> repeats = {noisyWave(1), noisyWave(2)};
+  repeats[0].file = "folder/first.csv";
+  for (double& time_s : repeats[1].time_s) time_s += 0.004;
+  EXPECT_NE(noiseFloor(repeats, "length_0_mm").source, NoiseFloor::Source::repeats);
+  repeats[1].info.repeat_of = "first";
+  const NoiseFloor floor = noiseFloor(repeats, "length_0_mm");
+  EXPECT_EQ(floor.source, NoiseFloor::Source::repeats);
+  EXPECT_NEAR(floor.value, std_mm, 0.1 * std_mm);
+}
+
 TEST(NoiseFloor, ThenFromTheSidecar) {
   std::vector<Recording> recordings = {noisyWave(1, 0.4), noisyWave(2, 0.6)};
   recordings[0].info.noise_std["length_0_mm"] = 0.25;
