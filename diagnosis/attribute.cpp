@@ -1,5 +1,6 @@
 #include "attribute.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -19,6 +20,9 @@ constexpr std::size_t look_count = 3;       ///< recordings that are looked at
 constexpr std::size_t single_count = 14;    ///< suspects that are fitted
 constexpr std::size_t component_count = 8;  ///< suspects on the component of the best that are fitted
 constexpr std::size_t pair_count = 6;       ///< further effects that are fitted beside the best
+constexpr std::size_t base_count = 3;       ///< explanations beside which further effects are looked for
+constexpr std::size_t fewer_pairs = 3;      ///< further effects that are fitted beside the second and third of them
+constexpr double likely_share = 0.1;        ///< of the best one's probability, that those have at least
 constexpr double least_hope = -1;           ///< ln of the odds of one more effect that leaves nothing; below, none is looked for
 constexpr int few_effects = 2;              ///< up to that many, the first look serves for all of them
 constexpr int first_rounds = 2, more_rounds = 6, last_rounds = 2;
@@ -121,6 +125,17 @@ Eigen::VectorXd Attributor::startOf(std::size_t index, const Signature& signatur
   return z;
 }
 
+Eigen::VectorXd Attributor::clampedAll(const std::vector<std::size_t>& members, const Eigen::VectorXd& z) const {
+  Eigen::VectorXd result = z;
+  Eigen::Index first = 0;
+  for (const std::size_t index : members) {
+    const Eigen::Index count = result_.suspects[index].coordinateCount();
+    result.segment(first, count) = result_.suspects[index].clamped(z.segment(first, count));
+    first += count;
+  }
+  return result;
+}
+
 /// The effects' coordinates and those of the numbers of the model that nobody measured, fitted together: either could stand in for the
 /// other.
 void Attributor::refit(Explanation& explanation, const Comparison& comparison, int rounds, Fidelity fidelity) const {
@@ -131,14 +146,8 @@ void Attributor::refit(Explanation& explanation, const Comparison& comparison, i
   problem.start.resize(effect_count + tuned_count);
   problem.start << explanation.z, explanation.tuning;
   problem.clamped = [&](const Eigen::VectorXd& z) {
-    Eigen::VectorXd result = z;
-    Eigen::Index first = 0;
-    for (const std::size_t index : members) {
-      const Eigen::Index count = result_.suspects[index].coordinateCount();
-      result.segment(first, count) = result_.suspects[index].clamped(z.segment(first, count));
-      first += count;
-    }
-    result.tail(tuned_count) = Plant::clampedTuning(z.tail(tuned_count));
+    Eigen::VectorXd result(z.size());
+    result << clampedAll(members, z.head(effect_count)), Plant::clampedTuning(z.tail(tuned_count));
     return result;
   };
   auto modelAt = [&](const Eigen::VectorXd& z) {
@@ -159,45 +168,65 @@ void Attributor::refit(Explanation& explanation, const Comparison& comparison, i
 }
 
 /// The last suspect's strengths are taken down until the prediction on the look is no worse than without it.
-void Attributor::weakenStart(Explanation& candidate, double without) const {
+void Attributor::weakenStart(Candidate& candidate) const {
   constexpr double share = 0.3;
   constexpr int weakenings = 4;
-  const Suspect& last = result_.suspects[candidate.suspects.back()];
+  const Suspect& last = result_.suspects[candidate.explanation.suspects.back()];
   if (last.strengths().empty()) return;
   for (int i = 0; i < weakenings && !plant_.interrupted(); ++i) {
-    const Eigen::VectorXd predicted = look_.predicted(modelOf(candidate));
+    const Eigen::VectorXd predicted = look_.predicted(modelOf(candidate.explanation));
     on_simulation_();
-    if (predicted.size() == look_.size() && look_.logMisfit(look_.measured() - predicted) < without) return;
-    for (const int strength : last.strengths()) candidate.z.tail(last.coordinateCount())[strength] *= share;
+    if (predicted.size() == look_.size() && look_.logMisfit(look_.measured() - predicted) < candidate.without) return;
+    for (const int strength : last.strengths()) candidate.explanation.z.tail(last.coordinateCount())[strength] *= share;
   }
 }
 
-/// `without` is the misfit on the look without the last suspect. In three rounds, each for those that the round before left within reach of
-/// the best: a few steps on the look, more steps, all recordings in fine steps (coarse ones blur what lasts some milliseconds). Those out
-/// of reach keep what they had, with their misfit on all recordings.
-void Attributor::fitTogether(std::vector<Explanation> candidates, double without, Reach reach) {
-  auto forEach = [&](const std::function<bool(const Explanation&)>& chosen, const std::function<void(Explanation&)>& work) {
+/// A further effect that gains next to nothing on the look after the first steps will not be believed.
+bool Attributor::gainsOnLook(const Candidate& candidate) const {
+  constexpr double least_gain = 0.1;
+  const double without = candidate.without / look_.affectedCells(look_residual_);
+  return candidate.explanation.suspects.size() == 1 || candidate.explanation.log_misfit < without - least_gain;
+}
+
+/// Nor will one whose explanation is far behind the likeliest so far.
+bool Attributor::mayBeBelieved(const Explanation& explanation) const {
+  constexpr double far_behind = 4;  // ln of the odds; what a fit in fine steps may still gain
+  if (explanation.suspects.size() == 1) return true;
+  double best = -std::numeric_limits<double>::infinity();
+  for (const Explanation& other : result_.explanations) best = std::max(best, logOdds(other));
+  return explanation.residual.size() == fit_.size() && logOdds(explanation) > best - far_behind;
+}
+
+/// In three rounds, each for those that the round before left within reach of the best: a few steps on the look, more steps, all recordings
+/// in fine steps (coarse ones blur what lasts some milliseconds). Those out of reach keep what they had, with their misfit on all
+/// recordings.
+void Attributor::fitTogether(std::vector<Candidate> candidates, Reach reach) {
+  auto forEach = [&](const std::function<bool(const Candidate&)>& chosen, const std::function<void(Candidate&)>& work) {
     parallelFor(static_cast<int>(candidates.size()), options_.job_count, [&](int i) {
-      Explanation& candidate = candidates[static_cast<std::size_t>(i)];
+      Candidate& candidate = candidates[static_cast<std::size_t>(i)];
       if (!plant_.interrupted() && chosen(candidate)) work(candidate);
     });
   };
-  auto within = [&](double distance) {
+  auto limit = [&](double distance) {
     double best = std::numeric_limits<double>::infinity();
-    for (const Explanation& candidate : candidates) best = std::min(best, candidate.log_misfit);
-    return [limit = best + distance](const Explanation& candidate) { return candidate.log_misfit <= limit; };
+    for (const Candidate& candidate : candidates) best = std::min(best, candidate.explanation.log_misfit);
+    return best + distance;
   };
   const int rounds = options_.max_effects > few_effects ? many_rounds : last_rounds;
-  auto all = [](const Explanation&) { return true; };
-  forEach(all, [&](Explanation& candidate) {
-    weakenStart(candidate, without);
-    refit(candidate, look_, first_rounds, Fidelity::coarse);
+  auto all = [](const Candidate&) { return true; };
+  forEach(all, [&](Candidate& candidate) {
+    weakenStart(candidate);
+    refit(candidate.explanation, look_, first_rounds, Fidelity::coarse);
   });
-  forEach(within(reach.on_look), [&](Explanation& candidate) { refit(candidate, look_, more_rounds, Fidelity::coarse); });
-  forEach(all, [&](Explanation& candidate) { refit(candidate, fit_, 0, Fidelity::coarse); });
-  forEach(within(reach.on_all), [&](Explanation& candidate) { refit(candidate, fit_, rounds, Fidelity::fine); });
-  for (Explanation& candidate : candidates)
-    if (candidate.residual.size() == fit_.size()) result_.explanations.push_back(std::move(candidate));
+  forEach([&, within = limit(reach.on_look)](
+              const Candidate& candidate) { return candidate.explanation.log_misfit <= within && gainsOnLook(candidate); },
+          [&](Candidate& candidate) { refit(candidate.explanation, look_, more_rounds, Fidelity::coarse); });
+  forEach(all, [&](Candidate& candidate) { refit(candidate.explanation, fit_, 0, Fidelity::coarse); });
+  forEach([&, within = limit(reach.on_all)](
+              const Candidate& candidate) { return candidate.explanation.log_misfit <= within && mayBeBelieved(candidate.explanation); },
+          [&](Candidate& candidate) { refit(candidate.explanation, fit_, rounds, Fidelity::fine); });
+  for (Candidate& candidate : candidates)
+    if (candidate.explanation.residual.size() == fit_.size()) result_.explanations.push_back(std::move(candidate.explanation));
 }
 
 /// The best by the first look, and the best of every stage; each id and component once.
@@ -227,9 +256,11 @@ void Attributor::fitSingles() {
 }
 
 void Attributor::fitAlone(const std::vector<std::size_t>& chosen) {
-  std::vector<Explanation> candidates;
-  for (const std::size_t index : chosen) candidates.push_back({{index}, startOf(index, result_.signatures[index]), {}, {}, 0, 0});
-  fitTogether(std::move(candidates), look_.logMisfit(look_residual_), single_reach);
+  const double without = look_.logMisfit(look_residual_);
+  std::vector<Candidate> candidates;
+  for (const std::size_t index : chosen)
+    candidates.push_back({{{index}, startOf(index, result_.signatures[index]), {}, {}, 0, 0}, without});
+  fitTogether(std::move(candidates), single_reach);
 }
 
 /// What looks alike acts on the same component; where there are many, most of it may not have been among the first.
@@ -250,111 +281,86 @@ void Attributor::fitMoreOnTheBestComponent() {
   fitAlone(survivors(log_misfit, component_count - fitted.size(), false));
 }
 
-/// A further effect is looked for beside the likeliest explanation of `count` - 1 effects, with the first look's signatures on what that
-/// one leaves. Returns whether there was anything to look for.
+/// A further effect is looked for beside the likeliest explanations of `count` - 1 effects. Returns whether there was anything to look for.
 bool Attributor::fitFurther(std::size_t count) {
-  const auto found =
-      std::ranges::find_if(result_.explanations, [&](const Explanation& explanation) { return explanation.suspects.size() + 1 == count; });
-  if (found == result_.explanations.end()) return false;
-  // Of the one that leaves nothing.
-  const Explanation& first = firstOf(*found);
-  const Eigen::VectorXd nothing = Eigen::VectorXd::Zero(fit_.size());
-  const double best_hope =
-      furtherLogOdds(nothing, first) - furtherLogOdds(found->residual, first) - weighing_.per_effect - weighing_.per_parameter;
-  if (best_hope < least_hope) return false;
-  const Explanation best = *found;
-  const Eigen::VectorXd predicted = look_.predicted(modelOf(best));
-  if (!predicted.size()) return false;
+  std::vector<Explanation> bases;
+  for (const Explanation& explanation : result_.explanations) {
+    const bool likely = bases.empty() || explanation.probability >= likely_share * bases.front().probability;
+    if (explanation.suspects.size() + 1 == count && likely && bases.size() < base_count &&
+        odds().hopeBeyond(explanation, bestAlone(explanation)) >= least_hope)
+      bases.push_back(explanation);
+  }
+  std::vector<Candidate> candidates;
+  for (const Explanation& base : bases) {
+    const std::size_t most = &base == &bases.front() ? pair_count : fewer_pairs;
+    for (Candidate& candidate : candidatesBeside(base, most)) {
+      const auto same = [&](const Candidate& other) { return sameEffects(other.explanation, candidate.explanation); };
+      if (std::ranges::none_of(candidates, same)) candidates.push_back(std::move(candidate));
+    }
+  }
+  fitTogether(std::move(candidates), pair_reach);
+  return !bases.empty();
+}
+
+/// Whether two explanations hold the same effects on the same components, in whatever order.
+bool Attributor::sameEffects(const Explanation& one, const Explanation& other) const {
+  auto labels = [&](const Explanation& explanation) {
+    std::set<std::string> result;
+    for (const std::size_t member : explanation.suspects) result.insert(result_.suspects[member].label());
+    return result;
+  };
+  return labels(one) == labels(other);
+}
+
+/// One more effect each beside `base`, chosen by the first look's signatures on what that one leaves.
+std::vector<Attributor::Candidate> Attributor::candidatesBeside(const Explanation& base, std::size_t most) const {
+  const Eigen::VectorXd predicted = look_.predicted(modelOf(base));
+  if (!predicted.size()) return {};
   const Eigen::VectorXd left = look_.measured() - predicted;
   // Where many effects act, what one changes depends on the others: they are looked at again beside what has been found.
-  const bool again = options_.max_effects > few_effects;
-  std::vector<Signature> signatures =
-      again ? screen(look_, result_.suspects, predicted, modelOf(best), Strengths::kept, options_.job_count, on_simulation_)
-            : result_.signatures;
+  std::vector<Signature> signatures = result_.signatures;
+  if (options_.max_effects > few_effects) {
+    std::vector<Suspect> suspects = result_.suspects;
+    signatures = screen(look_, suspects, predicted, modelOf(base), Strengths::kept, options_.job_count, on_simulation_);
+  }
   std::vector<double> log_misfit;
   for (std::size_t s = 0; s < signatures.size(); ++s) {
-    if (!again) explain(look_, result_.suspects[s], left, signatures[s]);
+    explain(look_, result_.suspects[s], left, signatures[s]);
     const bool same = std::ranges::any_of(
-        best.suspects, [&](std::size_t member) { return result_.suspects[s].info().id == result_.suspects[member].info().id; });
+        base.suspects, [&](std::size_t member) { return result_.suspects[s].info().id == result_.suspects[member].info().id; });
     log_misfit.push_back(same ? std::numeric_limits<double>::infinity() : signatures[s].log_misfit);
   }
-  std::vector<Explanation> candidates;
-  for (const std::size_t index : survivors(log_misfit, pair_count, false)) {
+  std::vector<Candidate> candidates;
+  for (const std::size_t index : survivors(log_misfit, most, false)) {
     const Eigen::VectorXd further = startOf(index, signatures[index]);
-    Explanation candidate{best.suspects, Eigen::VectorXd(best.z.size() + further.size()), {}, {}, 0, 0, best.tuning};
-    candidate.suspects.push_back(index);
-    candidate.z << best.z, further;
-    candidates.push_back(std::move(candidate));
+    Explanation explanation{base.suspects, Eigen::VectorXd(base.z.size() + further.size()), {}, {}, 0, 0, base.tuning};
+    explanation.suspects.push_back(index);
+    explanation.z << base.z, further;
+    candidates.push_back({std::move(explanation), look_.logMisfit(left)});
   }
-  fitTogether(std::move(candidates), look_.logMisfit(left), pair_reach);
-  return true;
+  return candidates;
 }
 
-/// Mean square per cell of a share of the residual.
-Eigen::VectorXd Attributor::mismatchOf(double share, const Eigen::VectorXd& residual) const {
-  Eigen::VectorXd squares(static_cast<Eigen::Index>(fit_.cells().size()));
-  for (Eigen::Index i = 0; i < squares.size(); ++i)
-    squares[i] = share * share * fit_.meanSquare(fit_.cells()[static_cast<std::size_t>(i)], residual);
-  return squares;
-}
-
-/// Mean over affected cells of ln(RMS / floor), where floor^2 = noise floor^2 + mismatch, but no less than 0 per cell.
-double Attributor::weighedMisfit(const Eigen::VectorXd& residual, const Eigen::VectorXd& mismatch) const {
-  double sum = 0;
-  for (Eigen::Index i = 0; i < mismatch.size(); ++i) {
-    const Comparison::Cell& cell = fit_.cells()[static_cast<std::size_t>(i)];
-    sum += 0.5 * std::log(std::max(1.0, fit_.meanSquare(cell, residual) / (cell.floor * cell.floor + mismatch[i])));
+/// That of its effects which leaves least alone.
+const Explanation& Attributor::bestAlone(const Explanation& explanation) const {
+  const Explanation* best = nullptr;
+  for (const Explanation& other : result_.explanations) {
+    const bool member =
+        other.suspects.size() == 1 && std::ranges::find(explanation.suspects, other.suspects.front()) != explanation.suspects.end();
+    if (member && (!best || odds().misfitLeftBy(other.judged()) < odds().misfitLeftBy(best->judged()))) best = &other;
   }
-  return sum / fit_.affectedCells(nominal_residual_);
+  return *best;
 }
 
-/// A small share of the gap counts as noise: the right cause's law is not quite ours.
-double Attributor::misfitLeftBy(const Eigen::VectorXd& residual) const {
-  return weighedMisfit(residual, mismatchOf(weighing_.law_mismatch, nominal_residual_));
-}
-
-/// ln of the odds by what further effects leave, but for a constant. It is taken once as of the first effect, and once with a large share
-/// of what the first one changes counted as noise: what further effects gain below that may only mend its law.
-double Attributor::furtherLogOdds(const Eigen::VectorXd& residual, const Explanation& first) const {
-  const double beyond = weighedMisfit(residual, mismatchOf(weighing_.mended_share, nominal_residual_ - first.residual));
-  return -weighing_.per_further_gain * misfitLeftBy(residual) - weighing_.per_own_gain * beyond;
-}
-
-/// That of its first effect alone.
-const Explanation& Attributor::firstOf(const Explanation& explanation) const {
-  return *std::ranges::find_if(result_.explanations, [&](const Explanation& other) {
-    return other.suspects.size() == 1 && other.suspects.front() == explanation.suspects.front();
-  });
-}
-
-/// ln of the odds by what is left; of further effects, by what they gain over the first.
-double Attributor::misfitLogOdds(const Explanation& explanation) const {
-  const Explanation& first = firstOf(explanation);
-  return -weighing_.per_misfit * misfitLeftBy(first.residual) + furtherLogOdds(explanation.residual, first) -
-         furtherLogOdds(first.residual, first);
-}
-
-/// What speaks against an explanation before its misfit is looked at.
-double Attributor::priorLogOdds(const Explanation& explanation) const {
-  double odds = -weighing_.per_parameter * static_cast<double>(explanation.z.size()) -
-                weighing_.per_effect * (static_cast<double>(explanation.suspects.size()) - 1);
-  Eigen::Index first = 0;
-  for (const std::size_t index : explanation.suspects) {
-    const Suspect& suspect = result_.suspects[index];
-    odds -= weighing_.per_excess * suspect.excess(explanation.z.segment(first, suspect.coordinateCount()));
-    if (suspect.info().stage == Stage::sensor && suspect.component() == "all") odds -= weighing_.shared_sensor;
-    first += suspect.coordinateCount();
-  }
-  return odds;
+double Attributor::logOdds(const Explanation& explanation) const {
+  return odds().ofExplanation(explanation, bestAlone(explanation));
 }
 
 /// Sorts by odds = exp(misfit log odds) * prior odds; "none of these" and "no effect" are explanations like any other.
 void Attributor::weigh() {
   if (result_.explanations.empty() && plant_.interrupted()) return;  // nothing is known yet
-  const double no_effect = misfitLeftBy(nominal_residual_);
-  std::vector<double> odds = {-weighing_.per_misfit * no_effect,
-                              -weighing_.per_misfit * weighing_.none_share * no_effect - weighing_.per_parameter};
-  for (const Explanation& explanation : result_.explanations) odds.push_back(misfitLogOdds(explanation) + priorLogOdds(explanation));
+  std::vector<double> odds = {this->odds().ofNoEffect(), this->odds().ofNoneOfThese()};
+  for (const Explanation& explanation : result_.explanations) odds.push_back(logOdds(explanation));
   const double largest = *std::ranges::max_element(odds);
   double sum = 0;
   for (double& value : odds) sum += value = std::exp(value - largest);
@@ -372,12 +378,106 @@ const Explanation& Attributor::nearest() const {
   });
 }
 
+/// d(prediction)/d(coordinates), those of the effects and of the tuning; usual internal steps.
+Eigen::MatrixXd Attributor::derivatives(const Explanation& explanation) const {
+  const Eigen::Index effect_count = explanation.z.size(), count = effect_count + explanation.tuning.size();
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(fit_.size(), count);
+  if (count == 0) return jacobian;
+  const Eigen::VectorXd here = fit_.predicted(modelOf(explanation));
+  on_simulation_();
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const double at = i < effect_count ? explanation.z[i] : explanation.tuning[i - effect_count];
+    for (const double side : {1.0, -1.0}) {
+      Eigen::VectorXd step = Eigen::VectorXd::Zero(count);
+      step[i] = side * std::max(0.02, 0.05 * std::abs(at));
+      const Explanation beside = moved(explanation, step);
+      const double change = (i < effect_count ? beside.z[i] : beside.tuning[i - effect_count]) - at;
+      if (change == 0) continue;  // at a bound
+      const Eigen::VectorXd predicted = fit_.predicted(modelOf(beside));
+      on_simulation_();
+      if (predicted.size() == here.size() && predicted.allFinite()) jacobian.col(i) = (predicted - here) / change;
+      break;
+    }
+  }
+  return jacobian;
+}
+
+Explanation Attributor::moved(const Explanation& explanation, const Eigen::VectorXd& step) const {
+  Explanation result = explanation;
+  result.z = clampedAll(explanation.suspects, explanation.z + step.head(explanation.z.size()));
+  result.tuning = Plant::clampedTuning(explanation.tuning + step.tail(explanation.tuning.size()));
+  return result;
+}
+
+/// The step from the fit to all stretches to the fit to all but one, by the linearised problem.
+Eigen::VectorXd Attributor::stepWithout(std::size_t stretch, const Explanation& explanation, const Eigen::MatrixXd& jacobian) const {
+  constexpr int reweightings = 5;
+  constexpr double damping = 1e-3;  // what changes nothing stays where it is
+  Eigen::VectorXd step = Eigen::VectorXd::Zero(jacobian.cols());
+  if (jacobian.cols() == 0) return step;
+  for (int i = 0; i < reweightings; ++i) {
+    Eigen::VectorXd weights = fit_.weights(explanation.residual - jacobian * step);
+    for (const Comparison::Cell& cell : fit_.cells())
+      if (cell.stretch == stretch) weights.segment(cell.first, cell.count()).setZero();
+    const Eigen::MatrixXd weighted = weights.asDiagonal() * jacobian;
+    Eigen::MatrixXd normal = weighted.transpose() * weighted;
+    normal.diagonal().array() += damping;
+    step = normal.ldlt().solve(weighted.transpose() * weights.cwiseProduct(explanation.residual));
+  }
+  return step;
+}
+
+/// Leave-one-out cross-validation (Stone 1974): each stretch as predicted by the numbers that fit the others. Where that diverges, the gap
+/// is what is left.
+void Attributor::predictFromOthers(Explanation& explanation) const {
+  const Eigen::MatrixXd jacobian = derivatives(explanation);
+  explanation.unseen = explanation.residual;
+  for (std::size_t k = 0; k < one_by_one_.size(); ++k) {
+    const Comparison& one = one_by_one_[k];
+    const Eigen::VectorXd predicted = one.predicted(modelOf(moved(explanation, stepWithout(k, explanation, jacobian))));
+    on_simulation_();
+    const bool diverged = predicted.size() != one.size();
+    for (const Comparison::Cell& cell : fit_.cells()) {
+      if (cell.stretch != k) continue;
+      const auto same = std::ranges::find_if(
+          one.cells(), [&](const Comparison::Cell& other) { return other.signal == cell.signal && other.block == cell.block; });
+      auto part = explanation.unseen.segment(cell.first, cell.count());
+      if (diverged)
+        part = nominal_residual_.segment(cell.first, cell.count());
+      else
+        part = (one.measured() - predicted).segment(same->first, same->count());
+    }
+  }
+}
+
+/// Judges every explanation that is not out of the question by stretches that it has not seen, until all of those have been.
+void Attributor::crossCheck() {
+  constexpr double out_of_the_question = 0.003;
+  if (fit_.stretches().size() < 2) return;
+  if (one_by_one_.empty())
+    for (const Stretch& stretch : fit_.stretches()) one_by_one_.emplace_back(plant_, std::vector{stretch}, Comparison::Averages::with);
+  while (!plant_.interrupted()) {
+    std::vector<Explanation*> open;
+    for (Explanation& explanation : result_.explanations)
+      if (explanation.unseen.size() == 0 && explanation.probability > out_of_the_question) open.push_back(&explanation);
+    if (open.empty()) return;
+    parallelFor(static_cast<int>(open.size()), options_.job_count, [&](int i) {
+      if (!plant_.interrupted()) predictFromOthers(*open[static_cast<std::size_t>(i)]);
+    });
+    weigh();
+  }
+}
+
 void Attributor::decide() {
   fitSingles();
   weigh();
   fitMoreOnTheBestComponent();
   weigh();
-  for (int count = 2; count <= options_.max_effects && fitFurther(static_cast<std::size_t>(count)); ++count) weigh();
+  crossCheck();
+  for (int count = 2; count <= options_.max_effects && fitFurther(static_cast<std::size_t>(count)); ++count) {
+    weigh();
+    crossCheck();
+  }
 }
 
 }  // namespace musclesim

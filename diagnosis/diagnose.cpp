@@ -27,8 +27,6 @@ constexpr double listed = 0.01;           ///< least probability that is listed
 constexpr double named = 0.5;             ///< least probability of none_of_these that makes the verdict `unexplained`
 constexpr double as_good = 0.1;           ///< share of the best explanation's probability from which on one cannot be told from it
 constexpr double excited = 1;             ///< a typical effect must change some signal by that many floors
-constexpr double clear_gain_percent = 5;  ///< by which an effect must beat nominal refit and sham
-constexpr double clear_rest_share = 0.5;  ///< or this share of what they leave is all that it may leave
 
 /// Of the program, for a model of the recordings' robot.
 std::string modelOptions(const RecordingInfo& info) {
@@ -186,10 +184,8 @@ class Run {
     const Estimate interval = shrinkInterval({held_out_, before_residual_, after},
                                              {attributor_.fitComparison(), attributor_.nominalResidual(), best.residual}, options_.seed);
     const Attempt attempt{labelsOf(model), model.effects, gap_after, shrinkOf(after), interval.low, interval.high};
-    const double other_percent = std::max({0.0, diagnosis_.nominal_refit_shrink_percent, diagnosis_.sham_shrink_percent});
-    const bool beats = attempt.shrink_percent > other_percent + clear_gain_percent ||
-                       100 - attempt.shrink_percent < clear_rest_share * (100 - other_percent);
-    const bool found = !none && beats;
+    const bool found =
+        !none && clearlyBeats(attempt.shrink_percent, diagnosis_.nominal_refit_shrink_percent, diagnosis_.sham_shrink_percent);
     if (!found && attempt.shrink_percent <= 0) return;  // it does not hold beyond what it was fitted to
     diagnosis_.tuned = tunedParameters(plant_, best.tuning, best.tuning_half_width);
     after_residual_ = after;
@@ -268,7 +264,8 @@ class Run {
                                   cell.floor, before[i], static_cast<int>(cell.block)});
     }
     for (const Explanation& explanation : attribution.explanations) {
-      Trial trial{{}, static_cast<int>(explanation.z.size()), rmsOf(explanation.residual), {}};
+      Trial trial{{}, static_cast<int>(explanation.z.size()), rmsOf(explanation.residual), {}, {}};
+      if (explanation.unseen.size()) trial.rms_unseen = rmsOf(explanation.unseen);
       Eigen::Index first = 0;
       for (const std::size_t index : explanation.suspects) {
         const Suspect& suspect = attribution.suspects[index];

@@ -81,7 +81,7 @@ Json fittedJson(const Diagnosis& d) {
                              {"averaged_rows", cell.averaged_rows}});
   for (const Trial& trial : d.trials)
     json["trials"].push_back(
-        {{"effects", trial.effects}, {"parameters", trial.parameter_count}, {"rms", trial.rms}, {"values", trial.values}});
+        {{"effects", trial.effects}, {"parameters", trial.parameter_count}, {"rms", trial.rms}, {"rms_unseen", trial.rms_unseen}, {"values", trial.values}});
   return json;
 }
 

@@ -102,17 +102,34 @@ std::string remainder(const Diagnosis& d) {
   return fmt::format(" What is left is still {:.1f} times the noise: something else acts too, or acts by another law.", over_floor);
 }
 
+/// "valve lag on muscle 1 together with payload on hand" of "valve_lag@muscle_1 + payload@hand".
+std::string explanationWords(const std::string& labels) {
+  const std::string link = " + ";
+  std::string words;
+  for (std::size_t first = 0, end = 0; end != std::string::npos; first = end + link.size()) {
+    end = labels.find(link, first);
+    words += (words.empty() ? "" : " together with ") + labelWords(labels.substr(first, end - first));
+  }
+  return words;
+}
+
 /// What else would do, and how to find out.
 std::string otherwise(const Diagnosis& d) {
+  if (d.alternatives.size() < 2) return "";
   std::vector<std::string> others;
-  for (const std::string& label : d.ambiguity_set)
-    if (std::ranges::find(d.chosen, label) == d.chosen.end()) others.push_back(labelWords(label));
-  if (others.empty()) return "";
-  const std::string place = d.chosen.size() > 1 ? " in place of " + labelWords(d.chosen.back()) : "";
+  for (auto other = d.alternatives.begin() + 1; other != d.alternatives.end(); ++other) others.push_back(explanationWords(*other));
+  const std::string place = d.chosen.size() > 1 ? " in place of " + explanationWords(d.alternatives.front()) : "";
   others.front().front() = static_cast<char>(std::toupper(static_cast<unsigned char>(others.front().front())));
   const char* which = d.next_experiment.separates.size() > others.size() ? "them" : "the likeliest of them";
   return fmt::format(" {} would explain it as well{}{}.", fmt::join(others, " or "), place,
                      d.next_experiment.commands.empty() ? "" : fmt::format("; record the schedule in next.csv to tell {} apart", which));
+}
+
+/// Where that the catalogue holds the cause is not taken for granted.
+std::string noneWords(const Diagnosis& d) {
+  constexpr double worth_saying = 0.1;
+  if (d.none_of_these < worth_saying) return "";
+  return fmt::format(" That none of the known effects is the cause is {} likely.", probabilityWords(d.none_of_these));
 }
 
 std::string mostProbable(const Diagnosis& d) {
@@ -161,7 +178,7 @@ std::string verdictSentence(const Diagnosis& d) {
           "fitting nor choosing had seen.",
           probabilityWords(best == d.explanations.end() ? 0 : best->probability), listWords(d, d.chosen, " together with "),
           d.chosen.size() > 1 ? "them" : "it", shrinkWords(d));
-      return text + remainder(d) + otherwise(d);
+      return text + remainder(d) + noneWords(d) + otherwise(d);
     }
   }
   return "";

@@ -118,6 +118,12 @@ double shrinkPercent(const Gap& before, const Gap& after) {
   return before.normalised > 0 ? 100 * (1 - after.normalised / before.normalised) : 0;
 }
 
+bool clearlyBeats(double shrink_percent, double nominal_refit_percent, double sham_percent) {
+  constexpr double clear_gain_percent = 5, clear_rest_share = 0.5;
+  const double other_percent = std::max({0.0, nominal_refit_percent, sham_percent});
+  return shrink_percent > other_percent + clear_gain_percent || 100 - shrink_percent < clear_rest_share * (100 - other_percent);
+}
+
 Estimate shrinkInterval(const BeforeAndAfter& held_out, const BeforeAndAfter& fitted, std::uint64_t seed) {
   const std::vector<Block> blocks = blocksOf(held_out);
   RandomStream random(seed, "diagnosis.bootstrap");

@@ -27,7 +27,7 @@ Diagnosis lagFound() {
   d.effects = {{"valve_lag", "muscle_1", 0.931, {{"vent_time_constant_s", {0.081, 0.077, 0.085}}}, 96.2}};
   d.chosen = {"valve_lag@muscle_1"};
   d.explanations = {{d.chosen, 0.931}};
-  d.ambiguity_set = {"valve_lag@muscle_1", "flow_limit@muscle_1"};
+  d.ambiguity_set = d.alternatives = {"valve_lag@muscle_1", "flow_limit@muscle_1"};
   d.shrink_percent = 96.2;
   d.shrink_low_percent = 94;
   d.shrink_high_percent = 97.5;
@@ -77,8 +77,28 @@ TEST(VerdictSentence, SaysWhetherTheExperimentTellsAllApart) {
   d.next_experiment.commands = {{0.5}};
   d.next_experiment.separates = d.ambiguity_set;
   EXPECT_TRUE(contains(verdictSentence(d), "record the schedule in next.csv to tell them apart"));
-  d.ambiguity_set.push_back("leak@muscle_1");
+  d.alternatives.emplace_back("leak@muscle_1");
   EXPECT_TRUE(contains(verdictSentence(d), "to tell the likeliest of them apart"));
+}
+
+TEST(VerdictSentence, SaysWhatAnotherPairWouldReplace) {
+  Diagnosis d = lagFound();
+  d.chosen = {"valve_lag@muscle_1", "payload@hand"};
+  d.alternatives = {"valve_lag@muscle_1", "leak@muscle_1"};
+  EXPECT_TRUE(contains(verdictSentence(d), "Leak on muscle 1 would explain it as well in place of valve lag on muscle 1."));
+  d.alternatives = {"valve_lag@muscle_1 + payload@hand", "channel_swap@muscle_0+muscle_1 + leak@muscle_1"};
+  EXPECT_TRUE(contains(verdictSentence(d),
+                       "Channel swap on muscle 0+muscle 1 together with leak on muscle 1 would explain it as well in place of valve lag on "
+                       "muscle 1 together with payload on hand."))
+      << verdictSentence(d);
+}
+
+TEST(VerdictSentence, SaysHowLikelyNoneOfTheKnownEffectsIs) {
+  Diagnosis d = lagFound();
+  d.none_of_these = 0.09;
+  EXPECT_FALSE(contains(verdictSentence(d), "none of the known effects"));
+  d.none_of_these = 0.48;
+  EXPECT_TRUE(contains(verdictSentence(d), "That none of the known effects is the cause is 48 % likely."));
 }
 
 TEST(VerdictSentence, SaysThatASearchWasInterrupted) {

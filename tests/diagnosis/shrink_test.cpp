@@ -10,6 +10,20 @@
 namespace musclesim {
 namespace {
 
+TEST(ClearlyBeats, AsksForFivePointsOrHalfOfWhatIsLeft) {
+  EXPECT_TRUE(clearlyBeats(26, 20, 3));
+  EXPECT_FALSE(clearlyBeats(24, 20, 3));
+  EXPECT_FALSE(clearlyBeats(24, 3, 20));
+  EXPECT_TRUE(clearlyBeats(98.6, 97, 0)) << "leaves less than half of what the refit leaves";
+  EXPECT_FALSE(clearlyBeats(98.4, 97, 0));
+}
+
+TEST(ClearlyBeats, RefusesWhatGainsNothingHoweverBadTheOthersAre) {
+  EXPECT_FALSE(clearlyBeats(-10, -80, -9));
+  EXPECT_FALSE(clearlyBeats(4, -80, -9));
+  EXPECT_TRUE(clearlyBeats(6, -80, -9));
+}
+
 /// Residuals that are constant on each recording: 10 floors without, `left` floors with what was found.
 class ThreeRigs : public testing::Test {
  protected:

@@ -93,6 +93,7 @@ struct Trial {
   std::vector<std::string> effects;
   int parameter_count = 0;
   std::vector<double> rms;
+  std::vector<double> rms_unseen;  ///< the same with every recording predicted from a fit to the others; empty where that was not tried
   std::vector<std::map<std::string, double>> values;  ///< parameters of every effect
 };
 

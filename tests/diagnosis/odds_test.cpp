@@ -1,0 +1,97 @@
+// What makes an explanation likelier than another.
+#include "diagnosis/odds.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "planted.h"
+
+namespace musclesim {
+namespace {
+
+/// Residuals are constant: the model without effects leaves 20 floors.
+class OddsOnARig : public testing::Test {
+ protected:
+  enum Index : std::size_t { payload, bias, gain, threshold };
+
+  Eigen::VectorXd leaving(double floors) const { return Eigen::VectorXd::Constant(comparison_.size(), floors * planted::noise_mm); }
+
+  Explanation explanation(const std::vector<std::size_t>& members, double floors) const {
+    Explanation result{members, {}, {}, leaving(floors), 0, 0};
+    Eigen::Index count = 0;
+    for (const std::size_t member : members) count += suspects_[member].coordinateCount();
+    result.z = Eigen::VectorXd::Constant(count, 0.1);
+    return result;
+  }
+
+  double ofSingle(std::size_t member, double floors) const {
+    const Explanation single = explanation({member}, floors);
+    return odds_.ofExplanation(single, single);
+  }
+
+  DiagnosisOptions options_;
+  Plant plant_{planted::plant({}), options_};
+  Comparison comparison_{plant_, {{0, 0, 400}}};
+  std::vector<Suspect> suspects_ = {{effectInfo("payload"), "hand", plant_},
+                                    {effectInfo("sensor_bias"), "signal_length_0", plant_},
+                                    {effectInfo("force_gain"), "muscle_0", plant_},
+                                    {effectInfo("threshold_pressure"), "muscle_0", plant_}};
+  Eigen::VectorXd nominal_ = leaving(20);
+  Odds odds_{comparison_, nominal_, suspects_};
+  Weighing weighing_;
+};
+
+TEST_F(OddsOnARig, FollowWhatIsLeft) {
+  EXPECT_NEAR(ofSingle(payload, 2) - ofSingle(payload, 4), weighing_.per_misfit * std::log(2), 0.1);
+  EXPECT_NEAR(ofSingle(payload, 0.5), ofSingle(payload, 0.9), 1e-9) << "below the floor all are as good";
+}
+
+TEST_F(OddsOnARig, CountParameters) {
+  ASSERT_EQ(suspects_[threshold].coordinateCount(), suspects_[gain].coordinateCount() + 1);
+  EXPECT_NEAR(ofSingle(gain, 2) - ofSingle(threshold, 2), weighing_.per_parameter, 1e-9);
+}
+
+TEST_F(OddsOnARig, NoneOfTheseBeatsWhatHardlyExplainsAndLosesToWhatDoes) {
+  EXPECT_GT(odds_.ofNoneOfThese(), odds_.ofNoEffect());
+  EXPECT_GT(odds_.ofNoneOfThese(), ofSingle(payload, 15));
+  EXPECT_LT(odds_.ofNoneOfThese(), ofSingle(payload, 2));
+}
+
+TEST_F(OddsOnARig, AreOfWhatWasNotSeenWhereThatIsKnown) {
+  Explanation flexible = explanation({payload}, 1);
+  flexible.unseen = leaving(4);
+  EXPECT_NEAR(odds_.ofExplanation(flexible, flexible), ofSingle(payload, 4), 1e-9);
+}
+
+TEST_F(OddsOnARig, AFurtherEffectThatGainsNothingCosts) {
+  const Explanation alone = explanation({payload}, 2), pair = explanation({payload, bias}, 2);
+  EXPECT_NEAR(odds_.ofExplanation(alone, alone) - odds_.ofExplanation(pair, alone), weighing_.per_effect + weighing_.per_parameter, 1e-9);
+}
+
+TEST_F(OddsOnARig, AFurtherEffectInTheSamePlaceCostsMore) {
+  const Explanation alone = explanation({gain}, 4);
+  const double same = odds_.ofExplanation(explanation({gain, threshold}, 1), alone),
+               elsewhere = odds_.ofExplanation(explanation({gain, bias}, 1), alone);
+  EXPECT_NEAR(elsewhere - same, weighing_.per_same_place + weighing_.per_parameter, 1e-9);
+}
+
+TEST_F(OddsOnARig, WhatTheBestEffectAloneCouldLeaveByItsLawGainsNothingOfItsOwn) {
+  // 4 floors are left of 20 alone: less than half of what the effect changes.
+  const Explanation alone = explanation({payload}, 4), pair = explanation({payload, bias}, 1);
+  EXPECT_NEAR(odds_.ofExplanation(pair, alone) - odds_.ofExplanation(alone, alone),
+              weighing_.per_misfit * std::log(4) - weighing_.per_effect - weighing_.per_parameter, 0.2);
+  // 15 floors are more than that.
+  const Explanation poor = explanation({payload}, 15);
+  EXPECT_GT(odds_.ofExplanation(pair, poor) - odds_.ofExplanation(poor, poor),
+            weighing_.per_misfit * std::log(15) - weighing_.per_effect + 1);
+}
+
+TEST_F(OddsOnARig, HopeIsWhatAPerfectFurtherEffectWouldGain) {
+  const Explanation alone = explanation({gain}, 4), nothing_left = explanation({gain}, 1);
+  EXPECT_GT(odds_.hopeBeyond(alone, alone), 0);
+  EXPECT_NEAR(odds_.hopeBeyond(nothing_left, nothing_left), -weighing_.per_effect - weighing_.per_parameter, 1e-9);
+}
+
+}  // namespace
+}  // namespace musclesim
