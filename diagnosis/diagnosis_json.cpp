@@ -80,8 +80,11 @@ Json fittedJson(const Diagnosis& d) {
                              {"rms_before", cell.rms_before},
                              {"averaged_rows", cell.averaged_rows}});
   for (const Trial& trial : d.trials)
-    json["trials"].push_back(
-        {{"effects", trial.effects}, {"parameters", trial.parameter_count}, {"rms", trial.rms}, {"rms_unseen", trial.rms_unseen}, {"values", trial.values}});
+    json["trials"].push_back({{"effects", trial.effects},
+                              {"parameters", trial.parameter_count},
+                              {"rms", trial.rms},
+                              {"rms_unseen", trial.rms_unseen},
+                              {"values", trial.values}});
   return json;
 }
 

@@ -11,8 +11,8 @@ namespace musclesim {
 /// 100 (1 - after / before) of the normalised gaps; 0 if there is no gap before.
 double shrinkPercent(const Gap& before, const Gap& after);
 
-/// Whether a shrink deserves belief beside those of changes without meaning: 5 points more than the better of them and than nothing, or less
-/// than half of what that one leaves is left.
+/// Whether a shrink deserves belief beside those of changes without meaning: 5 points more than the better of them and than nothing, or
+/// less than half of what that one leaves is left.
 bool clearlyBeats(double shrink_percent, double nominal_refit_percent, double sham_percent);
 
 /// Residuals with and without what was found.
