@@ -138,25 +138,31 @@ Eigen::VectorXd Attributor::clampedAll(const std::vector<std::size_t>& members, 
 
 /// The effects' coordinates and those of the numbers of the model that nobody measured, fitted together: either could stand in for the
 /// other.
-void Attributor::refit(Explanation& explanation, const Comparison& comparison, int rounds, Fidelity fidelity) const {
-  const std::vector<std::size_t>& members = explanation.suspects;
-  const Eigen::Index effect_count = explanation.z.size(), tuned_count = plant_.tunedCount();
-  if (explanation.tuning.size() == 0) explanation.tuning = Eigen::VectorXd::Zero(tuned_count);
+FitProblem Attributor::problemOf(const Explanation& explanation, const Comparison& comparison, Fidelity fidelity) const {
+  const Eigen::Index effect_count = explanation.z.size(), tuned_count = explanation.tuning.size();
   FitProblem problem;
   problem.start.resize(effect_count + tuned_count);
   problem.start << explanation.z, explanation.tuning;
-  problem.clamped = [&](const Eigen::VectorXd& z) {
+  problem.clamped = [this, members = explanation.suspects, effect_count, tuned_count](const Eigen::VectorXd& z) {
     Eigen::VectorXd result(z.size());
     result << clampedAll(members, z.head(effect_count)), Plant::clampedTuning(z.tail(tuned_count));
     return result;
   };
-  auto modelAt = [&](const Eigen::VectorXd& z) {
+  problem.predicted = [this, members = explanation.suspects, effect_count, tuned_count, &comparison, fidelity](const Eigen::VectorXd& z) {
     on_simulation_();
-    return modelOf({members, z.head(effect_count), {}, {}, 0, 0, z.tail(tuned_count)});
+    const Model model = modelOf({members, z.head(effect_count), {}, {}, 0, 0, z.tail(tuned_count)});
+    return fidelity == Fidelity::fine ? comparison.predicted(model, Fidelity::fine) : comparison.predicted(model);
   };
-  problem.predicted = [&](const Eigen::VectorXd& z) { return comparison.predicted(modelAt(z)); };
-  auto exact = [&](const Eigen::VectorXd& z) { return comparison.predicted(modelAt(z), Fidelity::fine); };
-  const FitResult result = fidelity == Fidelity::fine ? fitCorrected(comparison, problem, exact, rounds) : fit(comparison, problem, rounds);
+  return problem;
+}
+
+void Attributor::refit(Explanation& explanation, const Comparison& comparison, int rounds, Fidelity fidelity) const {
+  if (explanation.tuning.size() == 0) explanation.tuning = Eigen::VectorXd::Zero(plant_.tunedCount());
+  const Eigen::Index effect_count = explanation.z.size(), tuned_count = explanation.tuning.size();
+  const FitProblem problem = problemOf(explanation, comparison, Fidelity::coarse);
+  const FitResult result = fidelity == Fidelity::fine
+                               ? fitCorrected(comparison, problem, problemOf(explanation, comparison, Fidelity::fine).predicted, rounds)
+                               : fit(comparison, problem, rounds);
   explanation.z = result.z.head(effect_count);
   explanation.tuning = result.z.tail(tuned_count);
   if (rounds > 0 || explanation.half_width.size() == 0) {
@@ -224,7 +230,10 @@ void Attributor::fitTogether(std::vector<Candidate> candidates, Reach reach) {
   forEach(all, [&](Candidate& candidate) { refit(candidate.explanation, fit_, 0, Fidelity::coarse); });
   forEach([&, within = limit(reach.on_all)](
               const Candidate& candidate) { return candidate.explanation.log_misfit <= within && mayBeBelieved(candidate.explanation); },
-          [&](Candidate& candidate) { refit(candidate.explanation, fit_, rounds, Fidelity::fine); });
+          [&](Candidate& candidate) {
+            refit(candidate.explanation, fit_, rounds, Fidelity::fine);
+            candidate.explanation.fitted_to_all = true;
+          });
   for (Candidate& candidate : candidates)
     if (candidate.explanation.residual.size() == fit_.size()) result_.explanations.push_back(std::move(candidate.explanation));
 }
@@ -284,11 +293,15 @@ void Attributor::fitMoreOnTheBestComponent() {
 /// A further effect is looked for beside the likeliest explanations of `count` - 1 effects. Returns whether there was anything to look for.
 bool Attributor::fitFurther(std::size_t count) {
   std::vector<Explanation> bases;
+  double likeliest = 0;
   for (const Explanation& explanation : result_.explanations) {
-    const bool likely = bases.empty() || explanation.probability >= likely_share * bases.front().probability;
-    if (explanation.suspects.size() + 1 == count && likely && bases.size() < base_count &&
-        odds().hopeBeyond(explanation, bestAlone(explanation)) >= least_hope)
+    if (explanation.suspects.size() + 1 != count) continue;
+    likeliest = std::max(likeliest, explanation.probability);
+    if (bases.size() == base_count || explanation.probability < likely_share * likeliest) break;
+    if (odds().hopeBeyond(explanation, bestAlone(explanation)) >= least_hope)
       bases.push_back(explanation);
+    else if (bases.empty())
+      return false;
   }
   std::vector<Candidate> candidates;
   for (const Explanation& base : bases) {
@@ -356,17 +369,17 @@ double Attributor::logOdds(const Explanation& explanation) const {
   return odds().ofExplanation(explanation, bestAlone(explanation));
 }
 
-/// Sorts by odds = exp(misfit log odds) * prior odds; "none of these" and "no effect" are explanations like any other.
+/// Sorts by the odds; "none of these" and "no effect" are explanations like any other.
 void Attributor::weigh() {
   if (result_.explanations.empty() && plant_.interrupted()) return;  // nothing is known yet
-  std::vector<double> odds = {this->odds().ofNoEffect(), this->odds().ofNoneOfThese()};
-  for (const Explanation& explanation : result_.explanations) odds.push_back(logOdds(explanation));
-  const double largest = *std::ranges::max_element(odds);
+  std::vector<double> all = {odds().ofNoEffect(), odds().ofNoneOfThese()};
+  for (const Explanation& explanation : result_.explanations) all.push_back(logOdds(explanation));
+  const double largest = *std::ranges::max_element(all);
   double sum = 0;
-  for (double& value : odds) sum += value = std::exp(value - largest);
-  result_.no_effect = odds[0] / sum;
-  result_.none_of_these = odds[1] / sum;
-  for (std::size_t i = 0; i < result_.explanations.size(); ++i) result_.explanations[i].probability = odds[i + 2] / sum;
+  for (double& value : all) sum += value = std::exp(value - largest);
+  result_.no_effect = all[0] / sum;
+  result_.none_of_these = all[1] / sum;
+  for (std::size_t i = 0; i < result_.explanations.size(); ++i) result_.explanations[i].probability = all[i + 2] / sum;
   std::ranges::stable_sort(result_.explanations, [](const Explanation& a, const Explanation& b) { return a.probability > b.probability; });
 }
 
@@ -378,93 +391,95 @@ const Explanation& Attributor::nearest() const {
   });
 }
 
-/// d(prediction)/d(coordinates), those of the effects and of the tuning; usual internal steps.
-Eigen::MatrixXd Attributor::derivatives(const Explanation& explanation) const {
-  const Eigen::Index effect_count = explanation.z.size(), count = effect_count + explanation.tuning.size();
-  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(fit_.size(), count);
-  if (count == 0) return jacobian;
-  const Eigen::VectorXd here = fit_.predicted(modelOf(explanation));
-  on_simulation_();
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const double at = i < effect_count ? explanation.z[i] : explanation.tuning[i - effect_count];
-    for (const double side : {1.0, -1.0}) {
-      Eigen::VectorXd step = Eigen::VectorXd::Zero(count);
-      step[i] = side * std::max(0.02, 0.05 * std::abs(at));
-      const Explanation beside = moved(explanation, step);
-      const double change = (i < effect_count ? beside.z[i] : beside.tuning[i - effect_count]) - at;
-      if (change == 0) continue;  // at a bound
-      const Eigen::VectorXd predicted = fit_.predicted(modelOf(beside));
-      on_simulation_();
-      if (predicted.size() == here.size() && predicted.allFinite()) jacobian.col(i) = (predicted - here) / change;
-      break;
-    }
-  }
-  return jacobian;
-}
-
-Explanation Attributor::moved(const Explanation& explanation, const Eigen::VectorXd& step) const {
-  Explanation result = explanation;
-  result.z = clampedAll(explanation.suspects, explanation.z + step.head(explanation.z.size()));
-  result.tuning = Plant::clampedTuning(explanation.tuning + step.tail(explanation.tuning.size()));
-  return result;
-}
-
-/// The step from the fit to all stretches to the fit to all but one, by the linearised problem.
-Eigen::VectorXd Attributor::stepWithout(std::size_t stretch, const Explanation& explanation, const Eigen::MatrixXd& jacobian) const {
+/// The step to where the linearised problem is best without some stretches, weighted anew five times. Coordinates that reach a bound, or
+/// go farther than a typical strength or twice where they are, stay there.
+Eigen::VectorXd Attributor::stepWithout(const std::set<std::size_t>& left_out, const Explanation& explanation,
+                                        const Eigen::MatrixXd& jacobian) const {
   constexpr int reweightings = 5;
   constexpr double damping = 1e-3;  // what changes nothing stays where it is
-  Eigen::VectorXd step = Eigen::VectorXd::Zero(jacobian.cols());
-  if (jacobian.cols() == 0) return step;
-  for (int i = 0; i < reweightings; ++i) {
+  const Eigen::VectorXd reach = explanation.z.cwiseAbs().cwiseMax(1.0);
+  Eigen::VectorXd step = Eigen::VectorXd::Zero(jacobian.cols()), kept = step;
+  Eigen::MatrixXd free = jacobian;
+  for (int i = 0; i < reweightings && step.size() > 0; ++i) {
     Eigen::VectorXd weights = fit_.weights(explanation.residual - jacobian * step);
     for (const Comparison::Cell& cell : fit_.cells())
-      if (cell.stretch == stretch) weights.segment(cell.first, cell.count()).setZero();
-    const Eigen::MatrixXd weighted = weights.asDiagonal() * jacobian;
+      if (left_out.contains(cell.stretch)) weights.segment(cell.first, cell.count()).setZero();
+    const Eigen::MatrixXd weighted = weights.asDiagonal() * free;
     Eigen::MatrixXd normal = weighted.transpose() * weighted;
     normal.diagonal().array() += damping;
-    step = normal.ldlt().solve(weighted.transpose() * weights.cwiseProduct(explanation.residual));
+    step = kept + normal.ldlt().solve(weighted.transpose() * weights.cwiseProduct(explanation.residual - jacobian * kept));
+    const Eigen::VectorXd possible =
+        clampedAll(explanation.suspects, explanation.z + step.cwiseMax(-reach).cwiseMin(reach)) - explanation.z;
+    for (Eigen::Index k = 0; k < step.size(); ++k)
+      if (possible[k] != step[k] && std::abs(possible[k] - step[k]) > 1e-9) {
+        kept[k] = step[k] = possible[k];
+        free.col(k).setZero();
+      }
   }
   return step;
 }
 
-/// Leave-one-out cross-validation (Stone 1974): each stretch as predicted by the numbers that fit the others. Where that diverges, the gap
-/// is what is left.
+/// Leave-one-out cross-validation (Stone 1974): each stretch as predicted by the numbers that fit the others; one with the same commands is
+/// none of those. They differ from the fit to all by the steps of the linearised problem with and without it. Where the model diverges with
+/// them, the gap is what is left. Tuned numbers stay, since the model without effects keeps them too.
 void Attributor::predictFromOthers(Explanation& explanation) const {
-  const Eigen::MatrixXd jacobian = derivatives(explanation);
-  explanation.unseen = explanation.residual;
+  FitProblem problem = problemOf(explanation, fit_, Fidelity::coarse);
+  const Eigen::Index effect_count = explanation.z.size();
+  const Eigen::MatrixXd jacobian =
+      effect_count ? derivatives(fit_, problem, problem.start).leftCols(effect_count).eval() : Eigen::MatrixXd(fit_.size(), 0);
+  const Eigen::VectorXd with_all = stepWithout({}, explanation, jacobian);
+  Eigen::VectorXd unseen = explanation.residual;
   for (std::size_t k = 0; k < one_by_one_.size(); ++k) {
+    if (plant_.interrupted()) return;
+    Explanation without = explanation;
+    without.z = clampedAll(explanation.suspects, explanation.z + stepWithout(sameCommandsAs(k), explanation, jacobian) - with_all);
     const Comparison& one = one_by_one_[k];
-    const Eigen::VectorXd predicted = one.predicted(modelOf(moved(explanation, stepWithout(k, explanation, jacobian))));
+    Eigen::VectorXd left = one.predicted(modelOf(without));
     on_simulation_();
-    const bool diverged = predicted.size() != one.size();
+    const bool goes_on = left.size() == one.size() && left.allFinite();
+    if (goes_on) left = one.measured() - left;
     for (const Comparison::Cell& cell : fit_.cells()) {
       if (cell.stretch != k) continue;
-      const auto same = std::ranges::find_if(
+      const Comparison::Cell& same = *std::ranges::find_if(
           one.cells(), [&](const Comparison::Cell& other) { return other.signal == cell.signal && other.block == cell.block; });
-      auto part = explanation.unseen.segment(cell.first, cell.count());
-      if (diverged)
-        part = nominal_residual_.segment(cell.first, cell.count());
-      else
-        part = (one.measured() - predicted).segment(same->first, same->count());
+      const Eigen::VectorXd& source = goes_on ? left : nominal_residual_;
+      unseen.segment(cell.first, cell.count()) = source.segment(goes_on ? same.first : cell.first, cell.count());
     }
   }
+  explanation.unseen = unseen;
 }
 
-/// Judges every explanation that is not out of the question by stretches that it has not seen, until all of those have been.
+/// The stretch itself and its repeats.
+std::set<std::size_t> Attributor::sameCommandsAs(std::size_t stretch) const {
+  auto recordingOf = [&](std::size_t k) -> const Recording& {
+    return plant_.recordings()[static_cast<std::size_t>(fit_.stretches()[k].recording)];
+  };
+  std::set<std::size_t> result = {stretch};
+  for (std::size_t k = 0; k < fit_.stretches().size(); ++k)
+    if (sameCommands(recordingOf(k), recordingOf(stretch))) result.insert(k);
+  return result;
+}
+
+/// Judges every explanation that is not out of the question by stretches that it has not seen, and its effects alone with it, until all of
+/// those have been.
 void Attributor::crossCheck() {
   constexpr double out_of_the_question = 0.003;
-  if (fit_.stretches().size() < 2) return;
+  if (sameCommandsAs(0).size() == fit_.stretches().size()) return;
   if (one_by_one_.empty())
     for (const Stretch& stretch : fit_.stretches()) one_by_one_.emplace_back(plant_, std::vector{stretch}, Comparison::Averages::with);
   while (!plant_.interrupted()) {
+    std::set<std::size_t> members;
+    for (const Explanation& explanation : result_.explanations)
+      if (explanation.probability > out_of_the_question) members.insert(explanation.suspects.begin(), explanation.suspects.end());
     std::vector<Explanation*> open;
-    for (Explanation& explanation : result_.explanations)
-      if (explanation.unseen.size() == 0 && explanation.probability > out_of_the_question) open.push_back(&explanation);
+    for (Explanation& explanation : result_.explanations) {
+      const bool alone = explanation.suspects.size() == 1 && members.contains(explanation.suspects.front());
+      if (explanation.fitted_to_all && explanation.unseen.size() == 0 && (alone || explanation.probability > out_of_the_question))
+        open.push_back(&explanation);
+    }
     if (open.empty()) return;
-    parallelFor(static_cast<int>(open.size()), options_.job_count, [&](int i) {
-      if (!plant_.interrupted()) predictFromOthers(*open[static_cast<std::size_t>(i)]);
-    });
-    weigh();
+    parallelFor(static_cast<int>(open.size()), options_.job_count, [&](int i) { predictFromOthers(*open[static_cast<std::size_t>(i)]); });
+    if (!plant_.interrupted()) weigh();
   }
 }
 

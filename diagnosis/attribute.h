@@ -54,6 +54,7 @@ class Attributor {
   };
 
   Eigen::VectorXd clampedAll(const std::vector<std::size_t>& members, const Eigen::VectorXd& z) const;
+  FitProblem problemOf(const Explanation& explanation, const Comparison& comparison, Fidelity fidelity) const;
   void refit(Explanation& explanation, const Comparison& comparison, int rounds, Fidelity fidelity) const;
   void keepNearestVariants();
   void weakenStart(Candidate& candidate) const;
@@ -73,9 +74,8 @@ class Attributor {
   Odds odds() const { return {fit_, nominal_residual_, result_.suspects}; }
   void weigh();
   void crossCheck();
-  Eigen::MatrixXd derivatives(const Explanation& explanation) const;
-  Explanation moved(const Explanation& explanation, const Eigen::VectorXd& step) const;
-  Eigen::VectorXd stepWithout(std::size_t stretch, const Explanation& explanation, const Eigen::MatrixXd& jacobian) const;
+  Eigen::VectorXd stepWithout(const std::set<std::size_t>& left_out, const Explanation& explanation, const Eigen::MatrixXd& jacobian) const;
+  std::set<std::size_t> sameCommandsAs(std::size_t stretch) const;
   void predictFromOthers(Explanation& explanation) const;
 
   const Plant& plant_;

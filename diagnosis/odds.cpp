@@ -56,10 +56,15 @@ bool Odds::actsWhereOthersDo(const Explanation& explanation, std::size_t member)
         return {Part::muscle, suspect.component()};
     }
   };
+  auto overlap = [](const std::string& one, const std::string& other) {
+    if (one == "all" || other == "all") return true;
+    // A pair of muscles, "muscle_0+muscle_1", overlaps with either.
+    return ("+" + one + "+").find("+" + other + "+") != std::string::npos || ("+" + other + "+").find("+" + one + "+") != std::string::npos;
+  };
   const auto [part, component] = place(member);
   for (std::size_t i = 0; i < member; ++i) {
     const auto [other_part, other_component] = place(i);
-    if (part == other_part && (component == other_component || component == "all" || other_component == "all")) return true;
+    if (part == other_part && overlap(component, other_component)) return true;
   }
   return false;
 }

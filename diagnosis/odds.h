@@ -19,6 +19,7 @@ struct Explanation {
   double probability = 0;
   Eigen::VectorXd tuning = {};             ///< coordinates of the numbers of the model that are fitted together with the effects
   Eigen::VectorXd tuning_half_width = {};  ///< Plant::tunedAt tells the values
+  bool fitted_to_all = false;              ///< not only to the first look
   Eigen::VectorXd unseen = {};  ///< residual where every stretch is predicted from a fit to the others; empty where that was not tried
   /// What the explanation is judged by.
   const Eigen::VectorXd& judged() const { return unseen.size() ? unseen : residual; }

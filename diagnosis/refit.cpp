@@ -26,18 +26,18 @@ Point evaluate(const Comparison& comparison, const FitProblem& problem, const Ei
   return point;
 }
 
-/// d(predicted)/dz, column by column.
 Eigen::MatrixXd derivatives(const Comparison& comparison, const FitProblem& problem, const Point& at) {
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(comparison.size(), at.z.size());
-  for (Eigen::Index i = 0; i < at.z.size(); ++i) {
-    Eigen::VectorXd z = at.z;
-    const double step = std::max(0.02, 0.05 * std::abs(z[i]));
-    z[i] += step;
-    z = problem.clamped(z);
-    if (z[i] == at.z[i]) z[i] -= step;  // at the upper bound
-    const Point beside = evaluate(comparison, problem, z);
-    if (beside.residual.size() && beside.z[i] != at.z[i]) jacobian.col(i) = (at.residual - beside.residual) / (beside.z[i] - at.z[i]);
-  }
+  for (Eigen::Index i = 0; i < at.z.size(); ++i)
+    for (const double side : {1.0, -1.0}) {
+      Eigen::VectorXd z = at.z;
+      z[i] += side * std::max(0.02, 0.05 * std::abs(z[i]));
+      if (problem.clamped(z)[i] == at.z[i]) continue;  // at a bound
+      const Point beside = evaluate(comparison, problem, z);
+      if (!beside.residual.size()) continue;
+      jacobian.col(i) = (at.residual - beside.residual) / (beside.z[i] - at.z[i]);
+      break;
+    }
   return jacobian;
 }
 
@@ -105,6 +105,12 @@ void update(Eigen::MatrixXd& jacobian, const Point& from, const Point& to) {
 }
 
 }  // namespace
+
+Eigen::MatrixXd derivatives(const Comparison& comparison, const FitProblem& problem, const Eigen::VectorXd& z) {
+  const Point at = evaluate(comparison, problem, z);
+  if (!at.residual.size()) return Eigen::MatrixXd::Zero(comparison.size(), z.size());
+  return derivatives(comparison, problem, at);
+}
 
 FitResult fit(const Comparison& comparison, const FitProblem& problem, int round_count) {
   Point best = evaluate(comparison, problem, problem.start);

@@ -24,8 +24,12 @@ struct FitResult {
   Eigen::VectorXd half_width;  ///< half of the 95 % interval of every coordinate
 };
 
+/// d(prediction)/dz at z, column by column: differences of 5 % of the coordinate, at least 0.02, to the side where the model goes on; zero
+/// where it does on neither.
+Eigen::MatrixXd derivatives(const Comparison& comparison, const FitProblem& problem, const Eigen::VectorXd& z);
+
 /// Minimises Comparison::logMisfit with Levenberg and Marquardt's method on residuals that are weighted anew in every round (Marquardt
-/// 1963); derivatives by differences of 5 % of the coordinate, at least 0.02: the response may have kinks. They are found anew when a step
+/// 1963); the response may have kinks, so the differences for derivatives are not small. They are found anew when a step
 /// gains nothing, otherwise carried on by rank-one updates (Broyden 1965), since simulations are what a fit costs.
 /// The intervals are those of the linearised problem with the residual's own variance, widened by the number of samples over the
 /// effective number of samples (from the residual's autocorrelation).

@@ -121,7 +121,8 @@ std::string otherwise(const Diagnosis& d) {
   const std::string place = d.chosen.size() > 1 ? " in place of " + explanationWords(d.alternatives.front()) : "";
   others.front().front() = static_cast<char>(std::toupper(static_cast<unsigned char>(others.front().front())));
   const char* which = d.next_experiment.separates.size() > others.size() ? "them" : "the likeliest of them";
-  return fmt::format(" {} would explain it as well{}{}.", fmt::join(others, " or "), place,
+  const bool pairs = std::ranges::any_of(d.alternatives, [](const std::string& labels) { return labels.find(" + ") != std::string::npos; });
+  return fmt::format(" {} would explain it as well{}{}.", fmt::join(others, pairs ? "; or " : " or "), place,
                      d.next_experiment.commands.empty() ? "" : fmt::format("; record the schedule in next.csv to tell {} apart", which));
 }
 
@@ -141,7 +142,7 @@ std::string mostProbable(const Diagnosis& d) {
 std::string notConfirmed(const Diagnosis& d) {
   const FoundEffect& first = d.effects.front();
   std::string text = fmt::format(
-      ": the best candidate, {}, fits the data that it was fitted to ({} likely by them alone), but on data held back it removes {} of the "
+      ": the best candidate, {}, fits the data that it was fitted to ({} likely without that), but on data held back it removes {} of the "
       "gap",
       labelWords(first.label()), probabilityWords(first.probability),
       first.shrink_percent > 0 ? percentWords(first.shrink_percent) : "nothing");

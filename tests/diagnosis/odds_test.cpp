@@ -76,6 +76,36 @@ TEST_F(OddsOnARig, AFurtherEffectInTheSamePlaceCostsMore) {
   EXPECT_NEAR(elsewhere - same, weighing_.per_same_place + weighing_.per_parameter, 1e-9);
 }
 
+TEST_F(OddsOnARig, PlacesOverlapThroughAllAndThroughPairsOfMuscles) {
+  const std::vector<Suspect> on_two = {{effectInfo("force_gain"), "muscle_1", plant_},
+                                       {effectInfo("leak"), "all", plant_},
+                                       {effectInfo("channel_swap"), "muscle_0+muscle_1", plant_},
+                                       {effectInfo("leak"), "muscle_10", plant_},
+                                       {effectInfo("payload"), "hand", plant_},
+                                       {effectInfo("base_tilt"), "base", plant_},
+                                       {effectInfo("sensor_bias"), "all", plant_}};
+  const Odds odds(comparison_, nominal_, on_two);
+  auto costs = [&](std::size_t one, std::size_t other) {
+    auto of = [&](std::vector<std::size_t> members) {
+      Explanation result{members, {}, {}, leaving(1), 0, 0};
+      Eigen::Index count = 0;
+      for (const std::size_t member : members) count += on_two[member].coordinateCount();
+      result.z = Eigen::VectorXd::Zero(count);
+      return result;
+    };
+    const Explanation alone = of({one});
+    const double parameters = static_cast<double>(on_two[other].coordinateCount()) * weighing_.per_parameter;
+    const double shared = other == 6 ? weighing_.shared_sensor : 0;
+    return odds.ofExplanation(alone, alone) - odds.ofExplanation(of({one, other}), alone) - parameters - shared - weighing_.per_effect;
+  };
+  EXPECT_NEAR(costs(0, 1), weighing_.per_same_place, 1e-9) << "a muscle and all";
+  EXPECT_NEAR(costs(0, 2), weighing_.per_same_place, 1e-9) << "a muscle and a pair with it";
+  EXPECT_NEAR(costs(4, 5), weighing_.per_same_place, 1e-9) << "both on the body";
+  EXPECT_NEAR(costs(0, 3), 0, 1e-9) << "another muscle";
+  EXPECT_NEAR(costs(0, 4), 0, 1e-9) << "the body";
+  EXPECT_NEAR(costs(1, 6), 0, 1e-9) << "all sensors are no muscle";
+}
+
 TEST_F(OddsOnARig, WhatTheBestEffectAloneCouldLeaveByItsLawGainsNothingOfItsOwn) {
   // 4 floors are left of 20 alone: less than half of what the effect changes.
   const Explanation alone = explanation({payload}, 4), pair = explanation({payload, bias}, 1);

@@ -86,10 +86,11 @@ TEST(VerdictSentence, SaysWhatAnotherPairWouldReplace) {
   d.chosen = {"valve_lag@muscle_1", "payload@hand"};
   d.alternatives = {"valve_lag@muscle_1", "leak@muscle_1"};
   EXPECT_TRUE(contains(verdictSentence(d), "Leak on muscle 1 would explain it as well in place of valve lag on muscle 1."));
-  d.alternatives = {"valve_lag@muscle_1 + payload@hand", "channel_swap@muscle_0+muscle_1 + leak@muscle_1"};
-  EXPECT_TRUE(contains(verdictSentence(d),
-                       "Channel swap on muscle 0+muscle 1 together with leak on muscle 1 would explain it as well in place of valve lag on "
-                       "muscle 1 together with payload on hand."))
+  d.alternatives = {"valve_lag@muscle_1 + payload@hand", "channel_swap@muscle_0+muscle_1 + leak@muscle_1", "leak@all + payload@hand"};
+  EXPECT_TRUE(
+      contains(verdictSentence(d),
+               "Channel swap on muscle 0+muscle 1 together with leak on muscle 1; or leak on all components together with payload on "
+               "hand would explain it as well in place of valve lag on muscle 1 together with payload on hand."))
       << verdictSentence(d);
 }
 
@@ -122,7 +123,7 @@ TEST(VerdictSentence, AdmitsWhatItCannotTell) {
   d.effects.front().probability = 0.98;
   d.effects.front().shrink_percent = -45;
   EXPECT_TRUE(contains(verdictSentence(d),
-                       "fits the data that it was fitted to (98 % likely by them alone), but on data held back it removes nothing"));
+                       "fits the data that it was fitted to (98 % likely without that), but on data held back it removes nothing"));
   d.nominal_refit_shrink_percent = 71;
   EXPECT_TRUE(contains(verdictSentence(d), "without any effect removes 71.0 %"));
 }
