@@ -131,14 +131,15 @@ std::string howFar(const Diagnosis& d) {
                 "Normalised gap before {:.3g}, after {:.3g}: {} removed. Elsewhere means on another recording of this plant. The "
                 "nominal refit re-tunes numbers of the model without any effect ({}); the sham is a disturbance without physical "
                 "meaning with as many parameters.",
-                d.before.normalised, d.after.normalised, shrinkElsewhereWords(d), fmt::join(d.refitted, ", ")));
+                d.before.normalised, d.after.normalised,
+                shrinkElsewhereWords({d.shrink_percent, d.shrink_low_percent, d.shrink_high_percent}), fmt::join(d.refitted, ", ")));
   if (!d.attempt.effects.empty())
     text += shrinkFigure(d) +
             paragraph(
                 fmt::format("Nothing was found that deserves belief. What comes nearest: {}. Normalised gap before {:.3g}, with it {:.3g}: "
-                            "{:.1f} % removed ({:.1f} to {:.1f} expected on another recording, 95 %). \"After\" below means: with this.",
-                            fmt::join(d.attempt.effects, ", "), d.before.normalised, d.attempt.after.normalised, d.attempt.shrink_percent,
-                            d.attempt.shrink_low_percent, d.attempt.shrink_high_percent));
+                            "{} removed. Elsewhere means on another recording of this plant. \"After\" below means: with this.",
+                            fmt::join(d.attempt.effects, ", "), d.before.normalised, d.attempt.after.normalised,
+                            shrinkElsewhereWords({d.attempt.shrink_percent, d.attempt.shrink_low_percent, d.attempt.shrink_high_percent})));
   text += regimeFigure(d) + signalTable(d);
   if (d.verdict == Verdict::no_gap)
     text += paragraph("What is smaller than the noise floor stays unseen, and so does what these commands did not bring out.");

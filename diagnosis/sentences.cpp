@@ -44,10 +44,18 @@ std::string probabilityWords(double probability) {
   return probability < 1 - nearly_certain ? "under 1 %" : fmt::format("{:.0f} %", 100 * probability);
 }
 
-std::string shrinkElsewhereWords(const Diagnosis& d) {
-  if (d.shrink_low_percent > nearly_all) return percentWords(d.shrink_percent) + ", as is expected elsewhere,";
-  return fmt::format("{} ({:.1f} to {:.1f} expected elsewhere, 95 %)", percentWords(d.shrink_percent), d.shrink_low_percent,
-                     d.shrink_high_percent);
+namespace {
+
+/// An interval that reaches below 0 tells of the recordings, not of the effect.
+const char* const no_interval = "the recordings are too few or differ too much to say how much elsewhere";
+
+}  // namespace
+
+std::string shrinkElsewhereWords(const Estimate& shrink_percent) {
+  const std::string words = percentWords(shrink_percent.value);
+  if (shrink_percent.low > nearly_all) return words + ", as is expected elsewhere,";
+  if (shrink_percent.low < 0) return fmt::format("{} ({})", words, no_interval);
+  return fmt::format("{} ({:.1f} to {:.1f} expected elsewhere, 95 %)", words, shrink_percent.low, shrink_percent.high);
 }
 
 std::string componentWords(const std::string& component) {
@@ -68,6 +76,7 @@ namespace {
 std::string shrinkWords(const Diagnosis& d) {
   const std::string words = percentWords(d.shrink_percent);
   if (d.shrink_low_percent > nearly_all) return words;
+  if (d.shrink_low_percent < 0) return fmt::format("{} ({})", words, no_interval);
   return fmt::format("{} ({:.1f} to {:.1f})", words, d.shrink_low_percent, d.shrink_high_percent);
 }
 

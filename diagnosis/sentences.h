@@ -17,7 +17,7 @@ std::string effectSentence(const FoundEffect& effect);
 /// "96.2 %"; "more than 99.9 %" rather than 100 % of what is nearly all.
 std::string percentWords(double percent);
 /// What is removed, and what would be on another recording: "96.2 % (94.0 to 97.5 expected elsewhere, 95 %)".
-std::string shrinkElsewhereWords(const Diagnosis& diagnosis);
+std::string shrinkElsewhereWords(const Estimate& shrink_percent);
 /// "3.8 %"; "less than 0.1 %" of what is nearly nothing.
 std::string leftWords(double percent);
 /// "93 %"; "over 99 %": nothing is certain.

@@ -51,9 +51,17 @@ TEST(VerdictSentence, LeavesOutWhatSaysNothing) {
   const std::string text = verdictSentence(d);
   EXPECT_FALSE(contains(text, "fill_time_constant_s")) << text;
   EXPECT_TRUE(contains(text, "more than 99.9 % of the gap")) << text;
-  EXPECT_EQ(shrinkElsewhereWords(d), "more than 99.9 %, as is expected elsewhere,");
-  EXPECT_EQ(shrinkElsewhereWords(lagFound()), "96.2 % (94.0 to 97.5 expected elsewhere, 95 %)");
+  EXPECT_EQ(shrinkElsewhereWords({99.99, 99.97, 100}), "more than 99.9 %, as is expected elsewhere,");
+  EXPECT_EQ(shrinkElsewhereWords({96.2, 94, 97.5}), "96.2 % (94.0 to 97.5 expected elsewhere, 95 %)");
   EXPECT_EQ(effectSentence(d.effects.front()), "valve_lag@muscle_1: vent_time_constant_s = 0.081 (0.077 to 0.085)");
+}
+
+TEST(VerdictSentence, GivesNoIntervalThatTellsNothing) {
+  Diagnosis d = lagFound();
+  d.shrink_low_percent = -1093;
+  EXPECT_FALSE(contains(verdictSentence(d), "-1093"));
+  EXPECT_TRUE(contains(verdictSentence(d), "96.2 % (the recordings are too few or differ too much to say how much elsewhere) of the gap"));
+  EXPECT_FALSE(contains(shrinkElsewhereWords({96.2, -1093, 100}), "-1093"));
 }
 
 TEST(VerdictSentence, SaysWhatIsLeftWhereItStandsOut) {
