@@ -86,7 +86,7 @@ TEST_F(OddsOnARig, PlacesOverlapThroughAllAndThroughPairsOfMuscles) {
                                        {effectInfo("sensor_bias"), "all", plant_}};
   const Odds odds(comparison_, nominal_, on_two);
   auto costs = [&](std::size_t one, std::size_t other) {
-    auto of = [&](std::vector<std::size_t> members) {
+    auto of = [&](const std::vector<std::size_t>& members) {
       Explanation result{members, {}, {}, leaving(1), 0, 0};
       Eigen::Index count = 0;
       for (const std::size_t member : members) count += on_two[member].coordinateCount();
