@@ -7,37 +7,23 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <set>
 
 #include "regimes.h"
+#include "substitution.h"
 
 namespace musclesim {
 
 namespace {
 
 constexpr std::size_t stage_count = 5;
-constexpr double agrees = 1.2;     ///< RMS over floor up to which a signal counts as predicted
-constexpr double disagrees = 1.5;  ///< from which on it counts as not
-constexpr double per_misfit = 5;   ///< ln of the odds of a stage per unit of log misfit of its best disturbance
-constexpr double hardly = 0.03;    ///< factor for a stage that a substitution speaks against
+constexpr double per_misfit = 5;  ///< ln of the odds of a stage per unit of log misfit of its best disturbance
+constexpr double hardly = 0.03;   ///< factor for a stage that a substitution speaks against
 
 using StageWeights = std::array<double, stage_count>;
 
 std::size_t indexOf(Stage stage) {
   return static_cast<std::size_t>(stage);
-}
-
-/// RMS over floor of all cells of signals whose name begins with a word; nothing if there are none.
-std::optional<double> ratioOf(const Comparison& comparison, const Eigen::VectorXd& residual, const std::string& beginning) {
-  double sum = 0;
-  int count = 0;
-  for (const Comparison::Cell& cell : comparison.cells()) {
-    if (!comparison.plant().signals()[static_cast<std::size_t>(cell.signal)].name.starts_with(beginning)) continue;
-    sum += comparison.meanSquare(cell, residual) / (cell.floor * cell.floor);
-    ++count;
-  }
-  if (count == 0) return std::nullopt;
-  return std::sqrt(sum / count);
 }
 
 /// Mean ln(RMS / floor) of motion and tension.
@@ -52,105 +38,20 @@ double motionMisfit(const Comparison& comparison, const Eigen::VectorXd& residua
   return count ? sum / count : 0;
 }
 
-int signalNumber(const Plant& plant, const std::string& name) {
-  for (std::size_t i = 0; i < plant.signals().size(); ++i)
-    if (plant.signals()[i].name == name) return static_cast<int>(i);
-  return -1;
-}
-
-bool allPressuresMeasured(const Plant& plant) {
-  for (int muscle = 0; muscle < plant.muscleCount(); ++muscle)
-    if (signalNumber(plant, fmt::format("pressure_{}", muscle)) < 0) return false;
-  return true;
-}
-
-/// The residual when the measured pressures are the commands; empty if the model cannot follow.
-Eigen::VectorXd residualUnderMeasuredPressures(const Comparison& comparison) {
-  const Plant& plant = comparison.plant();
-  std::vector<Prediction> predictions;
-  for (const Stretch& stretch : comparison.stretches()) {
-    const std::size_t rows = plant.recordings()[static_cast<std::size_t>(stretch.recording)].time_s.size();
-    std::vector<std::vector<double>> commands(rows, std::vector<double>(static_cast<std::size_t>(plant.muscleCount())));
-    for (int muscle = 0; muscle < plant.muscleCount(); ++muscle) {
-      const std::vector<double>& p = plant.measured(stretch.recording, signalNumber(plant, fmt::format("pressure_{}", muscle)));
-      if (p.size() != rows) return {};
-      const auto first = std::ranges::find_if(p, [](double value) { return std::isfinite(value); });
-      if (first == p.end()) return {};
-      double last = std::clamp(*first, 0.0, 1.0);
-      for (std::size_t row = 0; row < rows; ++row) {
-        if (std::isfinite(p[row])) last = std::clamp(p[row], 0.0, 1.0);
-        commands[row][static_cast<std::size_t>(muscle)] = last;
-      }
-    }
-    predictions.push_back(plant.predict(stretch.recording, Model{}, commands, stretch.end_row, comparison.fidelity()));
-  }
-  const Eigen::VectorXd predicted = comparison.predicted(predictions);
-  if (!predicted.size()) return {};
-  return comparison.measured() - predicted;
-}
-
-/// Mean square of a residual over its variance, row by row, and averaged over blocks of rows: what is weak but slow stands out there.
-class BlockRatio {
- public:
-  void add(double residual, double variance) {
-    plain_ += residual * residual / variance, ++count_;
-    residual_ += residual, variance_ += variance;
-    if (++filled_ < block_rows) return;
-    averaged_ += residual_ * residual_ / (variance_ * (1 + steady_share * steady_share * static_cast<double>(block_rows))), ++block_count_;
-    residual_ = variance_ = 0, filled_ = 0;
-  }
-  bool isEmpty() const { return count_ == 0; }
-  double largestRms() const { return std::sqrt(std::max(plain_ / count_, block_count_ > 0 ? averaged_ / block_count_ : 0.0)); }
-
- private:
-  double plain_ = 0, averaged_ = 0, residual_ = 0, variance_ = 0;
-  std::size_t filled_ = 0;
-  int count_ = 0, block_count_ = 0;
-};
-
-/// Of measured tension minus that of the law at measured pressure and length, over what noise of all three gives; of the muscle in which it
-/// is largest.
-struct TensionTest {
-  double found = 0;     ///< RMS ratio
-  double expected = 0;  ///< if all of the gap in the length arose in the law
-};
-
-/// Nothing if one of the three signals is missing.
-std::optional<TensionTest> testTension(const Comparison& comparison, const Eigen::VectorXd& residual) {
-  const Plant& plant = comparison.plant();
-  std::optional<TensionTest> largest;
-  for (int muscle = 0; muscle < plant.muscleCount(); ++muscle) {
-    const int p = signalNumber(plant, fmt::format("pressure_{}", muscle)), f = signalNumber(plant, fmt::format("force_{}_N", muscle)),
-              l = signalNumber(plant, fmt::format("length_{}_mm", muscle));
-    if (p < 0 || f < 0 || l < 0) continue;
-    auto floorOf = [&](int signal) { return plant.signals()[static_cast<std::size_t>(signal)].floor.value; };
-    BlockRatio found, expected;
-    for (const Comparison::Cell& cell : comparison.cells()) {
-      if (cell.signal != l || cell.block > 0) continue;
-      const int recording = comparison.stretches()[cell.stretch].recording;
-      const auto &ps = plant.measured(recording, p), &fs = plant.measured(recording, f), &ls = plant.measured(recording, l);
-      for (std::size_t k = 0; k < cell.rows.size(); ++k) {
-        const auto i = static_cast<std::size_t>(cell.rows[k]);
-        if (i >= ps.size() || i >= fs.size() || !std::isfinite(ps[i] + fs[i])) continue;
-        const double law = plant.tensionN(muscle, ps[i], ls[i]);
-        const double by_p = plant.tensionN(muscle, ps[i] + floorOf(p), ls[i]) - law,
-                     by_l = plant.tensionN(muscle, ps[i], ls[i] + floorOf(l)) - law;
-        const double variance = by_p * by_p + by_l * by_l + floorOf(f) * floorOf(f);
-        found.add(fs[i] - law, variance);
-        expected.add(plant.tensionN(muscle, ps[i], ls[i] - residual[cell.first + static_cast<Eigen::Index>(k)]) - law, variance);
-      }
-    }
-    if (!found.isEmpty() && (!largest || found.largestRms() > largest->found)) largest = {found.largestRms(), expected.largestRms()};
-  }
-  return largest;
+/// Whether a suspect is the fault of one sensor of motion.
+bool isOneMotionSensor(const Suspect& suspect) {
+  const std::string& component = suspect.component();
+  return suspect.info().stage == Stage::sensor &&
+         (component.starts_with("signal_angle") || component.starts_with("signal_length") || component.starts_with("signal_hand"));
 }
 
 /// Shares of the stages by likeness alone.
 StageWeights byLikeness(const Comparison& comparison, const std::vector<Suspect>& suspects, const std::vector<Signature>& signatures,
-                        const Eigen::VectorXd& residual) {
+                        const Eigen::VectorXd& residual, bool motion_sensors_acquitted) {
   StageWeights best;
   best.fill(std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < suspects.size(); ++i) {
+    if (motion_sensors_acquitted && isOneMotionSensor(suspects[i])) continue;
     double& misfit = best[indexOf(suspects[i].info().stage)];
     misfit = std::min(misfit, signatures[i].log_misfit / comparison.affectedCells(residual));
   }
@@ -166,8 +67,13 @@ void normalise(StageWeights& weights) {
   for (double& weight : weights) weight = sum > 0 ? weight / sum : 1.0 / stage_count;
 }
 
-/// The likeliest component of a stage.
-std::string componentOf(Stage stage, const std::vector<Suspect>& suspects, const std::vector<Signature>& signatures) {
+/// The likeliest component of a stage; that of the signal that reads wrong, if it is known.
+std::string componentOf(Stage stage, const std::vector<Suspect>& suspects, const std::vector<Signature>& signatures,
+                        const std::string& wrong_signal) {
+  if (stage == Stage::sensor && !wrong_signal.empty())
+    for (const Suspect& suspect : suspects)
+      if (suspect.info().stage == stage && suspect.component() != "all" && Plant::isComponentOf(suspect.component(), wrong_signal))
+        return suspect.component();
   std::string component = "all";
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < suspects.size(); ++i)
@@ -195,60 +101,128 @@ std::string regimeOf(const Comparison& comparison, const Eigen::VectorXd& residu
   return rows > 0 && largest > stands_out * square / rows ? found : "";
 }
 
+/// What substitution and agreement of signals say: stages they speak against, and why.
+class Evidence {
+ public:
+  Evidence(const Comparison& comparison, const Eigen::VectorXd& residual) : comparison_(comparison), residual_(residual) {
+    askMotion();
+    if (allPressuresMeasured(comparison.plant())) askPressures();
+    askTensions();
+  }
+  bool speaksAgainst(Stage stage) const { return against_.contains(stage) && against_.size() < stage_count; }
+  bool acquitsMotionSensors() const { return motion_sensors_acquitted_; }
+  /// The signal that reads wrong, where that is what was found; empty otherwise.
+  const std::string& wrongSignal() const { return wrong_signal_; }
+  std::string words() const {
+    if (reasons_.empty())
+      return "too few signals for substitution: shares say how much typical disturbances of each stage resemble the gap";
+    return fmt::format("{}{}", fmt::join(reasons_, "; "),
+                       against_.size() < stage_count ? ""
+                                                     : ": there is more than one cause, and shares say how much typical disturbances of "
+                                                       "each stage resemble the whole gap");
+  }
+
+ private:
+  void say(const std::string& reason, std::initializer_list<Stage> against) {
+    reasons_.push_back(reason);
+    against_.insert(against.begin(), against.end());
+  }
+  void sayItIsTheSensor(const std::string& signal, const std::string& reason) {
+    say(reason, {Stage::command, Stage::pressure, Stage::force, Stage::body});
+    wrong_signal_ = signal;
+  }
+
+  void askMotion() {
+    const auto motion = testMotion(comparison_, residual_);
+    if (!motion) return;
+    const std::string contradicts =
+        fmt::format("{} contradicts the other signals of motion by {:.1f} times the noise", motion->odd, motion->odd_ratio);
+    if (!motion->odd.empty() && motion->others_right)
+      sayItIsTheSensor(motion->odd, contradicts + ", and these are as predicted");
+    else if (!motion->odd.empty())
+      say(contradicts + ": its sensor, or where something is mounted", {Stage::command, Stage::pressure, Stage::force});
+    else if (motion->agree) {
+      motion_sensors_acquitted_ = true;
+      say("the signals of motion agree with each other, so none of them alone reads wrong", {});
+    }
+  }
+
+  void askPressures() {
+    const double ratio = ratioOf(comparison_, residual_, "pressure_").value_or(1);
+    if (ratio < agrees) {
+      say("measured pressures are as predicted, so the gap arises behind the pressure stage", {Stage::command, Stage::pressure});
+      return;
+    }
+    const Eigen::VectorXd left = residualUnderMeasuredPressures(comparison_);
+    if (!left.size()) {
+      say("pressures differ from the predicted ones, but the model cannot follow them or they are not complete: shares say how much "
+          "typical "
+          "disturbances of each stage resemble the gap",
+          {});
+      return;
+    }
+    const double before = motionMisfit(comparison_, residual_), after = motionMisfit(comparison_, left);
+    if (before > small_misfit && after < 0.5 * before)
+      say(fmt::format("with the measured pressures in place of the simulated ones {:.0f} % of the log gap of the motion vanishes",
+                      100 * (1 - after / before)),
+          {Stage::force, Stage::body, Stage::sensor});
+    else if (before > small_misfit)
+      say("pressures differ from the predicted ones, but most of the motion's gap stays when they are put in their place: there is more "
+          "than "
+          "one cause, and shares say how much typical disturbances of each stage resemble the whole gap",
+          {});
+    else if (after > before + 2 * small_misfit)
+      sayItIsTheSensor(mostAffected(comparison_, residual_, "pressure_"),
+                       "measured pressures are not as predicted, but the motion is, and would not be under the pressures that were read");
+  }
+
+  void askTensions() {
+    const auto tension = testTension(comparison_, residual_);
+    if (!tension) return;
+    const std::string at =
+        tension->commanded ? "at the commanded pressures and the measured lengths" : "at the measured pressures and lengths";
+    const bool agreed = tension->found < agrees;
+    if (agreed && tension->expected > disagrees) {
+      say("tensions follow the force law " + at, {Stage::force});
+      if (tension->commanded) against_.insert({Stage::command, Stage::pressure});
+    } else if (agreed && !tension->commanded) {
+      say("the gap is too small to show in tensions against the force law " + at, {});
+    } else if (tension->found > disagrees && restIsAsPredicted()) {
+      sayItIsTheSensor(
+          mostAffected(comparison_, residual_, "force_"),
+          fmt::format("tensions differ from the force law {} by {:.1f} times the noise, but all else is as predicted", at, tension->found));
+    } else if (tension->found > disagrees) {
+      say(fmt::format("tensions differ from the force law {} by {:.1f} times the noise", at, tension->found), {Stage::body});
+    }
+  }
+
+  bool restIsAsPredicted() const {
+    return largestMotionRatio(comparison_, residual_) < agrees && ratioOf(comparison_, residual_, "pressure_").value_or(1) < agrees;
+  }
+
+  static constexpr double small_misfit = 0.1;  ///< mean log misfit of motion and tension below which there is nothing to explain
+  const Comparison& comparison_;
+  const Eigen::VectorXd& residual_;
+  std::set<Stage> against_;
+  bool motion_sensors_acquitted_ = false;
+  std::string wrong_signal_;
+  std::vector<std::string> reasons_;
+};
+
 }  // namespace
 
 Location locate(const Comparison& comparison, const std::vector<Suspect>& suspects, const std::vector<Signature>& signatures,
                 const Eigen::VectorXd& residual) {
-  StageWeights weights = byLikeness(comparison, suspects, signatures, residual);
+  const Evidence evidence(comparison, residual);
+  StageWeights weights = byLikeness(comparison, suspects, signatures, residual, evidence.acquitsMotionSensors());
+  for (std::size_t i = 0; i < stage_count; ++i)
+    if (evidence.speaksAgainst(static_cast<Stage>(i))) weights[i] *= hardly;
   normalise(weights);
-  double &command = weights[indexOf(Stage::command)], &pressure = weights[indexOf(Stage::pressure)],
-         &force = weights[indexOf(Stage::force)], &body = weights[indexOf(Stage::body)], &sensor = weights[indexOf(Stage::sensor)];
-  std::vector<std::string> reasons;
-  if (allPressuresMeasured(comparison.plant())) {
-    const double ratio = ratioOf(comparison, residual, "pressure_").value_or(1);
-    const Eigen::VectorXd left = residualUnderMeasuredPressures(comparison);
-    const double before = motionMisfit(comparison, residual), after = left.size() ? motionMisfit(comparison, left) : 0;
-    if (ratio < agrees) {
-      command *= hardly;
-      pressure *= hardly;
-      reasons.push_back("measured pressures are as predicted, so the gap arises behind the pressure stage");
-    } else if (!left.size()) {
-      reasons.push_back(
-          "pressures differ from the predicted ones, but the model cannot follow them or they are not complete: shares say how much "
-          "typical disturbances of each stage resemble the gap");
-    } else if (before > 0.1 && after < 0.5 * before) {
-      for (double* weight : {&force, &body, &sensor}) *weight *= hardly;
-      reasons.push_back(
-          fmt::format("with the measured pressures in place of the simulated ones {:.0f} % of the log gap of the motion vanishes",
-                      100 * (1 - after / before)));
-    } else if (before > 0.1) {
-      reasons.push_back(
-          "pressures differ from the predicted ones, but most of the motion's gap stays when they are put in their place: there is more "
-          "than one cause, and shares say how much typical disturbances of each stage resemble the whole gap");
-    }
-  }
-  if (const auto tension = testTension(comparison, residual)) {
-    if (tension->found < agrees && tension->expected > disagrees) {
-      force *= hardly;
-      reasons.push_back("tensions follow the force law at the measured pressures and lengths");
-    } else if (tension->found < agrees) {
-      reasons.push_back("the gap is too small to show in tensions against the force law at the measured pressures and lengths");
-    } else if (tension->found > disagrees) {
-      body *= hardly;
-      reasons.push_back(fmt::format("tensions differ from the force law at the measured pressures and lengths by {:.1f} times the noise",
-                                    tension->found));
-    }
-  }
-  if (reasons.empty())
-    reasons.push_back("too few signals for substitution: shares say how much typical disturbances of each stage resemble the gap");
-  normalise(weights);
-
-  Location location;
-  location.method = fmt::format("{}", fmt::join(reasons, "; "));
   const std::string regime = regimeOf(comparison, residual);
+  Location location{{}, evidence.words()};
   for (std::size_t i = 0; i < stage_count; ++i) {
     const auto stage = static_cast<Stage>(i);
-    location.places.push_back({nameOf(stage), componentOf(stage, suspects, signatures), regime, weights[i]});
+    location.places.push_back({nameOf(stage), componentOf(stage, suspects, signatures, evidence.wrongSignal()), regime, weights[i]});
   }
   std::ranges::stable_sort(location.places, [](const Place& a, const Place& b) { return a.share > b.share; });
   return location;

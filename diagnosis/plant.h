@@ -59,6 +59,8 @@ class Plant {
   const Split& split() const { return split_; }
   const std::string& robot() const { return recordings_.front().info.robot; }
   int muscleCount() const { return recordings_.front().muscleCount(); }
+  /// The model holds no effects beforehand, neither by options nor by a sidecar: a command is the pressure.
+  bool isClean() const { return options_.model.effects.empty() && recordings_.front().info.active_effects.empty(); }
   /// The measured values of a compared signal; empty if this recording does not have it.
   const std::vector<double>& measured(int recording, int signal) const;
   /// All components of the robot on which an effect can act.

@@ -11,6 +11,9 @@ namespace {
 
 constexpr double enough = 0.01;  ///< a fall of logMisfit that is not worth another round
 constexpr double normal_95 = 1.96;
+/// Differences for derivatives, in coordinates. Wide ones first: dry friction swallows what is small, so that the tangent is flatter than
+/// the way to go.
+constexpr double wide = 0.2, narrow = 0.05;
 
 struct Point {
   Eigen::VectorXd z, residual;
@@ -26,12 +29,12 @@ Point evaluate(const Comparison& comparison, const FitProblem& problem, const Ei
   return point;
 }
 
-Eigen::MatrixXd derivatives(const Comparison& comparison, const FitProblem& problem, const Point& at) {
+Eigen::MatrixXd derivatives(const Comparison& comparison, const FitProblem& problem, const Point& at, double difference) {
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(comparison.size(), at.z.size());
   for (Eigen::Index i = 0; i < at.z.size(); ++i)
     for (const double side : {1.0, -1.0}) {
       Eigen::VectorXd z = at.z;
-      z[i] += side * std::max(0.02, 0.05 * std::abs(z[i]));
+      z[i] += side * difference * std::max(1.0, std::abs(z[i]));
       if (problem.clamped(z)[i] == at.z[i]) continue;  // at a bound
       const Point beside = evaluate(comparison, problem, z);
       if (!beside.residual.size()) continue;
@@ -109,25 +112,28 @@ void update(Eigen::MatrixXd& jacobian, const Point& from, const Point& to) {
 Eigen::MatrixXd derivatives(const Comparison& comparison, const FitProblem& problem, const Eigen::VectorXd& z) {
   const Point at = evaluate(comparison, problem, z);
   if (!at.residual.size()) return Eigen::MatrixXd::Zero(comparison.size(), z.size());
-  return derivatives(comparison, problem, at);
+  return derivatives(comparison, problem, at, wide);
 }
 
 FitResult fit(const Comparison& comparison, const FitProblem& problem, int round_count) {
   Point best = evaluate(comparison, problem, problem.start);
   if (!best.residual.size() || best.z.size() == 0 || round_count == 0)
     return {best.z, best.residual, best.log_misfit, Eigen::VectorXd::Zero(best.z.size())};
-  Eigen::MatrixXd jacobian = derivatives(comparison, problem, best);
+  double difference = wide;
+  Eigen::MatrixXd jacobian = derivatives(comparison, problem, best, difference);
   bool fresh = true;
   double damping = 0.01;
   for (int round = 0; round < round_count && !comparison.plant().interrupted(); ++round) {
     const Point before = best;
     const bool down = stepDown(comparison, problem, jacobian, damping, best);
     const bool settled = best.log_misfit > before.log_misfit - enough;
-    if (settled && (fresh || round + 1 == round_count)) break;
-    if (settled)
-      jacobian = derivatives(comparison, problem, best);
-    else if (down)
+    if ((settled && fresh && difference == narrow) || round + 1 == round_count) break;
+    if (settled) {
+      if (fresh) difference = narrow;
+      jacobian = derivatives(comparison, problem, best, difference);
+    } else if (down) {
       update(jacobian, before, best);
+    }
     fresh = settled;
   }
   return {best.z, best.residual, best.log_misfit, halfWidths(comparison, best, jacobian)};

@@ -45,7 +45,8 @@ std::string paragraph(const std::string& words) {
 std::string where(const Diagnosis& d) {
   if (d.where.empty()) return "";
   return heading("Where") + paragraph("A sample goes from command to pressure, force, body and sensor. " + whereSentence(d) + ".") +
-         stagesFigure(d.where) + robotFigure(d.drawing, d.where.front()) + paragraph("How this was told: " + d.where_method + ".");
+         stagesFigure(d.where) + robotFigure(d.drawing, isTold(d.where) ? d.where.front() : Place{}) +
+         paragraph("How this was told: " + d.where_method + ".");
 }
 
 bool triedAlone(const Diagnosis& d, const FoundEffect& effect) {

@@ -75,6 +75,17 @@ double excitationOf(const Comparison& comparison, const std::vector<Eigen::Vecto
   return largest;
 }
 
+/// Smallest x^T N x / 2 - s^T x for least <= x <= largest_amount, one x after the other (N positive definite): strengths that act alike do
+/// not drive each other against the bounds.
+Eigen::VectorXd boundedSolution(const Eigen::MatrixXd& normal, const Eigen::VectorXd& slope, const Eigen::VectorXd& least) {
+  constexpr int sweep_count = 200;
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(slope.size());
+  for (int sweep = 0; sweep < sweep_count; ++sweep)
+    for (Eigen::Index i = 0; i < x.size(); ++i)
+      x[i] = std::clamp(x[i] + (slope[i] - normal.row(i).dot(x)) / normal(i, i), least[i], largest_amount);
+  return x;
+}
+
 }  // namespace
 
 void explain(const Comparison& comparison, const Suspect& suspect, const Eigen::VectorXd& residual, Signature& signature) {
@@ -86,19 +97,19 @@ void explain(const Comparison& comparison, const Suspect& suspect, const Eigen::
     if (!signature.per_strength[static_cast<std::size_t>(i)].size()) return;
     columns.col(i) = signature.per_strength[static_cast<std::size_t>(i)];
   }
+  Eigen::VectorXd least = Eigen::VectorXd::Zero(count);
+  for (std::size_t k = 0; k < suspect.strengths().size(); ++k)
+    if (suspect.isSigned(suspect.strengths()[k])) least[static_cast<Eigen::Index>(k)] = -largest_amount;
   Eigen::VectorXd left = residual;
   for (int round = 0; round < 3; ++round) {
     const Eigen::VectorXd weights = comparison.weights(left);
     const Eigen::MatrixXd weighted = weights.asDiagonal() * columns;
     Eigen::MatrixXd normal = weighted.transpose() * weighted;
     normal.diagonal().array() += 1e-12 + 1e-9 * normal.diagonal().maxCoeff();
-    Eigen::VectorXd amount = normal.ldlt().solve(weighted.transpose() * weights.cwiseProduct(residual));
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const int coordinate = suspect.strengths().empty() ? -1 : suspect.strengths()[static_cast<std::size_t>(i)];
-      const bool both_signs = coordinate >= 0 && suspect.isSigned(coordinate);
-      // An effect without parameters is there or not.
-      amount[i] = coordinate < 0 ? 1 : std::clamp(amount[i], both_signs ? -largest_amount : 0.0, largest_amount);
-    }
+    // An effect without parameters is there or not.
+    const Eigen::VectorXd amount = suspect.strengths().empty()
+                                       ? Eigen::VectorXd(Eigen::VectorXd::Ones(count))
+                                       : boundedSolution(normal, weighted.transpose() * weights.cwiseProduct(residual), least);
     left = residual - columns * amount;
     const double misfit = comparison.logMisfit(left);
     if (misfit < signature.log_misfit || suspect.strengths().empty()) {
@@ -176,8 +187,14 @@ std::vector<Probe> weakerProbes(const Comparison& comparison, std::vector<Suspec
   return result;
 }
 
+/// Changes that are multiples of each other, but for what can hardly be seen.
+bool actAlike(const Eigen::VectorXd& one, const Eigen::VectorXd& other) {
+  constexpr double parallel = 0.999;
+  return one.size() && one.size() == other.size() && std::abs(one.dot(other)) > parallel * one.norm() * other.norm() && one.norm() > 0;
+}
+
 /// Leaves out the strengths of either sign that change everything by a small share of what another one of the suspect does, both of usual
-/// size: the recordings cannot tell them, and a fit would drive them anywhere.
+/// size, and those that change the same as another one: the recordings cannot tell them, and a fit would drive them anywhere.
 void leaveOutIdle(const Comparison& comparison, Suspect& suspect, Signature& look) {
   constexpr double small_share = 0.1;
   std::vector<double> excitation;
@@ -186,7 +203,10 @@ void leaveOutIdle(const Comparison& comparison, Suspect& suspect, Signature& loo
   for (std::size_t k = suspect.strengths().size(); k-- > 0;) {
     const int coordinate = suspect.strengths()[k];
     const bool idle = std::ranges::any_of(excitation, [&](double other) { return excitation[k] < small_share * other; });
-    if (!idle || !suspect.isSigned(coordinate)) continue;
+    const auto before_k = look.per_strength.begin() + static_cast<std::ptrdiff_t>(k);
+    const bool double_of_another =
+        std::any_of(look.per_strength.begin(), before_k, [&](const Eigen::VectorXd& other) { return actAlike(*before_k, other); });
+    if (!(idle || double_of_another) || !suspect.isSigned(coordinate)) continue;
     suspect.leaveOut(coordinate);
     look.per_strength.erase(look.per_strength.begin() + static_cast<std::ptrdiff_t>(k));
     excitation.erase(excitation.begin() + static_cast<std::ptrdiff_t>(k));

@@ -65,10 +65,21 @@ std::string componentWords(const std::string& component) {
   return words;
 }
 
+bool isTold(const std::vector<Place>& where) {
+  constexpr double told_share = 0.5;
+  return !where.empty() && where.front().share >= told_share;
+}
+
 std::string whereSentence(const Diagnosis& d) {
   const Place& place = d.where.front();
-  return fmt::format("{:.0f} % of the gap is in the {} stage ({}){}", 100 * place.share, place.stage, componentWords(place.component),
-                     place.regime.empty() ? "" : ", mostly while " + place.regime);
+  const std::string regime = place.regime.empty() ? "" : ", mostly while " + place.regime;
+  if (isTold(d.where) || d.where.size() < 2)
+    return fmt::format("{:.0f} % of the gap is in the {} stage ({}){}", 100 * place.share, place.stage, componentWords(place.component),
+                       regime);
+  const Place& next = d.where[1];
+  return fmt::format("These signals do not tell at which stage the gap arises: {} ({}, {:.0f} %) or {} ({}, {:.0f} %) come nearest{}",
+                     place.stage, componentWords(place.component), 100 * place.share, next.stage, componentWords(next.component),
+                     100 * next.share, regime);
 }
 
 namespace {

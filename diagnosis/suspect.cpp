@@ -55,6 +55,11 @@ Suspect::Suspect(EffectInfo info, std::string component, const Plant& plant) : i
       c.typical = p.neutral + std::sqrt(std::abs(p.usual_low - p.neutral) * std::abs(p.usual_high - p.neutral));
     }
     if (p.unit == "unit of the signal") c.typical = p.neutral + 0.05 * spanOf(plant, signal);
+    const double extent = std::max(std::abs(p.usual_low - p.neutral), std::abs(p.usual_high - p.neutral));
+    if (c.scale == Scale::inverse)
+      c.farthest = p.usual_low / strongest;
+    else if (c.scale == Scale::linear)
+      c.farthest = strongest * (p.unit == "unit of the signal" ? 2 * std::abs(c.typical - p.neutral) : extent);
     if (!p.shape) strengths_.push_back(static_cast<int>(coordinates_.size()));
     coordinates_.push_back(c);
   }
@@ -74,7 +79,7 @@ void Suspect::useCorrectedLaw(const Plant& plant) {
     if (p.name != "braid_N" && p.name != "bore_N" && p.name != "threshold_N" && p.name != "stretch_N") continue;
     base_[i] = 0;
     strengths_.push_back(static_cast<int>(coordinates_.size()));
-    coordinates_.push_back({i, Scale::linear, typical_N, 0});
+    coordinates_.push_back({i, Scale::linear, typical_N, 0, 2 * strongest * typical_N});
   }
 }
 
@@ -133,13 +138,16 @@ Eigen::VectorXd Suspect::clamped(Eigen::VectorXd z) const {
   for (std::size_t i = 0; i < coordinates_.size(); ++i) {
     const Coordinate& c = coordinates_[i];
     const EffectParameter& p = info_.parameters[c.parameter];
-    const double low_value = c.scale == Scale::factor ? std::max(p.minimum, p.usual_low / 3) : p.minimum;
-    const double high_value = c.scale == Scale::factor ? std::min(p.maximum, p.usual_high * 3) : p.maximum;
+    double low_value = p.minimum, high_value = p.maximum;
+    if (c.scale == Scale::factor) low_value = std::max(low_value, p.usual_low / 3), high_value = std::min(high_value, p.usual_high * 3);
+    if (c.scale == Scale::inverse) low_value = std::max(low_value, c.farthest);
+    if (c.scale == Scale::linear && c.farthest > 0)
+      low_value = std::max(low_value, base_[c.parameter] - c.farthest), high_value = std::min(high_value, base_[c.parameter] + c.farthest);
     double first = coordinateOf(c, low_value), second = coordinateOf(c, high_value);
     if (first > second) std::swap(first, second);
     if (std::isinf(p.neutral)) first = std::max(first, 1e-6);
     auto& value = z[static_cast<Eigen::Index>(i)];
-    value = std::clamp(value, std::max(first, -strongest), std::min(second, strongest));
+    value = std::clamp(value, first, second);
   }
   return z;
 }

@@ -50,12 +50,13 @@ class Suspect {
   std::vector<Suspect> variants(const Plant& plant) const;
 
  private:
-  static constexpr double strongest = 50;  ///< bound of |z|
+  static constexpr double strongest = 25;  ///< times the usual extent: bound of strengths
   enum class Scale { linear, inverse, factor, shift };
   struct Coordinate {
     std::size_t parameter;
     Scale scale;
     double typical, unit;
+    double farthest = 0;  ///< from neutral (inverse: the least value); 0: only the parameter's own range bounds it
   };
   double valueOf(const Coordinate& coordinate, double z) const;
   double coordinateOf(const Coordinate& coordinate, double value) const;

@@ -4,8 +4,8 @@
 # or elbow takes a quarter to one CPU minute, and as much again to follow up on (FOLLOW=no leaves that out); one on the arm a quarter of an
 # hour. 132 cases: about two hours on two free cores.
 # Usage: scripts/make_blind_docs.sh SEED CASES KEYS [build folder] [options of `blind make`]
-#     SEED           of all draws; one that has not been used since the diagnosis was changed last
-#     CASES          folder for the cases; new, or of a call that was stopped
+#     SEED           of all draws; one that has not been used since the diagnosis was changed last. That of the cases where there are any
+#     CASES          folder for the cases; new, or of a call that was stopped after it had made them
 #     KEYS           folder for the key, out of reach of the diagnosis: not in CASES, beside it or in the project
 #     build folder   default: build/release; holds musclesim
 set -euo pipefail
@@ -21,6 +21,8 @@ noted=()
 if [[ ! -e "$cases/seal.json" ]]; then
   "$program" blind make "$cases" --keys "$keys" --seed "$seed" "${noted[@]}" "${@:5}"
 fi
+sealed_seed="$(sed -n 's/.*"seed": \([0-9]*\).*/\1/p' "$cases/seal.json")"
+[[ "$sealed_seed" == "$seed" ]] || { echo "make_blind_docs.sh: $cases holds cases of seed $sealed_seed, not $seed" >&2; exit 2; }
 key_file="$(sed -n 's/.*"key_file": "\([0-9a-f]*\.json\)".*/\1/p' "$cases/seal.json")"
 "$program" blind run "$cases" "${noted[@]}"
 [[ ${FOLLOW:-yes} == no ]] || "$program" blind follow "$cases" --keys "$keys/$key_file"

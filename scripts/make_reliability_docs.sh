@@ -12,7 +12,7 @@ build=${BUILD:-build/dev}
 
 # name|what is promised|command
 rows=(
-  "parsers|every reader of text (recording CSV, sidecar, TOML, effects, sweep plan and manifest, command line) under libFuzzer with both sanitizers: no crash, no hang, errors name their place|scripts/fuzz.sh 60"
+  "parsers|the readers of recordings (CSV, sidecar), parameters (TOML), effects, sweep plans and manifests and the command line under libFuzzer with both sanitizers: no crash, no hang, errors name their place|scripts/fuzz.sh 60"
   "corpus|the kept corpus, and altered and cut variants of it, through the same targets|$build/tests/fuzz/fuzz_tests"
   "numbers|NaN, infinities, 1e308, -0 and denormals at every muscle's pressure, in forces, in every parameter of effects and robots, in every column of a recording: refused or Diverged within a step|$build/tests/reliability/reliability_tests --gtest_filter=NonFinite.*"
   "divergence|non-finite, far, fast and torn bodies end the run with time, place and cause; the next simulation is as if nothing had been|$build/tests/robot/robot_tests --gtest_filter=*AFault*"

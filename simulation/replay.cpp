@@ -28,9 +28,17 @@ int recordedSubsteps(const RecordingInfo& info) {
   return extra["substeps"].get<int>();
 }
 
+void requireRegistered(const std::string& robot, const std::string& source) {
+  std::vector<std::string> names;
+  for (const auto& [name, description] : Robot::registered()) names.push_back(name);
+  if (std::ranges::find(names, robot) == names.end())
+    throw BadFile(source, fmt::format("there is no robot \"{}\"; registered: {}", robot, fmt::join(names, ", ")));
+}
+
 }  // namespace
 
 SimulationOptions simulationOptionsFor(const RecordingInfo& info, const std::string& source, const ReplayOptions& options) {
+  if (!options.robot) requireRegistered(info.robot, source);
   SimulationOptions result;
   result.physics = options.physics ? *options.physics : physicsFromName(info.physics.value_or("si"));
   result.step_s = options.step_s.value_or(info.step_s.value_or(default_step_s));

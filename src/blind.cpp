@@ -92,7 +92,8 @@ int followCases(FollowArguments& arguments) {
   arguments.follow.interrupted = [] { return interruptSignal() != 0; };
   arguments.follow.progress = [&](int done, int count) { progress.show(done, count); };
   blind::followUp(arguments.folder, arguments.key, arguments.follow);
-  fmt::print("{}\n", blind::followUpTotals(arguments.folder).dump(1));
+  const blind::Score score = blind::score(arguments.folder, arguments.key);
+  fmt::print("{}\n", score.totals.at("follow_up").dump(1));
   return interruptSignal() != 0 ? interrupted_base + interruptSignal() : done;
 }
 

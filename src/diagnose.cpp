@@ -45,10 +45,24 @@ void writeWith(const std::vector<ActiveEffect>& found, std::vector<ActiveEffect>
   writeEffects(effects, file.string());
 }
 
+/// The proposed commands as a recording of the plant that has no readings yet.
+void writeSchedule(const Diagnosis& diagnosis, const RecordingInfo& plant, const std::filesystem::path& folder) {
+  RecordingInfo info;
+  info.robot = plant.robot;
+  info.physics = plant.physics;
+  info.initial_state = plant.initial_state;
+  info.robot_parameters = plant.robot_parameters;
+  info.active_effects = plant.active_effects;
+  info.description = "commands proposed by a diagnosis";
+  replaceFile((folder / "next.csv").string(), scheduleText(diagnosis.next_experiment));
+  replaceFile((folder / "next.json").string(), sidecarText(info));
+}
+
 void writeAll(const Diagnosis& diagnosis, const std::filesystem::path& folder, const DiagnoseArguments& arguments,
-              const std::vector<ActiveEffect>& effects_of_user) {
+              const std::vector<ActiveEffect>& effects_of_user, const RecordingInfo& plant) {
   std::filesystem::create_directories(folder);
-  for (const char* of_an_earlier_run : {"attempt.json", "nominal.toml", "next.csv"}) std::filesystem::remove(folder / of_an_earlier_run);
+  for (const char* of_an_earlier_run : {"attempt.json", "nominal.toml", "next.csv", "next.json"})
+    std::filesystem::remove(folder / of_an_earlier_run);
   const std::string json = diagnosisJson(diagnosis);
   replaceFile((folder / "diagnosis.json").string(), json);
   if (arguments.json) replaceFile(*arguments.json, json);
@@ -56,7 +70,7 @@ void writeAll(const Diagnosis& diagnosis, const std::filesystem::path& folder, c
   writeWith(diagnosis.chosen_effects, effects_of_user, folder / "effects.json");
   if (!diagnosis.attempt.effects.empty()) writeWith(diagnosis.attempt.active_effects, effects_of_user, folder / "attempt.json");
   if (!diagnosis.tuned.empty()) replaceFile((folder / "nominal.toml").string(), tunedToml(diagnosis.tuned));
-  if (!diagnosis.next_experiment.commands.empty()) replaceFile((folder / "next.csv").string(), scheduleText(diagnosis.next_experiment));
+  if (!diagnosis.next_experiment.commands.empty()) writeSchedule(diagnosis, plant, folder);
 }
 
 int diagnoseCommand(const ModelOptions& model, const DiagnoseArguments& arguments) {
@@ -76,9 +90,10 @@ int diagnoseCommand(const ModelOptions& model, const DiagnoseArguments& argument
   options.interrupted = [] { return interruptSignal() != 0; };
   PhaseProgress progress(model.quiet);
   options.progress = [&](const DiagnosisProgress& now) { progress.show(now.phase, now.done, now.expected); };
+  const RecordingInfo plant = recordings.front().info;
   const Diagnosis diagnosis = diagnose(std::move(recordings), options);
   const std::filesystem::path folder = folderFor(arguments);
-  writeAll(diagnosis, folder, arguments, options.model.effects);
+  writeAll(diagnosis, folder, arguments, options.model.effects, plant);
   if (!model.quiet) fmt::print("{}report    {}\n", diagnosisSummary(diagnosis), (folder / "report.html").string());
   return diagnosis.partial ? interrupted_base + 2 : done;
 }

@@ -31,13 +31,6 @@ void addPoint(DiagramSeries& points, DiagramSeries& bars, double x, const Rate& 
   addBar(bars, x, rate);
 }
 
-std::vector<Claim> claimsOf(const std::vector<Judgement>& cases) {
-  std::vector<Claim> claims;
-  for (const Judgement& j : cases)
-    if (j.claim) claims.push_back(*j.claim);
-  return claims;
-}
-
 /// Edges of the bins over the gap, in units of the noise. An exchange of channels may lie above all sizes.
 constexpr double gap_edges[] = {0, 3.5, 6, 11, 20, 40, 90, std::numeric_limits<double>::infinity()};
 
@@ -77,7 +70,7 @@ void fillCell(Svg& svg, std::size_t row, std::size_t column, double share, int c
 std::string reliabilitySvg(const Score& score) {
   DiagramSeries ideal{"as often right as said", grey, {0, 1}, {0, 1}};
   DiagramSeries points{"answers, 95 % interval", blue, {}, {}, SvgMark::disc}, bars{"", blue, {}, {}, SvgMark::none, 1};
-  for (const CalibrationBin& bin : calibrationBins(claimsOf(score.cases))) addPoint(points, bars, bin.mean_probability, bin.right);
+  for (const CalibrationBin& bin : calibrationBins(claimsOfOneCause(score.cases))) addPoint(points, bars, bin.mean_probability, bin.right);
   return diagramsSvg("Reliability", {{"single and open causes", "probability of the top answer", "share right", {ideal, bars, points}}}, 1);
 }
 
@@ -90,8 +83,8 @@ std::string detectabilitySvg(const Score& score) {
 }
 
 std::string answeredClass(const Judgement& j) {
-  if (j.verdict == "no_gap" || j.verdict == "not_excited" || j.verdict == "failed") return "no gap";
-  if (j.top.empty() || j.none_of_these > j.top_probability) return "none";
+  if (j.verdict == "no_gap" || j.verdict == "not_excited") return "no gap";
+  if (j.verdict == "failed" || !j.namesEffect()) return "none";
   return nameOf(effectInfo(idOf(j.top)).stage);
 }
 

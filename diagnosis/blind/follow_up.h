@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -18,13 +17,15 @@ struct FollowUpOptions {
 
 /// For every case that was answered, in DIR/follow_up/caseNNN.json:
 /// - "left_out": the answer when the true effects are not among the candidates; of single and double cases;
-/// - "experiment": the plant records the schedule that the answer proposes and is diagnosed again with that recording among those that are
-///   fitted to; of answers whose ambiguity set holds the truth beside others;
+/// - "experiment": the answer when the plant has recorded the proposed schedule and that recording is among those that are fitted to; of
+///   ambiguous answers. Where no schedule was proposed, a failed one;
 /// - "fresh": shrink by the answer's effects on a recording of the same plant that was not there; of answers with effects.
-/// Cases that have a file are not done again. Throws as score() if key or answers are not those that were sealed.
+/// Cases that have a file are not done again. Throws as score() if key or answers are not those that were sealed, BadParameter if files
+/// were made by another program or with other candidates.
 void followUp(const std::filesystem::path& folder, const std::filesystem::path& key_file, const FollowUpOptions& options);
 
-/// What the files in DIR/follow_up add up to: rates as in totalsOf(); empty if there is none.
-nlohmann::json followUpTotals(const std::filesystem::path& folder);
+std::filesystem::path followUpFile(const std::filesystem::path& folder, const std::string& name);
+/// There is a file, and it was made from the present answer.
+bool isFollowed(const std::filesystem::path& folder, const std::string& name);
 
 }  // namespace musclesim::blind

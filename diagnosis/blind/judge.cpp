@@ -59,7 +59,10 @@ void judgeRanking(Judgement& j, const std::vector<Answer>& candidates, const Pat
   j.acceptable = !first.empty() && fitsAccepted(first.front());
   j.acceptable3 = std::ranges::any_of(first, fitsAccepted);
   if (*j.top1) j.component = fitsAny(first.front().label, truth);
-  j.probability_of_truth = probabilityOf(candidates, truth);
+  if (j.kind == "single") {
+    j.named = j.component.value_or(false) && j.namesEffect();
+    j.probability_of_truth = probabilityOf(candidates, truth);
+  }
   j.probability_of_acceptable = probabilityOf(candidates, accepted);
 }
 
@@ -68,18 +71,31 @@ void judgeShrink(Judgement& j, const json& answer, const std::vector<Answer>& ca
   j.shrink_percent = gap.value("shrink_percent", 0.0);
   j.nominal_refit_percent = gap.value("nominal_refit_shrink_percent", 0.0);
   if (j.kind != "single") return;
-  for (const Answer& candidate : candidates)
-    if (fitsAny(candidate.label, truth) && candidate.shrink_percent > 0) {
-      j.oracle_share = *j.shrink_percent / candidate.shrink_percent;
-      return;
-    }
+  constexpr double everything_percent = 100;
+  const auto listed = std::ranges::find_if(
+      candidates, [&](const Answer& candidate) { return fitsAny(candidate.label, truth) && candidate.shrink_percent > 0; });
+  j.oracle_listed = listed != candidates.end();
+  j.oracle_share = *j.shrink_percent / (j.oracle_listed ? listed->shrink_percent : everything_percent);
+}
+
+/// Of the explanations that hold all of them.
+double probabilityOfAll(const json& answer, const Patterns& truths) {
+  double sum = 0;
+  for (const json& explanation : answer.value("explanations", json::array()))
+    if (allNamed(truths, explanation.at("effects").get<std::vector<std::string>>())) sum += explanation.at("probability").get<double>();
+  return sum;
 }
 
 void judgeSets(Judgement& j, const json& answer, const Patterns& acceptable, const Patterns& truths) {
   std::vector<std::string> set = answer.value("ambiguity_set", std::vector<std::string>());
   const std::vector<std::string> chosen = answer.value("chosen", std::vector<std::string>());
   j.set_size = std::max<double>(1, static_cast<double>(set.size()));
-  if (j.kind == "double") j.pair = allNamed(acceptable, chosen);
+  if (j.kind == "double") {
+    j.pair = allNamed(acceptable, chosen);
+    j.probability_of_truth = probabilityOfAll(answer, truths);
+  }
+  const std::vector<std::string> accepted = flat(acceptable);
+  j.spurious = std::ranges::any_of(chosen, [&](const std::string& label) { return !fitsAny(label, accepted); });
   set.insert(set.end(), chosen.begin(), chosen.end());
   j.covered = allNamed(truths, set);
 }
@@ -94,15 +110,10 @@ Patterns truthsOf(const std::vector<std::string>& ids, const Patterns& acceptabl
   return truths;
 }
 
-/// Of the first effect, of none of them and of no effect at all.
-double largestProbability(const Judgement& j) {
-  return std::max({j.top_probability, j.none_of_these, j.no_effect});
-}
-
 /// What was said with the largest probability; nothing where no answer was given.
 std::optional<Claim> claimOf(const Judgement& j, bool right) {
   if (j.verdict == "failed") return std::nullopt;
-  return Claim{largestProbability(j), right};
+  return Claim{j.confidence(), right};
 }
 
 void judgeFound(Judgement& j, const json& key, const json& answer, const std::vector<Answer>& candidates) {
@@ -111,13 +122,13 @@ void judgeFound(Judgement& j, const json& key, const json& answer, const std::ve
   judgeRanking(j, candidates, acceptable, flat(truths));
   judgeShrink(j, answer, candidates, flat(truths));
   judgeSets(j, answer, acceptable, truths);
-  if (j.kind == "single") j.claim = claimOf(j, *j.acceptable && j.top_probability == largestProbability(j));
+  j.claim = claimOf(j, *j.acceptable && j.namesEffect());
 }
 
 void judgeOpen(Judgement& j) {
   constexpr double confident = 0.5;
-  j.open_detected = j.verdict == "unexplained" || (!j.verdict.empty() && j.verdict != "failed" && j.top_probability <= confident);
-  j.claim = claimOf(j, j.none_of_these == largestProbability(j));
+  j.open_detected = j.verdict == "unexplained" || (j.verdict == "effects_found" && j.top_probability <= confident);
+  j.claim = claimOf(j, j.none_of_these >= j.confidence());
 }
 
 Judgement head(const std::string& name, const json& key) {
@@ -137,9 +148,14 @@ Judgement head(const std::string& name, const json& key) {
 
 }  // namespace
 
+double Judgement::confidence() const {
+  return std::max({top_probability, none_of_these, no_effect});
+}
+
 Judgement judge(const std::string& name, const json& key, const json& answer) {
   Judgement j = head(name, key);
   j.verdict = answer.value("verdict", "");
+  j.message = answer.value("message", "");
   j.verdict_right = j.verdict == key.at("verdict");
   const std::vector<Answer> candidates = candidatesOf(answer);
   if (!candidates.empty()) {
@@ -151,6 +167,7 @@ Judgement judge(const std::string& name, const json& key, const json& answer) {
     if (explanation.at("effects").empty()) j.no_effect = explanation.at("probability");
   if (j.kind == "null") {
     j.false_alarm = j.verdict != "no_gap" && j.verdict != "not_excited";
+    j.claim = claimOf(j, j.no_effect >= j.confidence());
     return j;
   }
   const json where = answer.value("where", json::array());

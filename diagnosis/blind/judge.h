@@ -17,22 +17,32 @@ struct Judgement {
   double gap_over_noise = 0;
 
   std::string verdict;                                           ///< given
+  std::string message;                                           ///< of a failed diagnosis
   bool verdict_right = false;                                    ///< null: no_gap; open: unexplained; else effects_found
   std::string top;                                               ///< the most probable effect, "id@component"; empty if there is none
   double top_probability = 0, none_of_these = 0, no_effect = 0;  ///< as answered
   std::optional<bool> top1, top3;                                ///< the true id is first, among the first three
   std::optional<bool> acceptable, acceptable3;                   ///< an acceptable answer is
+  std::optional<bool> named;                                     ///< single: first, the true cause, likelier than none of these and no gap
   std::optional<bool> component;                                 ///< of the first entry, if its id is right
   std::optional<bool> stage;                                     ///< the first entry of "where" is a true stage
   std::optional<bool> covered;                                   ///< the truth is in the ambiguity set or chosen; of doubles both
   std::optional<bool> pair;                                      ///< doubles: both causes, or acceptable ones, are chosen
-  std::optional<bool> open_detected;                             ///< open: "unexplained", or no effect above probability 0.5
-  std::optional<bool> false_alarm;                               ///< null: a gap was seen
-  std::optional<double> probability_of_truth, probability_of_acceptable, set_size;
+  std::optional<bool> spurious;                ///< single, double: a cause was chosen that is neither a true one nor a look-alike of one
+  std::optional<bool> open_detected;           ///< open: "unexplained", or no effect above probability 0.5, but not "no gap"
+  std::optional<bool> false_alarm;             ///< null: a gap was seen
+  std::optional<double> probability_of_truth;  ///< of doubles that of explanations that hold both
+  std::optional<double> probability_of_acceptable, set_size;
   std::optional<double> shrink_percent, nominal_refit_percent;  ///< single and double
-  std::optional<double> oracle_share;  ///< shrink over that of the true effect's best fit; only if the answer lists it
-  std::optional<Claim> claim;          ///< single and open: the top answer (an effect or none of these)
+  std::optional<double> oracle_share;                           ///< single: shrink over that of the true effect's best fit
+  bool oracle_listed = false;  ///< that fit is in the answer; otherwise the true effect is taken to remove everything
+  std::optional<Claim> claim;  ///< the likeliest of the first effect, none of these and no gap; of doubles right for either cause
   double seconds = 0;
+
+  /// The largest probability given: of the first effect, of none of these, of no gap.
+  double confidence() const;
+  /// An effect has it.
+  bool namesEffect() const { return !top.empty() && top_probability >= confidence(); }
 };
 
 /// Key of one case as `blind make` wrote it, answer as diagnosis.json. Throws nlohmann::json::exception if members are missing in the key.

@@ -50,16 +50,18 @@ std::string introduction(const Score& score) {
 |---|---|
 | cases | {} |
 | seed | {} |
+| seconds per recording (arm: half) | {} |
 | sealed with | {}, {} |
 | diagnosed with | {}, {}, program SHA-256 `{}` |
 | SHA-256 of key, recordings, answers | `{}`, `{}`, `{}` |
 
-Sizes are the largest RMS gap of any signal over its noise: weak 2..6, clear 6..40, strong 40..200. An answer is *acceptable* if it names the cause and its component, or one of the look-alikes that the measured signals cannot separate; these were frozen when the cases were made. Intervals: 95 %, Wilson.
+Sizes are the largest RMS gap of any signal over its noise: weak 2..6, clear 6..40, strong 40..200. An answer is *acceptable* if it names the cause and its component, or one of the look-alikes that the measured signals cannot separate; these were frozen when the cases were made. *Probability* is that of the first effect, of none of these or of no gap, whichever is largest. The oracle is the true effect's best fit, or 100 % where the answer does not list that. Intervals: 95 %, Wilson.
 
 )",
-      score.cases.size(), seal.value("seed", json(0)).dump(), valueOr(seal, "program", "-"), valueOr(seal, "commit", "commit not noted"),
-      valueOr(answers, "program", "-"), valueOr(answers, "commit", "commit not noted"), valueOr(answers, "program_sha256", "-"),
-      valueOr(seal, "key_sha256", "-"), valueOr(seal, "recordings_sha256", "-"), valueOr(answers, "answers_sha256", "-"));
+      score.cases.size(), seal.value("seed", json(0)).dump(), seal.value("duration_s", json(0)).dump(), valueOr(seal, "program", "-"),
+      valueOr(seal, "commit", "commit not noted"), valueOr(answers, "program", "-"), valueOr(answers, "commit", "commit not noted"),
+      valueOr(answers, "program_sha256", "-"), valueOr(seal, "key_sha256", "-"), valueOr(seal, "recordings_sha256", "-"),
+      valueOr(answers, "answers_sha256", "-"));
 }
 
 std::string overview(const json& totals) {
@@ -73,6 +75,7 @@ std::string overview(const json& totals) {
   row("acceptable answer first, single", ">= 80 %", longRate(single, "acceptable"));
   row("acceptable answer among the first three, single", ">= 95 %", longRate(single, "acceptable3"));
   row("true effect first / among the first three, single", "", longRate(single, "top1") + " / " + longRate(single, "top3"));
+  row("true effect first, on its component, likelier than none of these and no gap, single", "", longRate(single, "named"));
   row("component right where the effect is", "", longRate(single, "component"));
   row("mean probability on the truth, single", ">= 0.70", numberText(single, "probability_of_truth", "{:.2f}"));
   row("mean probability on the acceptable set, single", "", numberText(single, "probability_of_acceptable", "{:.2f}"));
@@ -80,14 +83,20 @@ std::string overview(const json& totals) {
   row("truth in the ambiguity set or chosen, single", ">= 95 %", longRate(single, "covered"));
   row("mean size of the ambiguity set, single", "<= 2.5", numberText(single, "set_size", "{:.2f}"));
   row("both causes chosen, double", "", longRate(both, "pair"));
+  row("a cause was chosen that is not there, single", "", longRate(single, "spurious"));
   row("calibration error, single and open", "<= 0.05", numberText(all, "calibration_error", "{:.3f}"));
+  if (all.contains("calibration_error_by_chance"))
+    row("... of perfect probabilities, by chance: mean, 95 % quantile", "",
+        fmt::format("{:.3f}, {:.3f}", all["calibration_error_by_chance"]["mean"].get<double>(),
+                    all["calibration_error_by_chance"]["high"].get<double>()));
+  row("calibration error, all kinds", "", numberText(all, "calibration_error_all_kinds", "{:.3f}"));
   row("open causes called unexplained, or no effect above probability 0.5", ">= 80 %", longRate(all, "open_detected"));
   row("false alarms without any cause", "<= 5 %", longRate(all, "false_alarm"));
   row("median shrink on held-out data, single and double (the oracle's is 100 %)", "",
       numberText(all, "shrink_median_percent", "{:.0f} %"));
   row("shrink at least 80 %", "", longRate(all, "shrink_at_least_80_percent"));
-  row("shrink at least 80 % of that of the true effect's best fit, where the answer lists it", "",
-      longRate(all, "shrink_at_least_80_percent_of_true_effect"));
+  row("shrink at least 80 % of the oracle's, single", "", longRate(single, "shrink_at_least_80_percent_of_true_effect"));
+  row("the oracle's shrink is in the answer, single", "", longRate(single, "true_effect_listed"));
   row("20 points above the nominal refit, gaps of three times the noise and more", "",
       longRate(all, "shrink_20_points_above_nominal_refit"));
   row("median seconds per case, one thread", "", numberText(all, "seconds_median", "{:.0f}"));
@@ -109,35 +118,74 @@ std::string groupTable(const std::string& title, const json& groups) {
   return text + "\n";
 }
 
+std::string followUpMisses(const std::vector<FollowUp>& follow_ups) {
+  std::string rows;
+  for (const FollowUp& one : follow_ups)
+    for (const std::string& miss : missesOf(one))
+      rows += fmt::format("| {} | {} | {:.1f} | {} | {} |\n", one.answer.name, one.answer.robot, one.answer.gap_over_noise,
+                          one.answer.truth, miss);
+  return rows.empty() ? "" : "| case | robot | gap / noise | true | what was missed |\n|---|---|---|---|---|\n" + rows + "\n";
+}
+
 /// What came of the answers; empty if that was not tried.
-std::string followed(const json& totals, std::size_t case_count) {
+std::string followed(const Score& score) {
+  const json totals = score.totals.value("follow_up", json::object());
   if (totals.empty()) return "";
   std::string text = fmt::format(
-      "## What came of the answers\n\nBy `musclesim blind follow`, on {} of {} answers.\n\n| measure | aim | found |\n|---|---|---|\n",
-      totals.at("followed_count").get<int>(), case_count);
+      "## What came of the answers\n\nBy `musclesim blind follow`, on {} of {} answers. Ambiguous are answers to single causes that name "
+      "an "
+      "effect which others cannot be told from.\n\n| measure | aim | found |\n|---|---|---|\n",
+      totals.at("followed_count").get<int>(), score.cases.size());
   auto row = [&](const char* what, const char* aim, const char* name) {
     text += fmt::format("| {} | {} | {} |\n", what, aim, longRate(totals, name));
   };
   row("true effect not among the candidates: a wrong cause with more than 0.9", "<= 5 %", "left_out_confidently_wrong");
-  row("true effect not among the candidates: unexplained", "", "left_out_unexplained");
-  row("true effect not among the candidates: an acceptable look-alike first", "", "left_out_look_alike");
-  row("ambiguous answers: after recording the proposed schedule the truth is first", ">= 80 %", "experiment_truth_first");
-  row("ambiguous answers: after recording the proposed schedule one effect is left", "", "experiment_alone");
+  row("... an acceptable look-alike", "", "left_out_look_alike");
+  row("... unexplained", "", "left_out_unexplained");
+  row("... a wrong cause with 0.9 or less", "", "left_out_unsure");
+  row("... no answer", "", "left_out_failed");
+  row("ambiguous answers: the truth is the single best before", "", "experiment_truth_first_before");
+  row("... after the proposed schedule", ">= 80 %", "experiment_truth_first");
+  row("... after it, where the ambiguity set held the truth", "", "experiment_truth_first_where_covered");
+  row("... after it, and nothing else is left", "", "experiment_alone");
   row("shrink by effects.json on a fresh recording within the reported interval", "", "fresh_within");
-  text += fmt::format("| median difference between that shrink and the reported one, points | | {} |\n",
+  row("... the interval is no wider than 20 points", "", "fresh_narrow");
+  row("... of these within the interval", "", "fresh_within_narrow");
+  text += fmt::format("| median width of the interval, points | | {} |\n", numberText(totals, "fresh_median_width_points", "{:.1f}"));
+  text += fmt::format("| median difference between that shrink and the reported one, points | | {} |\n\n",
                       numberText(totals, "fresh_median_difference_points", "{:.2f}"));
-  return text + "\n";
+  return text + followUpMisses(score.follow_ups);
+}
+
+/// What is wrong with the causes that were named; empty if nothing is.
+std::string wrongCause(const Judgement& j) {
+  if (j.kind == "null") return j.false_alarm.value_or(false) ? "false alarm" : "";
+  if (j.verdict == "failed") return "no answer: " + j.message;
+  if (j.kind == "open")
+    return j.open_detected.value_or(false) ? "" : j.verdict == "no_gap" ? "gap not seen" : "named a cause that it is not";
+  if (j.verdict == "no_gap") return "gap not seen";
+  if (j.kind == "double" && !j.pair.value_or(false)) return j.acceptable.value_or(false) ? "second cause missed" : "wrong causes";
+  if (j.acceptable.value_or(true)) return j.spurious.value_or(false) ? "a further cause that is not there" : "";
+  if (j.namesEffect() && j.top1.value_or(false)) return "component";
+  return std::string(j.namesEffect() ? "wrong cause" : "no cause named") + (j.covered.value_or(false) ? ", truth in the set" : "");
 }
 
 /// Why a case counts as failed; empty if it does not.
 std::string failureOf(const Judgement& j) {
-  if (j.kind == "null") return j.false_alarm.value_or(false) ? "false alarm" : "";
-  if (j.kind == "open") return j.open_detected.value_or(false) ? "" : "named a cause that it is not";
-  if (j.verdict == "no_gap") return "gap not seen";
-  if (!j.verdict_right) return "verdict";
-  if (j.kind == "double" && !j.pair.value_or(false)) return j.acceptable.value_or(false) ? "second cause missed" : "wrong causes";
-  if (j.acceptable.value_or(true)) return "";
-  return j.top1.value_or(false) ? "component" : j.covered.value_or(false) ? "wrong cause first, truth in the set" : "wrong cause";
+  constexpr double enough_share = 0.8;
+  std::vector<std::string> reasons;
+  if (const std::string wrong = wrongCause(j); !wrong.empty()) reasons.push_back(wrong);
+  if (reasons.empty() && !j.verdict_right) reasons.emplace_back("verdict");
+  if (reasons.empty() && j.oracle_share.value_or(1) < enough_share)
+    reasons.push_back(fmt::format("removes {:.0f} % of what the true effect does", percent * std::max(0.0, *j.oracle_share)));
+  if (j.stage && !*j.stage) reasons.emplace_back("stage");
+  return fmt::format("{}", fmt::join(reasons, "; "));
+}
+
+std::string said(const Judgement& j) {
+  if (j.verdict == "failed") return "nothing";
+  if (j.namesEffect()) return j.top;
+  return j.no_effect >= j.confidence() ? "no gap" : "none of these";
 }
 
 std::string failures(const Score& score) {
@@ -149,10 +197,8 @@ std::string failures(const Score& score) {
     const std::string failure = failureOf(j);
     if (failure.empty()) continue;
     ++count;
-    const bool none = j.top.empty() || j.none_of_these > j.top_probability;
     text += fmt::format("| {} | {} | {} | {} | {:.1f} | {} | {} | {:.2f} | {} | {} |\n", j.name, j.robot, j.kind, j.size, j.gap_over_noise,
-                        j.truth.empty() ? "none" : j.truth, none ? "none of these" : j.top, none ? j.none_of_these : j.top_probability,
-                        j.verdict, failure);
+                        j.truth.empty() ? "none" : j.truth, said(j), j.confidence(), j.verdict, failure);
   }
   return text + fmt::format("\n{} of {} cases.\n", count, score.cases.size());
 }
@@ -166,8 +212,7 @@ std::string pageText(const Score& score) {
          "![Share of causes found over the size of the gap](figures/blind_detectability.svg)\n\n"
          "![True stage against answered stage](figures/blind_confusion.svg)\n\n" +
          groupTable("kind", totals["by_kind"]) + groupTable("robot", totals["by_robot"]) + groupTable("size", totals["by_size"]) +
-         groupTable("effect", totals["by_effect"]) + followed(totals.value("follow_up", json::object()), score.cases.size()) +
-         failures(score);
+         groupTable("effect", totals["by_effect"]) + followed(score) + failures(score);
 }
 
 void writePage(const Score& score, const fs::path& folder) {

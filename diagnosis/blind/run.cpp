@@ -5,6 +5,7 @@
 #include <chrono>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "../parallel.h"
 #include "musclesim/diagnosis/diagnosis.h"
@@ -76,15 +77,6 @@ json costMembers(const RunOptions& options) {
   return members;
 }
 
-/// Answers of one check come from one program under one set of options.
-void requireSameProgram(const fs::path& folder, const std::string& name, const json& members) {
-  const json cost = readObject(costOf(folder, name));
-  for (const char* member : {"program_sha256", "candidates"})
-    if (cost.value(member, json()) != members[member])
-      throw BadParameter(
-          fmt::format("{}: was answered with another {}; remove {} to begin again", name, member, (folder / "answers").string()));
-}
-
 bool isAnswered(const fs::path& folder, const std::string& name) {
   return fs::exists(answerOf(folder, name)) && fs::exists(costOf(folder, name));
 }
@@ -102,9 +94,18 @@ bool answer(const fs::path& folder, const std::string& name, const RunOptions& o
   return true;
 }
 
+/// The commits that were noted when the answers were made.
+std::string commitsOf(const fs::path& folder, const std::vector<std::string>& names) {
+  std::set<std::string> commits;
+  for (const std::string& name : names) commits.insert(readObject(costOf(folder, name)).value("commit", ""));
+  commits.erase("");
+  return fmt::format("{}", fmt::join(commits, ", "));
+}
+
 void writeSummary(const fs::path& folder, const std::vector<std::string>& names, json members) {
   members["format"] = "musclesim-blind-answers-1";
   members["answers_sha256"] = sha256OfFiles(folder, answerFiles(folder));
+  if (const std::string commits = commitsOf(folder, names); !commits.empty()) members["commit"] = commits;
   for (const std::string& name : names) members["seconds"][name] = readObject(costOf(folder, name)).at("seconds");
   writeObject(members, folder / "answers.json");
 }
@@ -120,6 +121,14 @@ std::vector<std::string> answerFiles(const fs::path& folder) {
   return files;
 }
 
+void requireSameProgram(const fs::path& file, const json& members) {
+  const json made = readObject(file);
+  for (const char* member : {"program_sha256", "candidates"})
+    if (made.value(member, json()) != members.at(member))
+      throw BadParameter(
+          fmt::format("{}: was made with another {}; remove {} to begin again", file.string(), member, file.parent_path().string()));
+}
+
 RunSummary run(const fs::path& folder, const RunOptions& options) {
   for (const std::string& id : options.candidates) effectInfo(id);  // throws for an unknown one
   const json seal = readSeal(folder);
@@ -133,7 +142,7 @@ RunSummary run(const fs::path& folder, const RunOptions& options) {
   std::vector<std::string> open;
   for (const std::string& name : names) {
     if (isAnswered(folder, name)) {
-      requireSameProgram(folder, name, members);
+      requireSameProgram(costOf(folder, name), members);
       ++summary.answered;
     } else {
       open.push_back(name);
@@ -149,7 +158,8 @@ RunSummary run(const fs::path& folder, const RunOptions& options) {
   });
   for (const std::string& name : names)
     if (isAnswered(folder, name) && readObject(answerOf(folder, name)).value("verdict", "") == "failed") ++summary.failed;
-  if (summary.complete()) writeSummary(folder, names, members);
+  // What was sealed stays sealed: only new answers make a new seal.
+  if (summary.complete() && (done_now > 0 || !fs::exists(folder / "answers.json"))) writeSummary(folder, names, members);
   return summary;
 }
 

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,9 @@ struct RunSummary {
 /// Throws BadParameter if the key is within reach, if other answers were made by another program or with other
 /// candidates, and for unknown candidates.
 RunSummary run(const std::filesystem::path& folder, const RunOptions& options);
+
+/// Throws BadParameter if the file says that it was made by another program or with other candidates than `members`.
+void requireSameProgram(const std::filesystem::path& file, const nlohmann::json& members);
 
 /// A case's recordings, named relative to DIR, so that an answer does not depend on where DIR lies.
 std::vector<Recording> recordingsOf(const std::filesystem::path& folder, const std::string& name);

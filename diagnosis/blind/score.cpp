@@ -5,7 +5,6 @@
 #include <functional>
 #include <map>
 
-#include "follow_up.h"
 #include "look_alikes.h"
 #include "musclesim/error.h"
 #include "run.h"
@@ -48,6 +47,8 @@ void putRates(json& totals, const Cases& cases) {
                                                                               {"top3", &Judgement::top3},
                                                                               {"acceptable", &Judgement::acceptable},
                                                                               {"acceptable3", &Judgement::acceptable3},
+                                                                              {"named", &Judgement::named},
+                                                                              {"spurious", &Judgement::spurious},
                                                                               {"stage", &Judgement::stage},
                                                                               {"component", &Judgement::component},
                                                                               {"covered", &Judgement::covered},
@@ -58,25 +59,27 @@ void putRates(json& totals, const Cases& cases) {
   for (const auto& [name, member] : members) putRate(totals, name, cases, [m = member](const Judgement& j) { return j.*m; });
 }
 
-/// Shares of single and double cases: at least 80 %; at least 80 % of the true effect's best fit; at least 20 points above the nominal
-/// refit where the cause is at least three times the noise.
+/// Shares of single and double cases: at least 80 %; of single ones at least 80 % of the true effect's best fit; at least 20 points above
+/// the nominal refit where the cause is at least three times the noise. A nominal refit that makes it worse is none.
 void putShrink(json& totals, const Cases& cases) {
   constexpr double enough_percent = 80, enough_share = 0.8, enough_points = 20, large_gap = 3;
   putRate(totals, "shrink_at_least_80_percent", cases,
           [](const Judgement& j) { return j.shrink_percent ? std::optional(*j.shrink_percent >= enough_percent) : std::nullopt; });
   putRate(totals, "shrink_at_least_80_percent_of_true_effect", cases,
           [](const Judgement& j) { return j.oracle_share ? std::optional(*j.oracle_share >= enough_share) : std::nullopt; });
+  putRate(totals, "true_effect_listed", cases,
+          [](const Judgement& j) { return j.oracle_share ? std::optional(j.oracle_listed) : std::nullopt; });
   putRate(totals, "shrink_20_points_above_nominal_refit", cases, [](const Judgement& j) {
     if (!j.shrink_percent || j.gap_over_noise < large_gap) return std::optional<bool>();
-    return std::optional(*j.shrink_percent >= *j.nominal_refit_percent + enough_points);
+    return std::optional(*j.shrink_percent >= std::max(0.0, *j.nominal_refit_percent) + enough_points);
   });
   putNumber(totals, "shrink_median_percent", medianOf(valuesOf(cases, &Judgement::shrink_percent)));
 }
 
-std::vector<Claim> claimsOf(const Cases& cases) {
+std::vector<Claim> claimsOf(const Cases& cases, const std::function<bool(const Judgement&)>& counts) {
   std::vector<Claim> claims;
   for (const Judgement& j : cases)
-    if (j.claim) claims.push_back(*j.claim);
+    if (j.claim && counts(j)) claims.push_back(*j.claim);
   return claims;
 }
 
@@ -90,7 +93,7 @@ json grouped(const Cases& cases, const std::function<std::string(const Judgement
 
 json binsJson(const Cases& cases) {
   json bins = json::array();
-  for (const CalibrationBin& bin : calibrationBins(claimsOf(cases))) {
+  for (const CalibrationBin& bin : calibrationBins(claimsOfOneCause(cases))) {
     json entry = rateJson(bin.right);
     entry["mean_probability"] = bin.mean_probability;
     bins.push_back(entry);
@@ -107,9 +110,7 @@ json confusionOf(const Cases& cases) {
   json confusion = json::object();
   for (const Judgement& j : cases) {
     if (j.kind != "single" && j.kind != "open") continue;
-    const std::string given = j.verdict == "no_gap"                                  ? "no_gap"
-                              : j.top.empty() || j.none_of_these > j.top_probability ? "none_of_these"
-                                                                                     : idOf(j.top);
+    const std::string given = j.verdict == "no_gap" || j.verdict == "failed" ? j.verdict : j.namesEffect() ? idOf(j.top) : "none_of_these";
     json& cell = confusion[j.true_ids.front()][given];
     cell = cell.is_null() ? 1 : cell.get<int>() + 1;
   }
@@ -142,10 +143,17 @@ json caseJson(const Judgement& j) {
   put(object, "false_alarm", j.false_alarm);
   put(object, "probability_of_truth", j.probability_of_truth);
   put(object, "shrink_percent", j.shrink_percent);
+  put(object, "oracle_share", j.oracle_share);
+  put(object, "spurious", j.spurious);
+  if (!j.message.empty()) object["message"] = j.message;
   return object;
 }
 
 }  // namespace
+
+std::vector<Claim> claimsOfOneCause(const Cases& cases) {
+  return claimsOf(cases, [](const Judgement& j) { return j.kind == "single" || j.kind == "open"; });
+}
 
 json rateJson(const Rate& rate) {
   return {{"hits", rate.hits}, {"count", rate.count}, {"value", rate.value()}, {"low", rate.low()}, {"high", rate.high()}};
@@ -158,7 +166,10 @@ json totalsOf(const Cases& cases) {
   putNumber(totals, "probability_of_truth", meanOf(valuesOf(cases, &Judgement::probability_of_truth)));
   putNumber(totals, "probability_of_acceptable", meanOf(valuesOf(cases, &Judgement::probability_of_acceptable)));
   putNumber(totals, "set_size", meanOf(valuesOf(cases, &Judgement::set_size)));
-  putNumber(totals, "calibration_error", calibrationError(claimsOf(cases)));
+  putNumber(totals, "calibration_error", calibrationError(claimsOfOneCause(cases)));
+  if (const auto chance = calibrationErrorByChance(claimsOfOneCause(cases)))
+    totals["calibration_error_by_chance"] = {{"mean", chance->mean}, {"high", chance->high}};
+  putNumber(totals, "calibration_error_all_kinds", calibrationError(claimsOf(cases, [](const Judgement&) { return true; })));
   std::vector<double> seconds;
   for (const Judgement& j : cases) seconds.push_back(j.seconds);
   putNumber(totals, "seconds_median", medianOf(seconds));
@@ -166,7 +177,7 @@ json totalsOf(const Cases& cases) {
 }
 
 Score score(const fs::path& folder, const fs::path& key_file) {
-  Score result{readSeal(folder), readObject(folder / "answers.json"), {}, {}};
+  Score result{readSeal(folder), readObject(folder / "answers.json"), {}, {}, {}};
   requireSame(result.seal["key_sha256"], sha256OfFile(key_file), key_file, "the key was changed or is another one");
   requireSame(result.seal["recordings_sha256"], sha256OfFiles(folder, recordingFiles(folder)), folder, "recordings were changed");
   requireSame(result.answers.value("answers_sha256", ""), sha256OfFiles(folder, answerFiles(folder)), folder / "answers",
@@ -176,6 +187,7 @@ Score score(const fs::path& folder, const fs::path& key_file) {
     result.cases.push_back(judge(name, case_key, readObject(folder / "answers" / (name + ".json"))));
     result.cases.back().seconds = result.answers.at("seconds").value(name, 0.0);
   }
+  result.follow_ups = followUpsOf(folder, key.at("cases"));
   result.totals = {{"all", totalsOf(result.cases)},
                    {"by_kind", grouped(result.cases, [](const Judgement& j) { return j.kind; })},
                    {"by_robot", grouped(result.cases, [](const Judgement& j) { return j.robot; })},
@@ -183,7 +195,7 @@ Score score(const fs::path& folder, const fs::path& key_file) {
                    {"by_effect", grouped(result.cases, causesOf)},
                    {"confusion", confusionOf(result.cases)},
                    {"reliability", binsJson(result.cases)},
-                   {"follow_up", followUpTotals(folder)}};
+                   {"follow_up", followUpTotals(result.follow_ups)}};
   return result;
 }
 

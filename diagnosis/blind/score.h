@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "judge.h"
+#include "follow_up_score.h"
 
 namespace musclesim::blind {
 
@@ -14,8 +14,12 @@ namespace musclesim::blind {
 struct Score {
   nlohmann::json seal, answers;  ///< as in DIR
   std::vector<Judgement> cases;
-  nlohmann::json totals;  ///< see totalsOf, of all and by kind, robot, size, effect
+  std::vector<FollowUp> follow_ups;  ///< as far as there are
+  nlohmann::json totals;             ///< see totalsOf, of all and by kind, robot, size, effect
 };
+
+/// What was said of single and open causes.
+std::vector<Claim> claimsOfOneCause(const std::vector<Judgement>& cases);
 
 /// {"hits", "count", "value", "low", "high"}.
 nlohmann::json rateJson(const Rate& rate);

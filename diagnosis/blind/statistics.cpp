@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "musclesim/random.h"
+
 namespace musclesim::blind {
 
 double Rate::bound(double side) const {
@@ -44,6 +46,19 @@ std::optional<double> calibrationError(const std::vector<Claim>& claims) {
   double sum = 0;
   for (const CalibrationBin& bin : calibrationBins(claims)) sum += bin.right.count * std::abs(bin.mean_probability - bin.right.value());
   return sum / static_cast<double>(claims.size());
+}
+
+std::optional<ChanceError> calibrationErrorByChance(std::vector<Claim> claims) {
+  if (claims.empty()) return std::nullopt;
+  constexpr std::size_t draw_count = 10000;
+  RandomStream random(1, "blind.calibration");
+  std::vector<double> errors;
+  for (std::size_t draw = 0; draw < draw_count; ++draw) {
+    for (Claim& claim : claims) claim.right = random.uniform() < claim.probability;
+    errors.push_back(*calibrationError(claims));
+  }
+  std::ranges::sort(errors);
+  return ChanceError{*meanOf(errors), errors[draw_count * 95 / 100]};
 }
 
 }  // namespace musclesim::blind

@@ -42,4 +42,11 @@ std::vector<CalibrationBin> calibrationBins(const std::vector<Claim>& claims);
 /// Mean over claims of the distance between their bin's mean probability and its share of right answers; nothing without claims.
 std::optional<double> calibrationError(const std::vector<Claim>& claims);
 
+/// The error that as many claims with these probabilities would have if every one of them were right with just its probability: few claims
+/// have one by chance alone. Mean and 95 % quantile of 10 000 draws with a fixed seed.
+struct ChanceError {
+  double mean = 0, high = 0;
+};
+std::optional<ChanceError> calibrationErrorByChance(std::vector<Claim> claims);
+
 }  // namespace musclesim::blind

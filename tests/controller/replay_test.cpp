@@ -26,7 +26,7 @@ Recording threeRows() {
 }
 
 std::string refusal(const Recording& recording, int muscle_count = 2) {
-  return messageOf<BadParameter>([&] { ReplayController replay(recording, muscle_count); });
+  return messageOf<BadFile>([&] { ReplayController replay(recording, muscle_count); });
 }
 
 TEST(ReplayController, HoldsEachRowUntilTheNext) {

@@ -1,8 +1,10 @@
 // Answers written by hand against keys written by hand; the numbers were computed on paper.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "blind_answers.h"
 #include "diagnosis/blind/judge.h"
 #include "diagnosis/blind/look_alikes.h"
 #include "diagnosis/blind/page.h"
@@ -13,60 +15,7 @@
 namespace musclesim::blind {
 namespace {
 
-using nlohmann::json;
-
-using Labels = std::vector<std::string>;
-using Sets = std::vector<Labels>;
-
-json keyOf(const std::string& kind, const std::vector<json>& effects, const Sets& acceptable, double gap = 10) {
-  json stages = json::array();
-  for (const json& effect : effects) stages.push_back(effect["stage"]);
-  return {{"robot", "rig"},
-          {"kind", kind},
-          {"size", kind == "null" ? "none" : "clear"},
-          {"verdict", kind == "null"   ? "no_gap"
-                      : kind == "open" ? "unexplained"
-                                       : "effects_found"},
-          {"effects", effects},
-          {"acceptable", acceptable},
-          {"stages", stages},
-          {"gap_over_noise", gap}};
-}
-
-const json lag = {{"id", "valve_lag"}, {"component", "muscle_0"}, {"stage", "pressure"}};
-const json bias = {{"id", "sensor_bias"}, {"component", "signal_length_0"}, {"stage", "sensor"}};
-const json shaker = {{"id", "foreign.shaker"}, {"component", "hand"}, {"stage", "body"}};
-
-json answerOf(const std::string& verdict, const std::vector<json>& effects, double none, const json& more = json::object()) {
-  json answer = {{"verdict", verdict}, {"effects", effects}, {"none_of_these", none}};
-  answer.update(more);
-  return answer;
-}
-
-json candidate(const std::string& id, const std::string& component, double probability, double shrink_percent = 0) {
-  return {{"id", id}, {"component", component}, {"probability", probability}, {"shrink_percent", shrink_percent}};
-}
-
-/// Right, with 0.7 on the truth and 0.2 on an acceptable look-alike.
-Judgement rightSingle() {
-  return judge("a", keyOf("single", {lag}, {{"valve_lag@*", "viscous_loss@*"}}),
-               answerOf("effects_found",
-                        {candidate("valve_lag", "all", 0.7, 90), candidate("viscous_loss", "all", 0.2), candidate("creep", "all", 0.1)}, 0,
-                        {{"ambiguity_set", Labels{"valve_lag@all", "viscous_loss@all"}},
-                         {"chosen", Labels{"valve_lag@all"}},
-                         {"where", json::array({json{{"stage", "pressure"}}})},
-                         {"gap", {{"shrink_percent", 90.0}, {"nominal_refit_shrink_percent", 60.0}}}}));
-}
-
-/// A wrong name with 0.95, the truth second with 0.05 and a shrink of 80 %.
-Judgement wrongSingle() {
-  return judge("b", keyOf("single", {lag}, {{"valve_lag@*"}}),
-               answerOf("effects_found", {candidate("creep", "all", 0.95, 40), candidate("valve_lag", "muscle_0", 0.05, 80)}, 0,
-                        {{"ambiguity_set", Labels{"creep@all"}},
-                         {"chosen", Labels{"creep@all"}},
-                         {"where", json::array({json{{"stage", "force"}}})},
-                         {"gap", {{"shrink_percent", 40.0}, {"nominal_refit_shrink_percent", 30.0}}}}));
-}
+using namespace answers;
 
 TEST(BlindJudge, CountsARightAndAWrongAnswer) {
   const Judgement right = rightSingle(), wrong = wrongSingle();
@@ -75,7 +24,9 @@ TEST(BlindJudge, CountsARightAndAWrongAnswer) {
   EXPECT_DOUBLE_EQ(*right.probability_of_acceptable, 0.9);
   EXPECT_DOUBLE_EQ(*right.set_size, 2);
   EXPECT_DOUBLE_EQ(*right.oracle_share, 1);
-  EXPECT_FALSE(*wrong.top1 || *wrong.acceptable || *wrong.stage || *wrong.covered || wrong.component);
+  EXPECT_TRUE(*right.named && right.oracle_listed && !*right.spurious);
+  EXPECT_FALSE(*wrong.top1 || *wrong.acceptable || *wrong.named || *wrong.stage || *wrong.covered || wrong.component);
+  EXPECT_TRUE(*wrong.spurious);
   EXPECT_TRUE(*wrong.top3);
   EXPECT_DOUBLE_EQ(*wrong.oracle_share, 0.5);
   EXPECT_DOUBLE_EQ(wrong.claim->probability, 0.95);
@@ -87,10 +38,49 @@ TEST(BlindJudge, WantsBothCausesOfAPair) {
   const std::vector<json> effects = {candidate("valve_lag", "all", 0.9), candidate("sensor_bias", "signal_length_0", 0.9)};
   const Judgement both =
       judge("c", key, answerOf("effects_found", effects, 0, {{"chosen", Labels{"valve_lag@all", "sensor_bias@signal_length_0"}}}));
-  EXPECT_TRUE(*both.pair && *both.covered);
+  EXPECT_TRUE(*both.pair && *both.covered && !*both.spurious);
   const Judgement one = judge("c", key, answerOf("effects_found", effects, 0, {{"chosen", Labels{"valve_lag@all"}}}));
   EXPECT_FALSE(*one.pair || *one.covered);
-  EXPECT_FALSE(both.claim);
+  EXPECT_TRUE(both.claim->right) << "the first is one of the causes";
+}
+
+json explanation(const Labels& effects, double probability) {
+  return {{"effects", effects}, {"probability", probability}};
+}
+
+/// Of a pair only explanations that hold both count as the truth.
+TEST(BlindJudge, DoesNotTakeOneCauseForTwo) {
+  const json key = keyOf("double", {lag, bias}, {{"valve_lag@*"}, {"sensor_bias@signal_length_0"}});
+  const json explanations =
+      json::array({explanation({"valve_lag@all"}, 0.6), explanation({"valve_lag@all", "sensor_bias@signal_length_0"}, 0.3)});
+  const std::vector<json> effects = {candidate("valve_lag", "all", 0.9), candidate("sensor_bias", "signal_length_0", 0.3)};
+  EXPECT_DOUBLE_EQ(*judge("c", key, answerOf("effects_found", effects, 0.1, {{"explanations", explanations}})).probability_of_truth, 0.3);
+}
+
+/// The truth comes first among the effects, but "none of these" is what was said.
+TEST(BlindJudge, KnowsWhatWasSaid) {
+  const Judgement j =
+      judge("h", keyOf("single", {lag}, {{"valve_lag@*"}}), answerOf("unexplained", {candidate("valve_lag", "all", 0.3)}, 0.7));
+  EXPECT_TRUE(*j.acceptable);
+  EXPECT_FALSE(*j.named || j.namesEffect() || j.claim->right);
+  EXPECT_DOUBLE_EQ(j.confidence(), 0.7);
+}
+
+/// A second cause that is not there; and a cause that the answer does not list at all.
+TEST(BlindJudge, CountsWhatIsNotThereAndWhatIsNotListed) {
+  const json key = keyOf("single", {lag}, {{"valve_lag@*"}});
+  const std::vector<json> effects = {candidate("valve_lag", "all", 0.9, 95), candidate("creep", "all", 0.9, 10)};
+  const json gap = {{"shrink_percent", 60.0}, {"nominal_refit_shrink_percent", -81.0}};
+  EXPECT_TRUE(*judge("k", key, answerOf("effects_found", effects, 0, {{"chosen", Labels{"valve_lag@all", "creep@all"}}})).spurious);
+  const Judgement unlisted = judge("k", key, answerOf("effects_found", {candidate("creep", "all", 1, 60)}, 0, {{"gap", gap}}));
+  EXPECT_FALSE(unlisted.oracle_listed);
+  EXPECT_DOUBLE_EQ(*unlisted.oracle_share, 0.6);
+  const Judgement nothing =
+      judge("l", key, answerOf("unexplained", {}, 1, {{"gap", {{"shrink_percent", 0.0}, {"nominal_refit_shrink_percent", -81.0}}}}));
+  const json totals = totalsOf({unlisted, nothing});
+  EXPECT_EQ(totals["shrink_at_least_80_percent_of_true_effect"]["hits"], 0);
+  EXPECT_EQ(totals["shrink_at_least_80_percent_of_true_effect"]["count"], 2);
+  EXPECT_EQ(totals["shrink_20_points_above_nominal_refit"]["hits"], 1) << "nothing found is no better than a refit that makes it worse";
 }
 
 TEST(BlindJudge, KnowsOpenCausesAndFalseAlarms) {
@@ -99,6 +89,7 @@ TEST(BlindJudge, KnowsOpenCausesAndFalseAlarms) {
   EXPECT_TRUE(*judge("d", open, answerOf("effects_found", {candidate("creep", "all", 0.5)}, 0.2)).open_detected);
   const Judgement named = judge("d", open, answerOf("effects_found", {candidate("creep", "all", 0.8)}, 0.2));
   EXPECT_FALSE(*named.open_detected || named.claim->right);
+  EXPECT_FALSE(*judge("d", open, answerOf("no_gap", {}, 0)).open_detected) << "a gap that was not seen is not known to be foreign";
   EXPECT_FALSE(*judge("e", null, answerOf("no_gap", {}, 0)).false_alarm);
   EXPECT_TRUE(*judge("e", null, answerOf("unexplained", {}, 0)).false_alarm);
 }
@@ -145,6 +136,16 @@ TEST(BlindStatistics, HasWilsonsInterval) {
   EXPECT_DOUBLE_EQ(*medianOf({3, 1, 2, 10}), 2.5);
 }
 
+/// One claim with probability p errs by 1 - p with p and by p otherwise: 2 p (1 - p) in the mean. Many claims err by less.
+TEST(BlindStatistics, KnowsTheErrorThatChanceMakes) {
+  const auto one = calibrationErrorByChance({{0.7, true}});
+  EXPECT_NEAR(one->mean, 2 * 0.7 * 0.3, 0.01);
+  EXPECT_NEAR(one->high, 0.7, 1e-9);
+  const auto many = calibrationErrorByChance(std::vector<Claim>(100, {0.7, true}));
+  EXPECT_NEAR(many->mean, std::sqrt(2 / 3.14159 * 0.7 * 0.3 / 100), 0.002) << "mean of |a normal number|";
+  EXPECT_FALSE(calibrationErrorByChance({}));
+}
+
 TEST(BlindLookAlikes, DependOnWhatIsMeasured) {
   Simulation simulation;
   const Robot& elbow = simulation.build("elbow");
@@ -169,9 +170,18 @@ TEST(BlindPage, ShowsEveryFailure) {
                   {"by_effect", json::object()}};
   score.seal = score.answers = json::object();
   const std::string page = pageText(score);
-  EXPECT_TRUE(contains(page, "| b | rig | single | clear | 10.0 | valve_lag@muscle_0 | creep@all | 0.95 | effects_found | wrong cause |"));
+  EXPECT_TRUE(
+      contains(page, "| b | rig | single | clear | 10.0 | valve_lag@muscle_0 | creep@all | 0.95 | effects_found | wrong cause; stage |"));
   EXPECT_TRUE(contains(page, "1 of 2 cases."));
   EXPECT_TRUE(contains(page, "50 %, 1 of 2, 9 .. 91 %"));
+  EXPECT_FALSE(contains(page, "What came of the answers")) << "nothing was followed up";
+  FollowUp one = followUp(wrongSingle());
+  one.left_out = wrongSingle();
+  score.follow_ups = {one};
+  score.totals["follow_up"] = followUpTotals(score.follow_ups);
+  const std::string followed = pageText(score);
+  EXPECT_TRUE(contains(followed, "| true effect not among the candidates: a wrong cause with more than 0.9 | <= 5 % | 100 %, 1 of 1,"));
+  EXPECT_TRUE(contains(followed, "| b | rig | 10.0 | valve_lag@muscle_0 | without the true effect: effects_found, creep@all 0.95 |"));
 }
 
 }  // namespace

@@ -204,6 +204,46 @@ TEST_F(PushedRig, StrengthsThatDoNothingAreLeftOut) {
   EXPECT_EQ(fresh.front().coordinateCount(), 3);
 }
 
+class TiltedRig : public Rig {
+ protected:
+  TiltedRig() : Rig({{"base_tilt", "base", {{"tilt_z_deg", 6.0}}}}, 0.05) {}
+};
+
+/// On the rig a tilt to the front and one to the side do the same, and in either direction: one of them is left, and it explains the gap.
+TEST_F(TiltedRig, OfStrengthsThatActAlikeOneIsLeft) {
+  options.candidates = {"base_tilt"};
+  std::vector<Suspect> all = suspects(plant, options), fresh = all;
+  const Eigen::VectorXd nominal = both.predicted(Model{});
+  const std::vector<Signature> looks = screen(both, all, nominal, Model{}, Strengths::adapted, 1, [] {});
+  ASSERT_EQ(all.front().coordinateCount(), 1);
+  const double before = both.logMisfit(both.measured() - nominal);
+  EXPECT_LT(looks.front().log_misfit, 0.2 * before);
+  EXPECT_LT(screen(both, fresh, nominal, Model{}, Strengths::kept, 1, [] {}).front().log_misfit, 0.2 * before)
+      << "two that act alike do not drive each other against their bounds";
+}
+
+class AnotherLaw : public Rig {
+ protected:
+  AnotherLaw() : Rig({{"force_law", "muscle_0", law}}, 0.05) {}
+  static inline const std::map<std::string, Parameter::Value> law = {
+      {"law", std::string("corrected")}, {"bore_N", -1.0}, {"braid_N", -1.9}, {"stretch_N", 0.15}, {"threshold_N", 0.05}};
+};
+
+/// Dry friction in the muscle swallows small changes: derivatives by small differences point nowhere.
+TEST_F(AnotherLaw, IsFittedThroughDryFriction) {
+  options.candidates = {"force_law"};
+  std::vector<Suspect> all = suspects(plant, options);
+  const Eigen::VectorXd nominal = both.predicted(Model{});
+  screen(both, all, nominal, Model{}, Strengths::adapted, 1, [] {});
+  FitProblem problem;
+  problem.start = Eigen::VectorXd::Constant(all.front().coordinateCount(), -0.3);
+  problem.clamped = [&](const Eigen::VectorXd& z) { return all.front().clamped(z); };
+  problem.predicted = [&](const Eigen::VectorXd& z) { return both.predicted(Model{{all.front().at(z)}, {}}); };
+  const double before = both.logMisfit(both.measured() - nominal);
+  EXPECT_GT(before, 2);
+  EXPECT_LT(fit(both, problem, 8).log_misfit, 0.1 * before);
+}
+
 TEST(Drawing, ShowsMusclesBonesAndJoints) {
   Simulation simulation;
   simulation.build("elbow");

@@ -42,6 +42,14 @@ TEST(VerdictSentence, SaysWhereWhichHowFarAndWhatElse) {
     EXPECT_TRUE(contains(text, part)) << part << "\n" << text;
 }
 
+TEST(VerdictSentence, DoesNotNameAStageThatIsHardlyAheadOfTheNext) {
+  Diagnosis d = lagFound();
+  d.where = {{"pressure", "muscle_1", "", 0.27}, {"sensor", "signal_pressure_1", "", 0.26}, {"command", "all", "", 0.25}};
+  EXPECT_EQ(whereSentence(d),
+            "These signals do not tell at which stage the gap arises: pressure (muscle 1, 27 %) or sensor (signal pressure 1, 26 %) come "
+            "nearest");
+}
+
 TEST(VerdictSentence, LeavesOutWhatSaysNothing) {
   Diagnosis d = lagFound();
   d.effects.front().parameters["fill_time_constant_s"] = {};

@@ -36,6 +36,20 @@ TEST_F(PlantedRig, ExcessIsTheLogarithmOfTheDistanceBeyondTheUsualRange) {
   EXPECT_EQ(limit.excess(z), 0);
 }
 
+/// Twenty-five times what is usual, whatever the first look made of the typical value.
+TEST_F(PlantedRig, BoundsAreThoseOfTheUsualRange) {
+  for (const double share : {1.0, 0.01}) {
+    Suspect leak = suspect("leak", "muscle_0"), spring = suspect("series_elasticity", "muscle_0");
+    const double usual_per_s = effectInfo("leak").parameters.front().usual_high,
+                 soft = effectInfo("series_elasticity").parameters.front().usual_low;
+    leak.weaken(leak.strengths().front(), share);
+    spring.weaken(spring.strengths().front(), share);
+    const Eigen::VectorXd far = Eigen::VectorXd::Constant(leak.coordinateCount(), 1e9);
+    EXPECT_NEAR(leak.valuesAt(leak.clamped(far)).front().second, 25 * usual_per_s, 1e-9);
+    EXPECT_NEAR(spring.valuesAt(spring.clamped(Eigen::VectorXd::Constant(spring.coordinateCount(), 1e9))).front().second, soft / 25, 1e-9);
+  }
+}
+
 TEST_F(PlantedRig, WhatHasNoUsualRangeHasNoExcess) {
   const Suspect bias = suspect("sensor_bias", "signal_length_0");
   EXPECT_EQ(bias.excess(Eigen::VectorXd::Constant(bias.coordinateCount(), 40)), 0);

@@ -44,6 +44,13 @@ TEST_F(DiagnoseCommand, BadRecordingsAreBadFiles) {
     EXPECT_EQ(result.status, 3) << file << ": " << result.err;
     EXPECT_TRUE(contains(result.err, words) && contains(result.err, file)) << result.err;
   }
+  write("unknown", 60, 1, "rigg");
+  for (const auto& [file, words] :
+       {std::pair("other.csv", "no complete command_1"), std::pair("unknown.csv", "unknown.json: there is no robot")}) {
+    const ProgramResult result = diagnose({file});
+    EXPECT_EQ(result.status, 3) << file << ": " << result.err;
+    EXPECT_TRUE(contains(result.err, words)) << result.err;
+  }
   EXPECT_EQ(diagnose({"good.csv", "other.csv"}).status, 3);
   EXPECT_EQ(diagnose({"good.csv", "good.csv"}).status, 3);
 }

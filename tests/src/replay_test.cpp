@@ -98,12 +98,13 @@ TEST_F(ReplayCommand, RefusesBadInput) {
   write("rig.csv", "time_s,command_0,length_0_mm\n0,0.5,200\n0.01,1.5,200\n");
   expectRefused({"replay", "rig.csv"}, 3, "rig.csv:3:");
   write("rig.csv", "time_s,command_0,command_1,length_0_mm\n0,0.5,0.5,200\n0.01,0.5,0.5,200\n");
-  expectRefused({"replay", "rig.csv"}, 2, "command");
+  expectRefused({"replay", "rig.csv"}, 3, "command");
   write("rig.csv", "time_s,command_0,length_0_mm\n0,0.5,200\n0.01,0.5,200\n");
   expectRefused({"replay", "rig.csv", "--set", "rig.lod_kg=2"}, 2, "rig.load_kg");
   expectRefused({"replay", "rig.csv", "--out", "no/such/folder/x.csv"}, 5, "no/such/folder");
   write("rig.json", R"({"format": "musclesim-recording-1", "robot": "rigg"})");
-  expectRefused({"replay", "rig.csv"}, 2, "rigg");
+  expectRefused({"replay", "rig.csv"}, 3, "rig.json: there is no robot \"rigg\"");
+  expectRefused({"replay", "rig.csv", "--robot", "elboww"}, 2, "elboww");
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace musclesim {
 /// Not in the registry, since it is made from a recording. The recording is copied as far as needed.
 class ReplayController final : public Controller {
  public:
-  /// Throws BadParameter unless the recording has rows at strictly increasing times and, in each, commands "command_0" to
+  /// Throws BadFile unless the recording has rows at strictly increasing times and, in each, commands "command_0" to
   /// "command_<muscle_count - 1>" in 0..1 and no others.
   ReplayController(const Recording& recording, int muscle_count);
   Action output(const State& state) override;

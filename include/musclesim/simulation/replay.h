@@ -43,13 +43,14 @@ struct ReplayResult {
   std::optional<std::string> divergence;  ///< the message, if it diverged
 };
 
-/// Options for a simulation of the recording's plant: physics, step, parameters of the robot.
+/// Options for a simulation of the recording's plant: physics, step, parameters of the robot. Throws BadFile if the recording names a robot
+/// that is not registered and the options none.
 SimulationOptions simulationOptionsFor(const RecordingInfo& info, const std::string& source, const ReplayOptions& options = {});
 
 /// Simulates the plant of a recording under its commands, each held until the next row, with its active effects and those of the options.
 /// The simulated recording names both as its active effects. Each call builds a simulation of its own, so that any number can run in as
-/// many threads. Throws BadParameter if the robot has another number of muscles than the recording has commands, or for parameters unknown
-/// to the model.
+/// many threads. Throws BadFile if the robot is not registered or has another number of muscles than the recording has commands,
+/// BadParameter for parameters unknown to the model.
 ReplayResult replayRecording(const Recording& recording, const ReplayOptions& options = {});
 
 /// Error of every signal of `simulated` that `measured` also has, row by row; commands are not compared.

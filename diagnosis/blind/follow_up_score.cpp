@@ -1,0 +1,143 @@
+#include "follow_up_score.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <functional>
+
+#include "follow_up.h"
+#include "score.h"
+#include "seal.h"
+
+namespace musclesim::blind {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+constexpr double confident = 0.9, wide_points = 20;
+
+FreshShrink freshOf(const json& object) {
+  const json& interval = object.at("interval_percent");
+  return {object.at("shrink_percent"), object.at("reported_percent"), interval.at(0), interval.at(1), object.at("diverged")};
+}
+
+FollowUp followUpOf(const fs::path& folder, const std::string& name, const json& key) {
+  const json noted = readObject(followUpFile(folder, name));
+  FollowUp result{judge(name, key, readObject(folder / "answers" / (name + ".json"))), {}, {}, {}};
+  if (noted.contains("left_out")) result.left_out = judge(name, key, noted["left_out"]);
+  if (noted.contains("experiment")) result.experiment = judge(name, key, noted["experiment"]);
+  if (noted.contains("fresh")) result.fresh = freshOf(noted["fresh"]);
+  return result;
+}
+
+/// Adds a rate over the follow-ups of which `hit` tells something.
+void putRate(json& totals, const std::string& name, const std::vector<FollowUp>& follow_ups,
+             const std::function<std::optional<bool>(const FollowUp&)>& hit) {
+  Rate rate;
+  for (const FollowUp& one : follow_ups)
+    if (const auto value = hit(one)) rate.add(*value);
+  if (rate.count) totals[name] = rateJson(rate);
+}
+
+void putLeftOut(json& totals, const std::vector<FollowUp>& follow_ups) {
+  for (const auto& [name, what] :
+       {std::pair("left_out_failed", WithoutTruth::failed), std::pair("left_out_confidently_wrong", WithoutTruth::confidently_wrong),
+        std::pair("left_out_look_alike", WithoutTruth::look_alike), std::pair("left_out_unexplained", WithoutTruth::unexplained),
+        std::pair("left_out_unsure", WithoutTruth::unsure)})
+    putRate(totals, name, follow_ups, [what = what](const FollowUp& one) {
+      return one.left_out ? std::optional(withoutTruth(*one.left_out) == what) : std::nullopt;
+    });
+}
+
+void putExperiment(json& totals, const std::vector<FollowUp>& follow_ups) {
+  auto put = [&](const char* name, bool (*counts)(const Judgement& before), bool (*hit)(const FollowUp&)) {
+    putRate(totals, name, follow_ups,
+            [&](const FollowUp& one) { return one.experiment && counts(one.answer) ? std::optional(hit(one)) : std::nullopt; });
+  };
+  auto any = [](const Judgement&) { return true; };
+  auto after = [](const FollowUp& one) { return namesTruth(*one.experiment); };
+  put("experiment_truth_first_before", any, [](const FollowUp& one) { return namesTruth(one.answer); });
+  put("experiment_truth_first", any, after);
+  put(
+      "experiment_truth_first_where_covered", [](const Judgement& before) { return before.covered.value_or(false); }, after);
+  put("experiment_alone", any, [](const FollowUp& one) { return namesTruth(*one.experiment) && one.experiment->set_size == 1; });
+}
+
+void putFresh(json& totals, const std::vector<FollowUp>& follow_ups) {
+  auto put = [&](const char* name, bool (*counts)(const FreshShrink&), bool (*hit)(const FreshShrink&)) {
+    putRate(totals, name, follow_ups,
+            [&](const FollowUp& one) { return one.fresh && counts(*one.fresh) ? std::optional(hit(*one.fresh)) : std::nullopt; });
+  };
+  auto any = [](const FreshShrink&) { return true; };
+  auto narrow = [](const FreshShrink& fresh) { return fresh.width() <= wide_points; };
+  put("fresh_within", any, [](const FreshShrink& fresh) { return fresh.isWithin(); });
+  put("fresh_narrow", any, narrow);
+  put("fresh_within_narrow", narrow, [](const FreshShrink& fresh) { return fresh.isWithin(); });
+  std::vector<double> difference, width;
+  for (const FollowUp& one : follow_ups) {
+    if (!one.fresh) continue;
+    if (!one.fresh->diverged) difference.push_back(std::abs(one.fresh->shrink_percent - one.fresh->reported_percent));
+    width.push_back(one.fresh->width());
+  }
+  if (const auto median = medianOf(difference)) totals["fresh_median_difference_points"] = *median;
+  if (const auto median = medianOf(width)) totals["fresh_median_width_points"] = *median;
+}
+
+}  // namespace
+
+WithoutTruth withoutTruth(const Judgement& answer) {
+  if (answer.verdict == "failed") return WithoutTruth::failed;
+  const bool look_alike = answer.acceptable.value_or(false);
+  if (answer.verdict == "effects_found" && answer.top_probability > confident && !look_alike) return WithoutTruth::confidently_wrong;
+  if (answer.verdict != "effects_found" || !answer.namesEffect()) return WithoutTruth::unexplained;
+  return look_alike ? WithoutTruth::look_alike : WithoutTruth::unsure;
+}
+
+bool namesTruth(const Judgement& answer) {
+  return answer.verdict == "effects_found" && answer.named.value_or(false);
+}
+
+bool isAmbiguous(const Judgement& answer) {
+  return answer.kind == "single" && answer.set_size.value_or(1) > 1 && answer.namesEffect();
+}
+
+std::vector<FollowUp> followUpsOf(const fs::path& folder, const json& cases) {
+  std::vector<FollowUp> follow_ups;
+  for (const auto& [name, key] : cases.items())
+    if (isFollowed(folder, name)) follow_ups.push_back(followUpOf(folder, name, key));
+  return follow_ups;
+}
+
+json followUpTotals(const std::vector<FollowUp>& follow_ups) {
+  if (follow_ups.empty()) return json::object();
+  json totals = {{"followed_count", follow_ups.size()}};
+  putLeftOut(totals, follow_ups);
+  putExperiment(totals, follow_ups);
+  putFresh(totals, follow_ups);
+  return totals;
+}
+
+std::vector<std::string> missesOf(const FollowUp& follow_up) {
+  std::vector<std::string> misses;
+  auto said = [](const Judgement& j) {
+    return j.verdict == "failed"                       ? "failed: " + j.message
+           : j.verdict == "no_gap" || !j.namesEffect() ? fmt::format("{}, none of these {:.2f}", j.verdict, j.none_of_these)
+                                                       : fmt::format("{}, {} {:.2f}", j.verdict, j.top, j.top_probability);
+  };
+  if (follow_up.left_out)
+    if (const WithoutTruth without = withoutTruth(*follow_up.left_out);
+        without == WithoutTruth::failed || without == WithoutTruth::confidently_wrong)
+      misses.push_back("without the true effect: " + said(*follow_up.left_out));
+  if (follow_up.experiment && !namesTruth(*follow_up.experiment))
+    misses.push_back("after the proposed schedule: " + said(*follow_up.experiment));
+  if (const auto& fresh = follow_up.fresh; fresh && !fresh->isWithin())
+    misses.push_back(fresh->diverged
+                         ? std::string("on a fresh recording the model with the effects diverged")
+                         : fmt::format("on a fresh recording {:.1f} % instead of {:.1f} ({:.1f} to {:.1f})", fresh->shrink_percent,
+                                       fresh->reported_percent, fresh->low_percent, fresh->high_percent));
+  return misses;
+}
+
+}  // namespace musclesim::blind

@@ -1,0 +1,131 @@
+// Cross-validation: explanations are judged by recordings that their numbers were not fitted to.
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "attribute.h"
+#include "data_checks.h"
+#include "parallel.h"
+
+namespace musclesim {
+
+/// The step to where the linearised problem is best without some stretches, weighted anew five times. Coordinates that reach a bound, or
+/// go farther than a typical strength or twice where they are, stay there.
+Eigen::VectorXd Attributor::stepWithout(const std::set<std::size_t>& left_out, const Explanation& explanation,
+                                        const Eigen::MatrixXd& jacobian) const {
+  constexpr int reweightings = 5;
+  constexpr double damping = 1e-3;  // what changes nothing stays where it is
+  const Eigen::VectorXd reach = explanation.z.cwiseAbs().cwiseMax(1.0);
+  Eigen::VectorXd step = Eigen::VectorXd::Zero(jacobian.cols()), kept = step;
+  Eigen::MatrixXd free = jacobian;
+  for (int i = 0; i < reweightings && step.size() > 0; ++i) {
+    Eigen::VectorXd weights = fit_.weights(explanation.residual - jacobian * step);
+    for (const Comparison::Cell& cell : fit_.cells())
+      if (left_out.contains(cell.stretch)) weights.segment(cell.first, cell.count()).setZero();
+    const Eigen::MatrixXd weighted = weights.asDiagonal() * free;
+    Eigen::MatrixXd normal = weighted.transpose() * weighted;
+    normal.diagonal().array() += damping;
+    step = kept + normal.ldlt().solve(weighted.transpose() * weights.cwiseProduct(explanation.residual - jacobian * kept));
+    const Eigen::VectorXd possible =
+        clampedAll(explanation.suspects, explanation.z + step.cwiseMax(-reach).cwiseMin(reach)) - explanation.z;
+    for (Eigen::Index k = 0; k < step.size(); ++k)
+      if (possible[k] != step[k] && std::abs(possible[k] - step[k]) > 1e-9) {
+        kept[k] = step[k] = possible[k];
+        free.col(k).setZero();
+      }
+  }
+  return step;
+}
+
+/// Misfit on the stretches that are not left out.
+double Attributor::misfitWithout(const std::set<std::size_t>& left_out, const Explanation& explanation) const {
+  double sum = 0;
+  for (std::size_t k = 0; k < one_by_one_.size(); ++k) {
+    if (left_out.contains(k)) continue;
+    const Eigen::VectorXd predicted = one_by_one_[k].predicted(modelOf(explanation));
+    on_simulation_();
+    sum += one_by_one_[k].logMisfit(predicted.size() ? Eigen::VectorXd(one_by_one_[k].measured() - predicted) : predicted);
+  }
+  return sum;
+}
+
+/// The explanation moved by a step, or by as much of it as does not fit the stretches that are not left out worse.
+Explanation Attributor::movedWithout(const std::set<std::size_t>& left_out, const Explanation& explanation, Eigen::VectorXd step) const {
+  constexpr int halving_count = 3;
+  constexpr double worse = 0.02;  // misfit that is no reason to go less far
+  Explanation moved = explanation;
+  const double before = step.size() ? misfitWithout(left_out, explanation) : 0;
+  for (int i = 0; i < halving_count && step.size(); ++i, step *= 0.5) {
+    moved.z = clampedAll(explanation.suspects, explanation.z + step);
+    if (misfitWithout(left_out, moved) < before + worse) return moved;
+  }
+  return explanation;
+}
+
+/// Leave-one-out cross-validation (Stone 1974): each stretch as predicted by the numbers that fit the others; one with the same commands is
+/// none of those. They differ from the fit to all by the steps of the linearised problem with and without it, made shorter where that fits
+/// the others worse. Where the model diverges with them, the gap is what is left. Tuned numbers stay, since the model without effects keeps
+/// them too.
+void Attributor::predictFromOthers(Explanation& explanation) const {
+  FitProblem problem = problemOf(explanation, fit_, Fidelity::coarse);
+  const Eigen::Index effect_count = explanation.z.size();
+  const Eigen::MatrixXd jacobian =
+      effect_count ? derivatives(fit_, problem, problem.start).leftCols(effect_count).eval() : Eigen::MatrixXd(fit_.size(), 0);
+  const Eigen::VectorXd with_all = stepWithout({}, explanation, jacobian);
+  Eigen::VectorXd unseen = explanation.residual;
+  for (std::size_t k = 0; k < one_by_one_.size(); ++k) {
+    if (plant_.interrupted()) return;
+    const std::set<std::size_t> left_out = sameCommandsAs(k);
+    const Explanation without = movedWithout(left_out, explanation, stepWithout(left_out, explanation, jacobian) - with_all);
+    const Comparison& one = one_by_one_[k];
+    Eigen::VectorXd left = one.predicted(modelOf(without));
+    on_simulation_();
+    const bool goes_on = left.size() == one.size() && left.allFinite();
+    if (goes_on) left = one.measured() - left;
+    for (const Comparison::Cell& cell : fit_.cells()) {
+      if (cell.stretch != k) continue;
+      const Comparison::Cell& same = *std::ranges::find_if(
+          one.cells(), [&](const Comparison::Cell& other) { return other.signal == cell.signal && other.block == cell.block; });
+      const Eigen::VectorXd& source = goes_on ? left : nominal_residual_;
+      unseen.segment(cell.first, cell.count()) = source.segment(goes_on ? same.first : cell.first, cell.count());
+    }
+  }
+  explanation.unseen = unseen;
+}
+
+/// The stretch itself and its repeats.
+std::set<std::size_t> Attributor::sameCommandsAs(std::size_t stretch) const {
+  auto recordingOf = [&](std::size_t k) -> const Recording& {
+    return plant_.recordings()[static_cast<std::size_t>(fit_.stretches()[k].recording)];
+  };
+  std::set<std::size_t> result = {stretch};
+  for (std::size_t k = 0; k < fit_.stretches().size(); ++k)
+    if (sameCommands(recordingOf(k), recordingOf(stretch))) result.insert(k);
+  return result;
+}
+
+/// Judges every explanation that is not out of the question by stretches that it has not seen, and its effects alone with it, until all of
+/// those have been.
+void Attributor::crossCheck() {
+  constexpr double out_of_the_question = 0.003;
+  if (sameCommandsAs(0).size() == fit_.stretches().size()) return;
+  if (one_by_one_.empty())
+    for (const Stretch& stretch : fit_.stretches()) one_by_one_.emplace_back(plant_, std::vector{stretch}, Comparison::Averages::with);
+  while (!plant_.interrupted()) {
+    std::set<std::size_t> members;
+    for (const Explanation& explanation : result_.explanations)
+      if (explanation.probability > out_of_the_question) members.insert(explanation.suspects.begin(), explanation.suspects.end());
+    std::vector<Explanation*> open;
+    for (Explanation& explanation : result_.explanations) {
+      const bool alone = explanation.suspects.size() == 1 && members.contains(explanation.suspects.front());
+      if (explanation.fitted_to_all && explanation.unseen.size() == 0 && (alone || explanation.probability > out_of_the_question))
+        open.push_back(&explanation);
+    }
+    if (open.empty()) return;
+    parallelFor(static_cast<int>(open.size()), options_.job_count, [&](int i) { predictFromOthers(*open[static_cast<std::size_t>(i)]); });
+    if (!plant_.interrupted()) weigh();
+  }
+}
+
+}  // namespace musclesim

@@ -1,0 +1,293 @@
+#include "substitution.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+namespace musclesim {
+
+namespace {
+
+bool isMotion(const std::string& name) {
+  return name.starts_with("angle_") || name.starts_with("length_") || name.starts_with("hand_");
+}
+
+const std::string& nameOf(const Comparison& comparison, const Comparison::Cell& cell) {
+  return comparison.plant().signals()[static_cast<std::size_t>(cell.signal)].name;
+}
+
+double floorOf(const Plant& plant, int signal) {
+  return plant.signals()[static_cast<std::size_t>(signal)].floor.value;
+}
+
+/// Mean square of a residual over its variance, row by row, and averaged over blocks of rows: what is weak but slow stands out there.
+class BlockRatio {
+ public:
+  void add(double residual, double variance) {
+    plain_ += residual * residual / variance, ++count_;
+    residual_ += residual, variance_ += variance;
+    if (++filled_ < block_rows) return;
+    averaged_ += residual_ * residual_ / (variance_ * (1 + steady_share * steady_share * static_cast<double>(block_rows))), ++block_count_;
+    residual_ = variance_ = 0, filled_ = 0;
+  }
+  bool isEmpty() const { return count_ == 0; }
+  double largestRms() const { return std::sqrt(std::max(plain_ / count_, block_count_ > 0 ? averaged_ / block_count_ : 0.0)); }
+
+ private:
+  double plain_ = 0, averaged_ = 0, residual_ = 0, variance_ = 0;
+  std::size_t filled_ = 0;
+  int count_ = 0, block_count_ = 0;
+};
+
+/// Measured values of a muscle's pressure, or the commanded ones.
+struct Pressures {
+  int signal = -1;  ///< -1: commanded
+  const std::vector<double>* values = nullptr;
+};
+
+std::optional<Pressures> pressuresOf(const Plant& plant, int recording, int muscle) {
+  if (const int p = signalNumber(plant, fmt::format("pressure_{}", muscle)); p >= 0) return Pressures{p, &plant.measured(recording, p)};
+  if (!plant.isClean()) return std::nullopt;
+  return Pressures{-1, &plant.recordings()[static_cast<std::size_t>(recording)].find(fmt::format("command_{}", muscle))->values};
+}
+
+/// Of one muscle; nothing if there is nothing to compare.
+std::optional<TensionTest> testTensionOf(const Comparison& comparison, const Eigen::VectorXd& residual, int muscle) {
+  const Plant& plant = comparison.plant();
+  const int f = signalNumber(plant, fmt::format("force_{}_N", muscle)), l = signalNumber(plant, fmt::format("length_{}_mm", muscle));
+  if (f < 0 || l < 0) return std::nullopt;
+  BlockRatio found, expected;
+  bool commanded = false;
+  for (const Comparison::Cell& cell : comparison.cells()) {
+    if (cell.signal != l || cell.block > 0) continue;
+    const int recording = comparison.stretches()[cell.stretch].recording;
+    const auto pressures = pressuresOf(plant, recording, muscle);
+    if (!pressures) return std::nullopt;
+    commanded = pressures->signal < 0;
+    const double pressure_floor = commanded ? 0 : floorOf(plant, pressures->signal);
+    const auto &ps = *pressures->values, &fs = plant.measured(recording, f), &ls = plant.measured(recording, l);
+    for (std::size_t k = 0; k < cell.rows.size(); ++k) {
+      const auto i = static_cast<std::size_t>(cell.rows[k]);
+      if (i >= ps.size() || i >= fs.size() || !std::isfinite(ps[i] + fs[i])) continue;
+      const double law = plant.tensionN(muscle, ps[i], ls[i]);
+      const double by_p = plant.tensionN(muscle, ps[i] + pressure_floor, ls[i]) - law,
+                   by_l = plant.tensionN(muscle, ps[i], ls[i] + floorOf(plant, l)) - law;
+      const double variance = by_p * by_p + by_l * by_l + floorOf(plant, f) * floorOf(plant, f);
+      found.add(fs[i] - law, variance);
+      expected.add(plant.tensionN(muscle, ps[i], ls[i] - residual[cell.first + static_cast<Eigen::Index>(k)]) - law, variance);
+    }
+  }
+  if (found.isEmpty()) return std::nullopt;
+  return TensionTest{found.largestRms(), expected.largestRms(), commanded};
+}
+
+/// A signal of motion in all stretches, row by row; NaN where it is not measured.
+struct Motion {
+  int signal;
+  double floor;
+  std::vector<double> measured, simulated;
+  double ratio = 0;  ///< largest RMS over floor of its cells
+};
+
+std::vector<Motion> motionsOf(const Comparison& comparison, const Eigen::VectorXd& residual) {
+  std::vector<Motion> motions;
+  const Plant& plant = comparison.plant();
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  std::vector<std::size_t> begin{0};
+  for (const Stretch& stretch : comparison.stretches()) begin.push_back(begin.back() + static_cast<std::size_t>(stretch.end_row));
+  for (int signal = 0; signal < static_cast<int>(plant.signals().size()); ++signal) {
+    if (!isMotion(plant.signals()[static_cast<std::size_t>(signal)].name)) continue;
+    Motion motion{signal, floorOf(plant, signal), std::vector<double>(begin.back(), nan), std::vector<double>(begin.back(), nan)};
+    for (const Comparison::Cell& cell : comparison.cells()) {
+      if (cell.signal != signal) continue;
+      motion.ratio = std::max(motion.ratio, std::sqrt(comparison.meanSquare(cell, residual)) / cell.floor);
+      if (cell.block > 0) continue;
+      for (std::size_t k = 0; k < cell.rows.size(); ++k) {
+        const std::size_t row = begin[cell.stretch] + static_cast<std::size_t>(cell.rows[k]);
+        const Eigen::Index i = cell.first + static_cast<Eigen::Index>(k);
+        motion.measured[row] = comparison.measured()[i];
+        motion.simulated[row] = comparison.measured()[i] - residual[i];
+      }
+    }
+    motions.push_back(std::move(motion));
+  }
+  return motions;
+}
+
+/// A polynomial through the simulated values of one signal over those of another.
+class Curve {
+ public:
+  Curve(const Motion& of, const Motion& over) {
+    std::vector<std::size_t> rows;
+    for (std::size_t i = 0; i < over.simulated.size(); ++i)
+      if (std::isfinite(over.simulated[i] + of.simulated[i])) rows.push_back(i);
+    if (rows.size() < fewest_rows) return;
+    double low = over.simulated[rows.front()], high = low;
+    for (const std::size_t row : rows) low = std::min(low, over.simulated[row]), high = std::max(high, over.simulated[row]);
+    if (!(high - low > moves * over.floor)) return;
+    middle_ = (low + high) / 2, half_ = (high - low) / 2;
+    Eigen::MatrixXd powers(static_cast<Eigen::Index>(rows.size()), degree + 1);
+    Eigen::VectorXd values(powers.rows());
+    for (Eigen::Index i = 0; i < powers.rows(); ++i) {
+      const double x = (over.simulated[rows[static_cast<std::size_t>(i)]] - middle_) / half_;
+      for (int power = 0; power <= degree; ++power) powers(i, power) = std::pow(x, power);
+      values[i] = of.simulated[rows[static_cast<std::size_t>(i)]];
+    }
+    coefficients_ = powers.colPivHouseholderQr().solve(values);
+    const double error = std::sqrt((powers * coefficients_ - values).squaredNorm() / static_cast<double>(rows.size()));
+    fits_ = error < close * of.floor;
+  }
+  /// One signal is a function of the other, to a part of its noise.
+  bool fits() const { return fits_; }
+  bool covers(double x) const { return std::abs(x - middle_) <= half_; }
+  double at(double x) const {
+    double sum = 0;
+    for (int power = degree; power >= 0; --power) sum = sum * (x - middle_) / half_ + coefficients_[power];
+    return sum;
+  }
+
+ private:
+  static constexpr int degree = 6;
+  static constexpr std::size_t fewest_rows = 100;
+  static constexpr double moves = 20;   ///< range over noise of a signal that others can be told from
+  static constexpr double close = 0.3;  ///< of the noise
+  double middle_ = 0, half_ = 1;
+  Eigen::VectorXd coefficients_;
+  bool fits_ = false;
+};
+
+/// How far one signal is from what another one says, over the noise of both; nothing if it is no function of it.
+std::optional<double> contradiction(const Motion& of, const Motion& by) {
+  const Curve curve(of, by);
+  if (!curve.fits()) return std::nullopt;
+  BlockRatio ratio;
+  for (std::size_t i = 0; i < by.measured.size(); ++i) {
+    const double x = by.measured[i];
+    if (!std::isfinite(x + of.measured[i]) || !curve.covers(x)) continue;
+    const double steepness = (curve.at(x + by.floor) - curve.at(x - by.floor)) / 2;
+    ratio.add(of.measured[i] - curve.at(x), of.floor * of.floor + steepness * steepness);
+  }
+  if (ratio.isEmpty()) return std::nullopt;
+  return ratio.largestRms();
+}
+
+}  // namespace
+
+int signalNumber(const Plant& plant, const std::string& name) {
+  for (std::size_t i = 0; i < plant.signals().size(); ++i)
+    if (plant.signals()[i].name == name) return static_cast<int>(i);
+  return -1;
+}
+
+std::optional<double> ratioOf(const Comparison& comparison, const Eigen::VectorXd& residual, const std::string& beginning) {
+  double sum = 0;
+  int count = 0;
+  for (const Comparison::Cell& cell : comparison.cells()) {
+    if (!nameOf(comparison, cell).starts_with(beginning)) continue;
+    sum += comparison.meanSquare(cell, residual) / (cell.floor * cell.floor);
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  return std::sqrt(sum / count);
+}
+
+std::string mostAffected(const Comparison& comparison, const Eigen::VectorXd& residual, const std::string& beginning) {
+  std::string name;
+  double largest = 0;
+  for (const Comparison::Cell& cell : comparison.cells()) {
+    const double ratio = std::sqrt(comparison.meanSquare(cell, residual)) / cell.floor;
+    if (!nameOf(comparison, cell).starts_with(beginning) || ratio <= largest) continue;
+    largest = ratio;
+    name = nameOf(comparison, cell);
+  }
+  return name;
+}
+
+double largestMotionRatio(const Comparison& comparison, const Eigen::VectorXd& residual) {
+  double largest = 0;
+  for (const Comparison::Cell& cell : comparison.cells())
+    if (isMotion(nameOf(comparison, cell))) largest = std::max(largest, std::sqrt(comparison.meanSquare(cell, residual)) / cell.floor);
+  return largest;
+}
+
+bool allPressuresMeasured(const Plant& plant) {
+  for (int muscle = 0; muscle < plant.muscleCount(); ++muscle)
+    if (signalNumber(plant, fmt::format("pressure_{}", muscle)) < 0) return false;
+  return true;
+}
+
+Eigen::VectorXd residualUnderMeasuredPressures(const Comparison& comparison) {
+  const Plant& plant = comparison.plant();
+  std::vector<Prediction> predictions;
+  for (const Stretch& stretch : comparison.stretches()) {
+    const std::size_t rows = plant.recordings()[static_cast<std::size_t>(stretch.recording)].time_s.size();
+    std::vector<std::vector<double>> commands(rows, std::vector<double>(static_cast<std::size_t>(plant.muscleCount())));
+    for (int muscle = 0; muscle < plant.muscleCount(); ++muscle) {
+      const std::vector<double>& p = plant.measured(stretch.recording, signalNumber(plant, fmt::format("pressure_{}", muscle)));
+      if (p.size() != rows) return {};
+      const auto first = std::ranges::find_if(p, [](double value) { return std::isfinite(value); });
+      if (first == p.end()) return {};
+      double last = std::clamp(*first, 0.0, 1.0);
+      for (std::size_t row = 0; row < rows; ++row) {
+        if (std::isfinite(p[row])) last = std::clamp(p[row], 0.0, 1.0);
+        commands[row][static_cast<std::size_t>(muscle)] = last;
+      }
+    }
+    predictions.push_back(plant.predict(stretch.recording, Model{}, commands, stretch.end_row, comparison.fidelity()));
+  }
+  const Eigen::VectorXd predicted = comparison.predicted(predictions);
+  if (!predicted.size()) return {};
+  return comparison.measured() - predicted;
+}
+
+std::optional<TensionTest> testTension(const Comparison& comparison, const Eigen::VectorXd& residual) {
+  std::optional<TensionTest> largest;
+  for (int muscle = 0; muscle < comparison.plant().muscleCount(); ++muscle) {
+    const auto one = testTensionOf(comparison, residual, muscle);
+    if (one && (!largest || one->found > largest->found)) largest = one;
+  }
+  return largest;
+}
+
+std::optional<MotionTest> testMotion(const Comparison& comparison, const Eigen::VectorXd& residual) {
+  const std::vector<Motion> motions = motionsOf(comparison, residual);
+  // Of every two signals the larger contradiction, by either curve.
+  std::vector<std::vector<std::optional<double>>> pairs(motions.size(), std::vector<std::optional<double>>(motions.size()));
+  bool told = false;
+  for (std::size_t i = 0; i < motions.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      pairs[i][j] = pairs[j][i] = std::max(contradiction(motions[i], motions[j]), contradiction(motions[j], motions[i]));
+      told = told || pairs[i][j];
+    }
+  if (!told) return std::nullopt;
+  MotionTest test;
+  auto all = [&](auto&& holds) {
+    for (std::size_t i = 0; i < motions.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        if (pairs[i][j] && !holds(i, j, *pairs[i][j])) return false;
+    return true;
+  };
+  const auto visible = std::ranges::count_if(motions, [](const Motion& motion) { return motion.ratio > disagrees; });
+  test.agree = visible > 1 && all([](std::size_t, std::size_t, double ratio) { return ratio < agrees; });
+  for (std::size_t s = 0; s < motions.size(); ++s) {
+    const bool contradicted =
+        std::ranges::any_of(pairs[s], [](const auto& ratio) { return ratio.has_value(); }) &&
+        all([&](std::size_t i, std::size_t j, double ratio) { return i == s || j == s ? ratio > disagrees : ratio < agrees; });
+    if (!contradicted || motions[s].ratio < disagrees) continue;
+    bool others_right = true;
+    for (std::size_t other = 0; other < motions.size(); ++other)
+      others_right = others_right && (other == s || motions[other].ratio < disagrees);
+    double ratio = 0;
+    for (const auto& pair : pairs[s]) ratio = std::max(ratio, pair.value_or(0));
+    // Of two signals that contradict each other the one that is not as predicted.
+    if (!test.odd.empty() && !others_right) continue;
+    test.odd = comparison.plant().signals()[static_cast<std::size_t>(motions[s].signal)].name;
+    test.odd_ratio = ratio;
+    test.others_right = others_right;
+  }
+  return test;
+}
+
+}  // namespace musclesim

@@ -1,0 +1,167 @@
+// What measured signals say of each other, on short recordings of the elbow and of the rig.
+#include "diagnosis/substitution.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "musclesim/random.h"
+#include "musclesim/simulation/replay.h"
+
+namespace musclesim {
+namespace {
+
+const std::map<std::string, double> noise = {{"pressure_0", 0.003}, {"pressure_1", 0.003}, {"force_0_N", 0.3},       {"force_1_N", 0.3},
+                                             {"length_0_mm", 0.05}, {"length_1_mm", 0.05}, {"angle_elbow_deg", 0.05}};
+
+/// Of `signals` of a plant under waves, with noise and, then, a fault.
+Recording recorded(const std::string& robot, const std::vector<std::string>& signals, const std::vector<ActiveEffect>& effects,
+                   std::uint64_t seed, const std::function<void(Recording&)>& fault) {
+  Recording plan;
+  plan.file = robot + std::to_string(seed) + ".csv";
+  plan.info.robot = robot;
+  const int muscle_count = robot == "rig" ? 1 : 2;
+  for (int muscle = 0; muscle < muscle_count; ++muscle) plan.signals.push_back({"command_" + std::to_string(muscle), {}});
+  for (int row = 0; row < 300; ++row) {
+    plan.time_s.push_back(0.01 * row);
+    const double wave = 0.08 * std::sin(2 * std::numbers::pi * 0.5 * static_cast<double>(seed) * 0.01 * row);
+    for (int muscle = 0; muscle < muscle_count; ++muscle)
+      plan.signals[static_cast<std::size_t>(muscle)].values.push_back(0.4 + (muscle ? -wave : wave));
+  }
+  ReplayOptions options;
+  options.effects = effects;
+  Recording recording = replayRecording(plan, options).simulated;
+  recording.file = plan.file;
+  recording.info.active_effects.clear();
+  std::erase_if(recording.signals, [&](const Signal& signal) {
+    return !signal.name.starts_with("command_") && std::ranges::find(signals, signal.name) == signals.end();
+  });
+  RandomStream random(seed, "substitution");
+  recording.info.noise_std.clear();
+  for (Signal& signal : recording.signals) {
+    if (signal.name.starts_with("command_")) continue;
+    recording.info.noise_std[signal.name] = noise.at(signal.name);
+    for (double& value : signal.values) value += noise.at(signal.name) * random.normal();
+  }
+  fault(recording);
+  return recording;
+}
+
+/// A plant and what the clean model leaves of two recordings of it.
+struct Compared {
+  Compared(
+      const std::string& robot, const std::vector<std::string>& signals, const std::vector<ActiveEffect>& effects,
+      const std::function<void(Recording&)>& fault = [](Recording&) {})
+      : plant({recorded(robot, signals, effects, 1, fault), recorded(robot, signals, effects, 2, fault)}, options),
+        comparison(plant, {{0, 0, 300}, {1, 0, 300}}, Comparison::Averages::with),
+        residual(comparison.measured() - comparison.predicted(Model{})) {}
+  DiagnosisOptions options;
+  Plant plant;
+  Comparison comparison;
+  Eigen::VectorXd residual;
+};
+
+/// Adds a hum to one signal.
+std::function<void(Recording&)> hum(const std::string& name, double amplitude) {
+  return [=](Recording& recording) {
+    for (Signal& signal : recording.signals)
+      if (signal.name == name)
+        for (std::size_t row = 0; row < signal.values.size(); ++row)
+          signal.values[row] += amplitude * std::sin(2 * std::numbers::pi * 7 * recording.time_s[row]);
+  };
+}
+
+const std::vector<std::string> motion = {"length_0_mm", "length_1_mm", "angle_elbow_deg"};
+const ActiveEffect pull{"external_force", "hand", {{"force_x_N", 1.0}}};
+
+TEST(MotionTest, FindsTheSensorThatTheOthersContradict) {
+  const Compared elbow("elbow", motion, {}, hum("length_1_mm", 0.5));
+  const auto test = testMotion(elbow.comparison, elbow.residual);
+  ASSERT_TRUE(test);
+  EXPECT_EQ(test->odd, "length_1_mm");
+  EXPECT_TRUE(test->others_right);
+  EXPECT_FALSE(test->agree);
+  EXPECT_NEAR(test->odd_ratio, 0.5 / std::sqrt(2) / 0.07, 2.5) << "RMS of the hum over the noise of two signals";
+}
+
+TEST(MotionTest, FindsItAmongTwoByWhatIsPredicted) {
+  const Compared elbow("elbow", {"length_1_mm", "angle_elbow_deg"}, {}, hum("angle_elbow_deg", 0.5));
+  const auto test = testMotion(elbow.comparison, elbow.residual);
+  ASSERT_TRUE(test);
+  EXPECT_EQ(test->odd, "angle_elbow_deg");
+  EXPECT_TRUE(test->others_right);
+}
+
+TEST(MotionTest, AcquitsSensorsWhereAllMovesTogether) {
+  const Compared elbow("elbow", motion, {pull});
+  EXPECT_GT(largestMotionRatio(elbow.comparison, elbow.residual), 10);
+  const auto test = testMotion(elbow.comparison, elbow.residual);
+  ASSERT_TRUE(test);
+  EXPECT_TRUE(test->agree);
+  EXPECT_TRUE(test->odd.empty());
+}
+
+/// A sensor that reads wrong and a force besides: one signal is odd, but not alone in being wrong.
+TEST(MotionTest, DoesNotAcquitTheRestWhereMoreIsWrong) {
+  const Compared elbow("elbow", motion, {pull}, hum("length_1_mm", 0.5));
+  const auto test = testMotion(elbow.comparison, elbow.residual);
+  ASSERT_TRUE(test);
+  EXPECT_EQ(test->odd, "length_1_mm");
+  EXPECT_FALSE(test->others_right);
+}
+
+TEST(MotionTest, SaysNothingOfASingleSignalOrWithoutAGap) {
+  const Compared one("elbow", {"angle_elbow_deg"}, {pull});
+  EXPECT_FALSE(testMotion(one.comparison, one.residual));
+  const Compared clean("elbow", motion, {});
+  const auto test = testMotion(clean.comparison, clean.residual);
+  ASSERT_TRUE(test);
+  EXPECT_FALSE(test->agree) << "there is nothing to acquit of";
+  EXPECT_TRUE(test->odd.empty());
+}
+
+/// A pull on the hand leaves the law alone, whether pressures are measured or only commanded; a weak muscle does not.
+TEST(TensionTest, TellsTheLawFromTheBody) {
+  for (const bool measured : {true, false}) {
+    std::vector<std::string> signals = {"length_0_mm", "length_1_mm", "force_0_N", "force_1_N"};
+    if (measured) signals.insert(signals.end(), {"pressure_0", "pressure_1"});
+    const ActiveEffect strong_pull{"external_force", "hand", {{"force_x_N", 4.0}}}, weak{"force_gain", "muscle_0", {{"gain", 0.8}}};
+    const Compared pulled("elbow", signals, {strong_pull}), weakened("elbow", signals, {weak});
+    const auto by_pull = testTension(pulled.comparison, pulled.residual), by_weakness = testTension(weakened.comparison, weakened.residual);
+    ASSERT_TRUE(by_pull && by_weakness);
+    EXPECT_LT(by_pull->found, agrees);
+    EXPECT_GT(by_pull->expected, disagrees);
+    EXPECT_GT(by_weakness->found, disagrees);
+    EXPECT_EQ(by_pull->commanded, !measured);
+  }
+}
+
+TEST(TensionTest, TakesNoCommandForAPressureThatAnEffectMakes) {
+  DiagnosisOptions options;
+  options.model.effects = {{"valve_lag", "muscle_0", {{"fill_time_constant_s", 0.1}, {"vent_time_constant_s", 0.1}}}};
+  auto nothing = [](Recording&) {};
+  const Plant plant(
+      {recorded("rig", {"length_0_mm", "force_0_N"}, {}, 1, nothing), recorded("rig", {"length_0_mm", "force_0_N"}, {}, 2, nothing)},
+      options);
+  const Comparison comparison(plant, {{0, 0, 300}});
+  EXPECT_FALSE(testTension(comparison, comparison.measured() - comparison.predicted(Model{})));
+}
+
+TEST(Pressures, ThatReadWrongWouldMoveWhatDoesNotMove) {
+  const std::vector<std::string> signals = {"pressure_0", "length_0_mm"};
+  const Compared wrong("rig", signals, {}, hum("pressure_0", 0.05));
+  EXPECT_TRUE(allPressuresMeasured(wrong.plant));
+  EXPECT_GT(*ratioOf(wrong.comparison, wrong.residual, "pressure_"), disagrees);
+  EXPECT_LT(largestMotionRatio(wrong.comparison, wrong.residual), disagrees);
+  EXPECT_EQ(mostAffected(wrong.comparison, wrong.residual, "pressure_"), "pressure_0");
+  EXPECT_GT(largestMotionRatio(wrong.comparison, residualUnderMeasuredPressures(wrong.comparison)), disagrees);
+  const Compared lag("rig", signals, {{"valve_lag", "muscle_0", {{"fill_time_constant_s", 0.1}, {"vent_time_constant_s", 0.1}}}});
+  EXPECT_GT(largestMotionRatio(lag.comparison, lag.residual), disagrees);
+  EXPECT_LT(largestMotionRatio(lag.comparison, residualUnderMeasuredPressures(lag.comparison)),
+            0.3 * largestMotionRatio(lag.comparison, lag.residual));
+}
+
+}  // namespace
+}  // namespace musclesim
