@@ -76,8 +76,9 @@ class Attributor {
   void crossCheck();
   Eigen::VectorXd stepWithout(const std::set<std::size_t>& left_out, const Explanation& explanation, const Eigen::MatrixXd& jacobian) const;
   std::set<std::size_t> sameCommandsAs(std::size_t stretch) const;
-  double misfitWithout(const std::set<std::size_t>& left_out, const Explanation& explanation) const;
-  Explanation movedWithout(const std::set<std::size_t>& left_out, const Explanation& explanation, Eigen::VectorXd step) const;
+  Eigen::VectorXd misfitsOneByOne(const std::set<std::size_t>& left_out, const Explanation& explanation) const;
+  Explanation movedWithout(const std::set<std::size_t>& left_out, const Explanation& explanation, Eigen::VectorXd step,
+                           const Eigen::VectorXd& unmoved_misfits) const;
   void predictFromOthers(Explanation& explanation) const;
 
   const Plant& plant_;

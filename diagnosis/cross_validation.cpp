@@ -38,27 +38,31 @@ Eigen::VectorXd Attributor::stepWithout(const std::set<std::size_t>& left_out, c
   return step;
 }
 
-/// Misfit on the stretches that are not left out.
-double Attributor::misfitWithout(const std::set<std::size_t>& left_out, const Explanation& explanation) const {
-  double sum = 0;
+/// Misfit of every stretch that is not left out; 0 for the others.
+Eigen::VectorXd Attributor::misfitsOneByOne(const std::set<std::size_t>& left_out, const Explanation& explanation) const {
+  Eigen::VectorXd misfits = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(one_by_one_.size()));
   for (std::size_t k = 0; k < one_by_one_.size(); ++k) {
     if (left_out.contains(k)) continue;
     const Eigen::VectorXd predicted = one_by_one_[k].predicted(modelOf(explanation));
     on_simulation_();
-    sum += one_by_one_[k].logMisfit(predicted.size() ? Eigen::VectorXd(one_by_one_[k].measured() - predicted) : predicted);
+    misfits[static_cast<Eigen::Index>(k)] =
+        one_by_one_[k].logMisfit(predicted.size() ? Eigen::VectorXd(one_by_one_[k].measured() - predicted) : predicted);
   }
-  return sum;
+  return misfits;
 }
 
-/// The explanation moved by a step, or by as much of it as does not fit the stretches that are not left out worse.
-Explanation Attributor::movedWithout(const std::set<std::size_t>& left_out, const Explanation& explanation, Eigen::VectorXd step) const {
+/// The explanation moved by a step, or by as much of it as does not fit the stretches that are not left out worse than it does unmoved.
+Explanation Attributor::movedWithout(const std::set<std::size_t>& left_out, const Explanation& explanation, Eigen::VectorXd step,
+                                     const Eigen::VectorXd& unmoved_misfits) const {
   constexpr int halving_count = 3;
   constexpr double worse = 0.02;  // misfit that is no reason to go less far
   Explanation moved = explanation;
-  const double before = step.size() ? misfitWithout(left_out, explanation) : 0;
+  double before = 0;
+  for (Eigen::Index k = 0; k < unmoved_misfits.size(); ++k)
+    if (!left_out.contains(static_cast<std::size_t>(k))) before += unmoved_misfits[k];
   for (int i = 0; i < halving_count && step.size(); ++i, step *= 0.5) {
     moved.z = clampedAll(explanation.suspects, explanation.z + step);
-    if (misfitWithout(left_out, moved) < before + worse) return moved;
+    if (misfitsOneByOne(left_out, moved).sum() < before + worse) return moved;
   }
   return explanation;
 }
@@ -73,11 +77,13 @@ void Attributor::predictFromOthers(Explanation& explanation) const {
   const Eigen::MatrixXd jacobian =
       effect_count ? derivatives(fit_, problem, problem.start).leftCols(effect_count).eval() : Eigen::MatrixXd(fit_.size(), 0);
   const Eigen::VectorXd with_all = stepWithout({}, explanation, jacobian);
+  const Eigen::VectorXd unmoved_misfits = effect_count ? misfitsOneByOne({}, explanation) : Eigen::VectorXd();
   Eigen::VectorXd unseen = explanation.residual;
   for (std::size_t k = 0; k < one_by_one_.size(); ++k) {
     if (plant_.interrupted()) return;
     const std::set<std::size_t> left_out = sameCommandsAs(k);
-    const Explanation without = movedWithout(left_out, explanation, stepWithout(left_out, explanation, jacobian) - with_all);
+    const Eigen::VectorXd step = stepWithout(left_out, explanation, jacobian) - with_all;
+    const Explanation without = movedWithout(left_out, explanation, step, unmoved_misfits);
     const Comparison& one = one_by_one_[k];
     Eigen::VectorXd left = one.predicted(modelOf(without));
     on_simulation_();

@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "shared.h"
+#include "simulation/scene/scene_error.h"
 #include "window.h"
 
 namespace musclesim {
@@ -32,21 +33,36 @@ void runWindow(Display::Shared& shared) {
     if (!is_open) shared.opened.set_exception(std::current_exception());
   }
   shared.pace.close();
+  shared.has_ended = true;
 }
+
+/// Leaves a thread that cannot end alone with what it uses.
+void abandon(std::jthread& thread, std::unique_ptr<Display::Shared>& shared) {
+  thread.detach();
+  static_cast<void>(shared.release());
+}
+
+constexpr auto look_around = std::chrono::milliseconds(5);
 
 }  // namespace
 
 Display::Display(DisplayOptions options, ManualController& hands, Snapshot first)
     : shared_(std::make_unique<Shared>(std::move(options), hands, std::move(first))) {
   thread_ = std::jthread([shared = shared_.get()] { runWindow(*shared); });
-  shared_->opened.get_future().get();
+  auto opened = shared_->opened.get_future();
+  while (opened.wait_for(look_around) != std::future_status::ready) {
+    if (!shared_->is_stuck) continue;
+    const std::string reason = shared_->loss().value_or("the display is gone");
+    abandon(thread_, shared_);
+    throw SceneError("no window can be opened: " + reason);
+  }
+  opened.get();
 }
 
 Display::~Display() {
   shared_->pace.close();
-  if (!shared_->is_lost) return;
-  thread_.detach();
-  static_cast<void>(shared_.release());  // in use by the thread that cannot end
+  while (!shared_->has_ended && !shared_->is_stuck) std::this_thread::sleep_for(look_around);
+  if (shared_->is_stuck) abandon(thread_, shared_);
 }
 
 bool Display::show(Snapshot snapshot, const Interrupted& interrupted) {
@@ -56,7 +72,6 @@ bool Display::show(Snapshot snapshot, const Interrupted& interrupted) {
 }
 
 void Display::showDivergence(const std::string& message, const Interrupted& interrupted) {
-  constexpr auto look_around = std::chrono::milliseconds(50);
   shared_->setDivergence(message);
   shared_->pace.setPaused(true);
   while (!shared_->pace.isClosed() && !interrupted()) std::this_thread::sleep_for(look_around);

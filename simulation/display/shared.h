@@ -23,8 +23,9 @@ struct Display::Shared {
   const DisplayOptions options;
   ManualController& hands;
   Pace pace;
-  std::promise<void> opened;          ///< or why it could not be
-  std::atomic<bool> is_lost = false;  ///< the connection to the display broke: the thread cannot end
+  std::promise<void> opened;            ///< or why it could not be
+  std::atomic<bool> has_ended = false;  ///< the window's thread is done
+  std::atomic<bool> is_stuck = false;   ///< it never will be: its display or its window is gone
   std::atomic<long> frame_count = 0;
   std::chrono::steady_clock::time_point opened_at;
 

@@ -30,18 +30,24 @@ constexpr float wheel_zoom = 1.1F;
 /// Xlib's handlers get no pointer of ours.
 Display::Shared* shared_of_handlers = nullptr;
 
-/// The display is gone. Xlib would end the process, before the run's files are complete; so this thread stops here.
-int parkThread(::Display*) {
-  shared_of_handlers->is_lost = true;
-  shared_of_handlers->lose("the connection to the display is lost");
+/// Where going on is not possible, the window's thread stops here and the run's thread writes the files.
+[[noreturn]] void stopHere(const std::string& reason) {
+  shared_of_handlers->lose(reason);
+  shared_of_handlers->is_stuck = true;
   for (;;) pause();
 }
 
-int closeAfterError(::Display* display, XErrorEvent* error) {
+/// The display is gone. Xlib would end the process.
+int stopAtLostDisplay(::Display*) {
+  stopHere("the connection to the display is lost");
+}
+
+/// Mostly the window is gone. Mesa's drawing in software would go on with a size that the failed question for it has left unset.
+int stopAtError(::Display* display, XErrorEvent* error) {
+  if (shared_of_handlers->pace.isClosed()) return 0;
   char text[256];
   XGetErrorText(display, error->error_code, text, sizeof text);
-  shared_of_handlers->lose(fmt::format("X error in request {}.{}: {}", error->request_code, error->minor_code, text));
-  return 0;
+  stopHere(fmt::format("X error in request {}.{}: {}", error->request_code, error->minor_code, text));
 }
 
 /// Whether there is a display: GLUT does not ask. The connection stays while GLUT makes its own, since a server may start anew when the
@@ -132,8 +138,8 @@ void Window::open() {
   char name[] = "musclesim";
   char* arguments[] = {name, nullptr};
   glutInit(&count, arguments);
-  XSetIOErrorHandler(parkThread);
-  XSetErrorHandler(closeAfterError);
+  XSetIOErrorHandler(stopAtLostDisplay);
+  XSetErrorHandler(stopAtError);
   glutSetOption(GLUT_ACTION_ON_WINDOW_CLOSE, GLUT_ACTION_CONTINUE_EXECUTION);
   glutInitDisplayMode(GLUT_RGB | GLUT_DOUBLE | GLUT_DEPTH);
   glutInitWindowSize(width_, height_);
