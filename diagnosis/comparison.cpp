@@ -55,10 +55,12 @@ void Comparison::average(Eigen::VectorXd& values) const {
 void Comparison::goCoarse(const Eigen::VectorXd& nominal) {
   const Eigen::VectorXd coarse = predicted(Model{}, Fidelity::coarse);
   if (coarse.size() != nominal.size() || !coarse.allFinite()) return;
-  constexpr double few_floors = 5;
-  const Eigen::VectorXd correction = nominal - coarse;
-  const bool follows =
-      std::ranges::all_of(cells_, [&](const Cell& cell) { return std::sqrt(meanSquare(cell, correction)) <= few_floors * cell.floor; });
+  constexpr double few_floors = 5, small_share = 0.1;
+  const Eigen::VectorXd correction = nominal - coarse, residual = measured_ - nominal;
+  const bool follows = std::ranges::all_of(cells_, [&](const Cell& cell) {
+    const double bearable = std::max(few_floors * cell.floor, small_share * std::sqrt(meanSquare(cell, residual)));
+    return std::sqrt(meanSquare(cell, correction)) <= bearable;
+  });
   if (!follows) return;
   correction_ = correction;
   fidelity_ = Fidelity::coarse;

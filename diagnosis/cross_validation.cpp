@@ -85,7 +85,7 @@ void Attributor::predictFromOthers(Explanation& explanation) const {
     const Eigen::VectorXd step = stepWithout(left_out, explanation, jacobian) - with_all;
     const Explanation without = movedWithout(left_out, explanation, step, unmoved_misfits);
     const Comparison& one = one_by_one_[k];
-    Eigen::VectorXd left = one.predicted(modelOf(without));
+    Eigen::VectorXd left = one.predicted(modelOf(without), Fidelity::fine);
     on_simulation_();
     const bool goes_on = left.size() == one.size() && left.allFinite();
     if (goes_on) left = one.measured() - left;
@@ -117,7 +117,10 @@ void Attributor::crossCheck() {
   constexpr double out_of_the_question = 0.003;
   if (sameCommandsAs(0).size() == fit_.stretches().size()) return;
   if (one_by_one_.empty())
-    for (const Stretch& stretch : fit_.stretches()) one_by_one_.emplace_back(plant_, std::vector{stretch}, Comparison::Averages::with);
+    for (const Stretch& stretch : fit_.stretches()) {
+      Comparison& one = one_by_one_.emplace_back(plant_, std::vector{stretch}, Comparison::Averages::with);
+      one.goCoarse(one.predicted(Model{}));
+    }
   while (!plant_.interrupted()) {
     std::set<std::size_t> members;
     for (const Explanation& explanation : result_.explanations)

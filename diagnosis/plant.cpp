@@ -63,6 +63,21 @@ Split splitOf(const std::vector<Recording>& recordings) {
   return split;
 }
 
+/// Everything that a simulation depends on but the recording.
+std::string keyOf(const Model& model) {
+  auto written = [](const Parameter::Value& value) {
+    return std::holds_alternative<double>(value) ? fmt::format("{:a}", std::get<double>(value)) : std::get<std::string>(value);
+  };
+  std::string key;
+  for (const ActiveEffect& effect : model.effects) {
+    if (effect.id == held_effect) continue;
+    key += fmt::format(";{}@{}", effect.id, effect.component);
+    for (const auto& [name, value] : effect.parameters) key += fmt::format(",{}={}", name, written(value));
+  }
+  for (const auto& [name, value] : model.parameters) key += fmt::format(";{}={:a}", name, value);
+  return key;
+}
+
 bool hasNumbers(const Signal& signal) {
   return std::any_of(signal.values.begin(), signal.values.end(), [](double value) { return std::isfinite(value); });
 }
@@ -189,8 +204,23 @@ RobotDrawing Plant::drawing() const {
   return drawingOf(*reference_);
 }
 
+/// Coarse steps only where there is something to gain.
+Fidelity Plant::possible(Fidelity fidelity) const {
+  return reference_->substeps() >= fewest_to_coarsen ? fidelity : Fidelity::fine;
+}
+
+void Plant::count(double simulated_s) const {
+  ++simulation_count_;
+  simulated_ms_ += std::lround(simulated_s * ms_per_s);
+}
+
 Prediction Plant::predict(int recording, const Model& model, int end_row, Fidelity fidelity) const {
-  Prediction prediction = replay(recordings_[static_cast<std::size_t>(recording)], model, end_row, fidelity);
+  const Recording& recorded = recordings_[static_cast<std::size_t>(recording)];
+  const std::size_t all_rows = recorded.time_s.size();
+  const std::size_t rows = end_row > 0 ? std::min(static_cast<std::size_t>(end_row), all_rows) : all_rows;
+  const std::string key = fmt::format("{} {} {} {}", recording, rows, possible(fidelity) == Fidelity::coarse, keyOf(model));
+  if (store_.isNew(key)) count(recorded.time_s[rows - 1] - recorded.time_s.front());
+  Prediction prediction = store_.get(key, [&] { return replay(recorded, model, end_row, fidelity); });
   holdWhereMeasured(recording, model, prediction);
   return prediction;
 }
@@ -203,6 +233,8 @@ Prediction Plant::predict(int recording, const Model& model, const std::vector<s
       const auto muscle = static_cast<std::size_t>(std::stoi(signal.name.substr(8)));
       for (std::size_t row = 0; row < commands.size(); ++row) signal.values[row] = commands[row][muscle];
     }
+  count(changed.time_s[static_cast<std::size_t>(end_row > 0 ? end_row : static_cast<int>(changed.time_s.size())) - 1] -
+        changed.time_s.front());
   return replay(std::move(changed), model, end_row, fidelity);
 }
 
@@ -213,8 +245,7 @@ Prediction Plant::replay(Recording recording, const Model& model, int end_row, F
     for (Signal& signal : recording.signals) signal.values.resize(static_cast<std::size_t>(end_row));
   }
   ReplayOptions options = options_.model;
-  if (fidelity == Fidelity::coarse && reference_->substeps() >= fewest_to_coarsen)
-    options.substeps = std::max(1, (reference_->substeps() + coarse_ratio - 1) / coarse_ratio);
+  if (possible(fidelity) == Fidelity::coarse) options.substeps = std::max(1, (reference_->substeps() + coarse_ratio - 1) / coarse_ratio);
   for (const ActiveEffect& effect : model.effects)
     if (effect.id != held_effect) options.effects.push_back(effect);
   for (const auto& [name, value] : model.parameters) options.parameters.set(name, value, "diagnosis");
@@ -226,8 +257,6 @@ Prediction Plant::replay(Recording recording, const Model& model, int end_row, F
     if (model.effects.empty() && model.parameters.empty()) throw;
     return {std::vector<std::vector<double>>(signals_.size(), std::vector<double>(all_rows, nan)), true};
   }
-  ++simulation_count_;
-  simulated_ms_ += std::lround((recording.time_s.back() - recording.time_s.front()) * ms_per_s);
 
   Prediction prediction;
   prediction.diverged = result.divergence.has_value();

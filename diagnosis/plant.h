@@ -10,6 +10,7 @@
 #include "musclesim/diagnosis/diagnosis.h"
 #include "musclesim/effect/catalogue.h"
 #include "noise_floor.h"
+#include "prediction_store.h"
 
 namespace musclesim {
 
@@ -29,12 +30,6 @@ struct Stretch {
 struct Split {
   std::vector<Stretch> fit, held_out;
   std::string held_out_words;
-};
-
-/// What a model predicts for one recording: values[signal][row], NaN after a divergence.
-struct Prediction {
-  std::vector<std::vector<double>> values;
-  bool diverged = false;
 };
 
 /// How finely a simulation steps. A coarse one takes steps that are four times as long, which costs little; what it differs by is
@@ -84,19 +79,22 @@ class Plant {
   /// What the model's force law gives for a muscle at a pressure and a length, N.
   double tensionN(int muscle, double pressure_ratio, double length_mm) const;
 
-  /// Simulates up to the end of the stretches that are asked for (`end_row`; 0: all rows). May be called from several threads.
+  /// Simulates up to the end of the stretches that are asked for (`end_row`; 0: all rows). May be called from several threads. What was
+  /// asked for before is not simulated again.
   Prediction predict(int recording, const Model& model, int end_row = 0, Fidelity fidelity = Fidelity::fine) const;
   /// The same with other commands in place of the recorded ones; `commands[row][muscle]`.
   Prediction predict(int recording, const Model& model, const std::vector<std::vector<double>>& commands, int end_row,
                      Fidelity fidelity) const;
   /// The same for a schedule that was never recorded.
   Prediction predictSchedule(const Recording& schedule, const Model& model, Fidelity fidelity) const {
+    count(schedule.time_s.back() - schedule.time_s.front());
     return replay(schedule, model, 0, fidelity);
   }
 
   /// The robot as built.
   RobotDrawing drawing() const;
 
+  /// Different simulations, and seconds of them.
   long simulationCount() const { return simulation_count_; }
   double simulatedS() const { return static_cast<double>(simulated_ms_) * 1e-3; }
   bool interrupted() const { return options_.interrupted && options_.interrupted(); }
@@ -107,6 +105,8 @@ class Plant {
   void compareSignals();
   void requireNumbers(const std::vector<Stretch>& part) const;
   Parameter numberNamed(const std::string& name) const;
+  Fidelity possible(Fidelity fidelity) const;
+  void count(double simulated_s) const;
   Prediction replay(Recording recording, const Model& model, int end_row, Fidelity fidelity) const;
   void holdWhereMeasured(int recording, const Model& model, Prediction& prediction) const;
 
@@ -120,6 +120,7 @@ class Plant {
   std::vector<std::pair<std::string, double>> nominal_;
   std::vector<Parameter> tuned_;
   mutable std::atomic<long> simulation_count_{0}, simulated_ms_{0};
+  mutable PredictionStore store_;
 };
 
 }  // namespace musclesim
