@@ -53,22 +53,26 @@ void Comparison::average(Eigen::VectorXd& values) const {
 }
 
 void Comparison::goCoarse(const Eigen::VectorXd& nominal) {
-  const Eigen::VectorXd coarse = predicted(Model{}, Fidelity::coarse);
-  if (coarse.size() != nominal.size() || !coarse.allFinite()) return;
   constexpr double few_floors = 5, small_share = 0.1;
-  const Eigen::VectorXd correction = nominal - coarse, residual = measured_ - nominal;
-  const bool follows = std::ranges::all_of(cells_, [&](const Cell& cell) {
-    const double bearable = std::max(few_floors * cell.floor, small_share * std::sqrt(meanSquare(cell, residual)));
-    return std::sqrt(meanSquare(cell, correction)) <= bearable;
-  });
-  if (!follows) return;
-  correction_ = correction;
-  fidelity_ = Fidelity::coarse;
+  const Eigen::VectorXd residual = measured_ - nominal;
+  for (const Fidelity fidelity : {Fidelity::coarse, Fidelity::medium}) {
+    const Eigen::VectorXd coarse = predicted(Model{}, fidelity);
+    if (coarse.size() != nominal.size() || !coarse.allFinite()) continue;
+    const Eigen::VectorXd correction = nominal - coarse;
+    const bool follows = std::ranges::all_of(cells_, [&](const Cell& cell) {
+      const double bearable = std::max(few_floors * cell.floor, small_share * std::sqrt(meanSquare(cell, residual)));
+      return std::sqrt(meanSquare(cell, correction)) <= bearable;
+    });
+    if (!follows) continue;
+    correction_ = correction;
+    fidelity_ = fidelity;
+    return;
+  }
 }
 
 Eigen::VectorXd Comparison::predicted(const Model& model) const {
   if (fidelity_ == Fidelity::fine) return predicted(model, Fidelity::fine);
-  const Eigen::VectorXd coarse = predicted(model, Fidelity::coarse);
+  const Eigen::VectorXd coarse = predicted(model, fidelity_);
   if (!coarse.size() || !coarse.allFinite()) return predicted(model, Fidelity::fine);
   return coarse + correction_;
 }
@@ -81,7 +85,7 @@ Eigen::VectorXd Comparison::predicted(const Model& model, Fidelity fidelity) con
 
 Eigen::VectorXd Comparison::predicted(const std::vector<Prediction>& per_stretch) const {
   Eigen::VectorXd result = gathered(per_stretch);
-  if (result.size() && fidelity_ == Fidelity::coarse) result += correction_;
+  if (result.size() && fidelity_ != Fidelity::fine) result += correction_;
   return result;
 }
 

@@ -35,9 +35,10 @@ class Comparison {
   const std::vector<Cell>& cells() const { return cells_; }
   Eigen::Index size() const { return size_; }
 
-  /// From here on predictions are coarse, corrected by what coarse steps change in the model without effects. A model that diverges in
-  /// coarse steps is simulated in fine ones, and so are all of them where coarse steps change a signal by more than a few floors and
-  /// a small share of its gap: they follow another motion then. `nominal` is the fine prediction of the model without effects.
+  /// From here on predictions are coarse, corrected by what coarse steps change in the model without effects: medium where coarse steps
+  /// change a signal by more than a few floors and a small share of its gap, since they follow another motion then, and fine where medium
+  /// ones do. A model that diverges in coarse steps is simulated in fine ones. `nominal` is the fine prediction of the model without
+  /// effects.
   void goCoarse(const Eigen::VectorXd& nominal);
   Fidelity fidelity() const { return fidelity_; }
 

@@ -19,7 +19,6 @@ namespace {
 
 constexpr double ms_per_s = 1000;
 constexpr int fewest_to_coarsen = 8;  ///< with fewer internal steps than that a simulation is cheap and as coarse as it can be
-constexpr int coarse_ratio = 4;       ///< internal steps that a coarse simulation makes one of
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* held_effect = "sensor_dropout";
 /// Friction within the muscles and the curvature of Eq. 1.
@@ -76,6 +75,11 @@ std::string keyOf(const Model& model) {
   }
   for (const auto& [name, value] : model.parameters) key += fmt::format(";{}={:a}", name, value);
   return key;
+}
+
+/// Internal steps that a simulation makes one of.
+int ratioOf(Fidelity fidelity) {
+  return fidelity == Fidelity::coarse ? 4 : fidelity == Fidelity::medium ? 2 : 1;
 }
 
 bool hasNumbers(const Signal& signal) {
@@ -218,7 +222,7 @@ Prediction Plant::predict(int recording, const Model& model, int end_row, Fideli
   const Recording& recorded = recordings_[static_cast<std::size_t>(recording)];
   const std::size_t all_rows = recorded.time_s.size();
   const std::size_t rows = end_row > 0 ? std::min(static_cast<std::size_t>(end_row), all_rows) : all_rows;
-  const std::string key = fmt::format("{} {} {} {}", recording, rows, possible(fidelity) == Fidelity::coarse, keyOf(model));
+  const std::string key = fmt::format("{} {} {} {}", recording, rows, ratioOf(possible(fidelity)), keyOf(model));
   if (store_.isNew(key)) count(recorded.time_s[rows - 1] - recorded.time_s.front());
   Prediction prediction = store_.get(key, [&] { return replay(recorded, model, end_row, fidelity); });
   holdWhereMeasured(recording, model, prediction);
@@ -245,7 +249,7 @@ Prediction Plant::replay(Recording recording, const Model& model, int end_row, F
     for (Signal& signal : recording.signals) signal.values.resize(static_cast<std::size_t>(end_row));
   }
   ReplayOptions options = options_.model;
-  if (possible(fidelity) == Fidelity::coarse) options.substeps = std::max(1, (reference_->substeps() + coarse_ratio - 1) / coarse_ratio);
+  if (const int ratio = ratioOf(possible(fidelity)); ratio > 1) options.substeps = (reference_->substeps() + ratio - 1) / ratio;
   for (const ActiveEffect& effect : model.effects)
     if (effect.id != held_effect) options.effects.push_back(effect);
   for (const auto& [name, value] : model.parameters) options.parameters.set(name, value, "diagnosis");

@@ -32,9 +32,10 @@ struct Split {
   std::string held_out_words;
 };
 
-/// How finely a simulation steps. A coarse one takes steps that are four times as long, which costs little; what it differs by is
-/// nearly the same for all models of one plant, so that differences between coarse predictions hold (Comparison corrects for the rest).
-enum class Fidelity { fine, coarse };
+/// How finely a simulation steps. A coarse one takes steps that are four times as long, a medium one twice, which costs little; what it
+/// differs by is nearly the same for all models of one plant, so that differences between coarse predictions hold (Comparison corrects for
+/// the rest).
+enum class Fidelity { fine, medium, coarse };
 
 /// A model: further effects and changed parameters beside the user's own.
 struct Model {
