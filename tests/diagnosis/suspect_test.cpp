@@ -110,6 +110,33 @@ TEST_F(PlantedRig, CoarseStepsAreCorrected) {
   EXPECT_LT(error, 0.02 * rms(with - fine)) << "of the payload's own change";
 }
 
+/// Between what coarse and what medium steps differ by from the fine ones.
+TEST_F(PlantedRig, MediumStepsAreTakenWhereOnlyTheyFollow) {
+  Comparison comparison(plant_, plant_.split().fit);
+  const Eigen::VectorXd coarse = comparison.predicted(Model{}, Fidelity::coarse), medium = comparison.predicted(Model{}, Fidelity::medium);
+  double largest_floors = 0;
+  for (const Comparison::Cell& cell : comparison.cells())
+    largest_floors = std::max(largest_floors, std::sqrt(comparison.meanSquare(cell, medium - coarse)) / cell.floor);
+  ASSERT_GT(largest_floors, 0);
+  const double bearable_floors = 5;
+  comparison.goCoarse(medium + (bearable_floors / largest_floors - 0.5) * (medium - coarse));
+  EXPECT_EQ(comparison.fidelity(), Fidelity::medium);
+}
+
+/// Three millimetres, sixty floors, a tenth of which is six.
+TEST_F(PlantedRig, CoarseStepsAreTakenBesideALargeGap) {
+  std::vector<Recording> recordings = planted::plant({});
+  for (Recording& recording : recordings)
+    for (double& value : recording.signals[1].values) value += 60 * planted::noise_mm;
+  const Plant far(recordings, options_);
+  Comparison beside(far, far.split().fit), without(plant_, plant_.split().fit);
+  const double shift_mm = 5.5 * planted::noise_mm;
+  for (Comparison* comparison : {&beside, &without})
+    comparison->goCoarse(comparison->predicted(Model{}, Fidelity::coarse).array() - shift_mm);
+  EXPECT_EQ(beside.fidelity(), Fidelity::coarse);
+  EXPECT_EQ(without.fidelity(), Fidelity::fine);
+}
+
 TEST_F(PlantedRig, CoarseStepsThatLeadElsewhereAreNotTaken) {
   Comparison comparison(plant_, plant_.split().fit);
   const Eigen::VectorXd elsewhere = comparison.predicted(Model{}).array() + 10 * planted::noise_mm;
