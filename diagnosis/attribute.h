@@ -76,9 +76,14 @@ class Attributor {
   void crossCheck();
   Eigen::VectorXd stepWithout(const std::set<std::size_t>& left_out, const Explanation& explanation, const Eigen::MatrixXd& jacobian) const;
   std::set<std::size_t> sameCommandsAs(std::size_t stretch) const;
-  Eigen::VectorXd misfitsOneByOne(const std::set<std::size_t>& left_out, const Explanation& explanation) const;
+  struct Unmoved {
+    std::vector<double> misfit;          ///< per stretch
+    std::vector<Eigen::VectorXd> shift;  ///< fine minus coarse prediction
+  };
+  Eigen::VectorXd partOf(std::size_t stretch, const Eigen::VectorXd& all) const;
+  Unmoved unmoved(const Explanation& explanation) const;
   Explanation movedWithout(const std::set<std::size_t>& left_out, const Explanation& explanation, Eigen::VectorXd step,
-                           const Eigen::VectorXd& unmoved_misfits) const;
+                           const Unmoved& unmoved) const;
   void predictFromOthers(Explanation& explanation) const;
 
   const Plant& plant_;

@@ -52,15 +52,16 @@ void Comparison::average(Eigen::VectorXd& values) const {
   }
 }
 
-void Comparison::goCoarse(const Eigen::VectorXd& nominal) {
-  constexpr double few_floors = 5, small_share = 0.1;
+void Comparison::goCoarse(const Eigen::VectorXd& nominal, double gap_share) {
+  constexpr double few_floors = 5;
+  if (nominal.size() != size_) return;
   const Eigen::VectorXd residual = measured_ - nominal;
   for (const Fidelity fidelity : {Fidelity::coarse, Fidelity::medium}) {
     const Eigen::VectorXd coarse = predicted(Model{}, fidelity);
     if (coarse.size() != nominal.size() || !coarse.allFinite()) continue;
     const Eigen::VectorXd correction = nominal - coarse;
     const bool follows = std::ranges::all_of(cells_, [&](const Cell& cell) {
-      const double bearable = std::max(few_floors * cell.floor, small_share * std::sqrt(meanSquare(cell, residual)));
+      const double bearable = std::max(few_floors * cell.floor, gap_share * std::sqrt(meanSquare(cell, residual)));
       return std::sqrt(meanSquare(cell, correction)) <= bearable;
     });
     if (!follows) continue;
@@ -83,9 +84,9 @@ Eigen::VectorXd Comparison::predicted(const Model& model, Fidelity fidelity) con
   return gathered(predictions);
 }
 
-Eigen::VectorXd Comparison::predicted(const std::vector<Prediction>& per_stretch) const {
+Eigen::VectorXd Comparison::predicted(const std::vector<Prediction>& per_stretch, Fidelity fidelity) const {
   Eigen::VectorXd result = gathered(per_stretch);
-  if (result.size() && fidelity_ != Fidelity::fine) result += correction_;
+  if (result.size() && fidelity != Fidelity::fine) result += correction_;
   return result;
 }
 
@@ -101,6 +102,10 @@ Eigen::VectorXd Comparison::gathered(const std::vector<Prediction>& per_stretch)
   }
   average(result);
   return result;
+}
+
+const Comparison::Cell& Comparison::cellLike(const Cell& other) const {
+  return *std::ranges::find_if(cells_, [&](const Cell& cell) { return cell.signal == other.signal && cell.block == other.block; });
 }
 
 double Comparison::meanSquare(const Cell& cell, const Eigen::VectorXd& residual) const {

@@ -33,20 +33,22 @@ class Comparison {
   const Plant& plant() const { return plant_; }
   const std::vector<Stretch>& stretches() const { return stretches_; }
   const std::vector<Cell>& cells() const { return cells_; }
+  /// The cell of this comparison's only stretch with the signal and averages of a cell of another comparison.
+  const Cell& cellLike(const Cell& other) const;
   Eigen::Index size() const { return size_; }
 
   /// From here on predictions are coarse, corrected by what coarse steps change in the model without effects: medium where coarse steps
-  /// change a signal by more than a few floors and a small share of its gap, since they follow another motion then, and fine where medium
-  /// ones do. A model that diverges in coarse steps is simulated in fine ones. `nominal` is the fine prediction of the model without
-  /// effects.
-  void goCoarse(const Eigen::VectorXd& nominal);
+  /// change a signal by more than a few floors, or `gap_share` of its gap where that is more, since they follow another motion then, and
+  /// fine where medium ones do. A model that diverges in coarse steps is simulated in fine ones. `nominal` is the fine prediction of the
+  /// model without effects.
+  void goCoarse(const Eigen::VectorXd& nominal, double gap_share = 0);
   Fidelity fidelity() const { return fidelity_; }
 
   /// What a model predicts at the compared rows; empty if it diverges on one of the stretches.
   Eigen::VectorXd predicted(const Model& model) const;
   Eigen::VectorXd predicted(const Model& model, Fidelity fidelity) const;
-  /// The same from simulations made elsewhere with fidelity().
-  Eigen::VectorXd predicted(const std::vector<Prediction>& per_stretch) const;
+  /// The same from simulations made elsewhere, in fine steps or with fidelity().
+  Eigen::VectorXd predicted(const std::vector<Prediction>& per_stretch, Fidelity fidelity) const;
   const Eigen::VectorXd& measured() const { return measured_; }
 
   /// Mean square of a vector's part in one cell.

@@ -2,6 +2,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "attribute.h"
@@ -38,31 +39,50 @@ Eigen::VectorXd Attributor::stepWithout(const std::set<std::size_t>& left_out, c
   return step;
 }
 
-/// Misfit of every stretch that is not left out; 0 for the others.
-Eigen::VectorXd Attributor::misfitsOneByOne(const std::set<std::size_t>& left_out, const Explanation& explanation) const {
-  Eigen::VectorXd misfits = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(one_by_one_.size()));
-  for (std::size_t k = 0; k < one_by_one_.size(); ++k) {
-    if (left_out.contains(k)) continue;
-    const Eigen::VectorXd predicted = one_by_one_[k].predicted(modelOf(explanation));
-    on_simulation_();
-    misfits[static_cast<Eigen::Index>(k)] =
-        one_by_one_[k].logMisfit(predicted.size() ? Eigen::VectorXd(one_by_one_[k].measured() - predicted) : predicted);
-  }
-  return misfits;
+/// The part of a vector over all stretches that belongs to one of them, in the order of that one's own comparison.
+Eigen::VectorXd Attributor::partOf(std::size_t stretch, const Eigen::VectorXd& all) const {
+  const Comparison& one = one_by_one_[stretch];
+  Eigen::VectorXd part(one.size());
+  for (const Comparison::Cell& cell : fit_.cells())
+    if (cell.stretch == stretch) {
+      const Comparison::Cell& same = one.cellLike(cell);
+      part.segment(same.first, same.count()) = all.segment(cell.first, cell.count());
+    }
+  return part;
 }
 
-/// The explanation moved by a step, or by as much of it as does not fit the stretches that are not left out worse than it does unmoved.
+/// An explanation as it is: what fine steps leave of each stretch, and by how much they differ from coarse ones there.
+Attributor::Unmoved Attributor::unmoved(const Explanation& explanation) const {
+  Unmoved result;
+  for (std::size_t k = 0; k < one_by_one_.size(); ++k) {
+    const Comparison& one = one_by_one_[k];
+    const Eigen::VectorXd residual = partOf(k, explanation.residual), coarse = one.predicted(modelOf(explanation));
+    on_simulation_();
+    result.misfit.push_back(one.logMisfit(residual));
+    result.shift.push_back(coarse.size() ? Eigen::VectorXd(one.measured() - residual - coarse) : Eigen::VectorXd::Zero(one.size()));
+  }
+  return result;
+}
+
+/// The explanation moved by a step, or by as much of it as does not fit the stretches that are not left out worse than it does unmoved. In
+/// coarse steps, with what these change in the explanation as it is.
 Explanation Attributor::movedWithout(const std::set<std::size_t>& left_out, const Explanation& explanation, Eigen::VectorXd step,
-                                     const Eigen::VectorXd& unmoved_misfits) const {
+                                     const Unmoved& unmoved) const {
   constexpr int halving_count = 3;
   constexpr double worse = 0.02;  // misfit that is no reason to go less far
   Explanation moved = explanation;
-  double before = 0;
-  for (Eigen::Index k = 0; k < unmoved_misfits.size(); ++k)
-    if (!left_out.contains(static_cast<std::size_t>(k))) before += unmoved_misfits[k];
+  auto gainOf = [&](std::size_t k) {
+    const Eigen::VectorXd coarse = one_by_one_[k].predicted(modelOf(moved));
+    on_simulation_();
+    if (!coarse.size()) return -std::numeric_limits<double>::infinity();
+    return unmoved.misfit[k] - one_by_one_[k].logMisfit(one_by_one_[k].measured() - coarse - unmoved.shift[k]);
+  };
   for (int i = 0; i < halving_count && step.size(); ++i, step *= 0.5) {
     moved.z = clampedAll(explanation.suspects, explanation.z + step);
-    if (misfitsOneByOne(left_out, moved).sum() < before + worse) return moved;
+    double gain = worse;
+    for (std::size_t k = 0; k < one_by_one_.size(); ++k)
+      if (!left_out.contains(k)) gain += gainOf(k);
+    if (gain > 0) return moved;
   }
   return explanation;
 }
@@ -77,13 +97,13 @@ void Attributor::predictFromOthers(Explanation& explanation) const {
   const Eigen::MatrixXd jacobian =
       effect_count ? derivatives(fit_, problem, problem.start).leftCols(effect_count).eval() : Eigen::MatrixXd(fit_.size(), 0);
   const Eigen::VectorXd with_all = stepWithout({}, explanation, jacobian);
-  const Eigen::VectorXd unmoved_misfits = effect_count ? misfitsOneByOne({}, explanation) : Eigen::VectorXd();
+  const Unmoved as_it_is = effect_count ? unmoved(explanation) : Unmoved{};
   Eigen::VectorXd unseen = explanation.residual;
   for (std::size_t k = 0; k < one_by_one_.size(); ++k) {
     if (plant_.interrupted()) return;
     const std::set<std::size_t> left_out = sameCommandsAs(k);
     const Eigen::VectorXd step = stepWithout(left_out, explanation, jacobian) - with_all;
-    const Explanation without = movedWithout(left_out, explanation, step, unmoved_misfits);
+    const Explanation without = movedWithout(left_out, explanation, step, as_it_is);
     const Comparison& one = one_by_one_[k];
     Eigen::VectorXd left = one.predicted(modelOf(without), Fidelity::fine);
     on_simulation_();
@@ -91,10 +111,8 @@ void Attributor::predictFromOthers(Explanation& explanation) const {
     if (goes_on) left = one.measured() - left;
     for (const Comparison::Cell& cell : fit_.cells()) {
       if (cell.stretch != k) continue;
-      const Comparison::Cell& same = *std::ranges::find_if(
-          one.cells(), [&](const Comparison::Cell& other) { return other.signal == cell.signal && other.block == cell.block; });
       const Eigen::VectorXd& source = goes_on ? left : nominal_residual_;
-      unseen.segment(cell.first, cell.count()) = source.segment(goes_on ? same.first : cell.first, cell.count());
+      unseen.segment(cell.first, cell.count()) = source.segment(goes_on ? one.cellLike(cell).first : cell.first, cell.count());
     }
   }
   explanation.unseen = unseen;

@@ -22,7 +22,7 @@ struct Prediction {
 class PredictionStore {
  public:
   /// It forgets everything when it would hold more numbers than that.
-  explicit PredictionStore(std::size_t number_limit = 32'000'000) : number_limit_(number_limit) {}
+  explicit PredictionStore(std::size_t number_limit = 8'000'000) : number_limit_(number_limit) {}
 
   /// The prediction of this key, by `make` if it is not there.
   Prediction get(const std::string& key, const std::function<Prediction()>& make);

@@ -180,7 +180,7 @@ Eigen::VectorXd shamResidual(const Comparison& fitted, const Comparison& held_ou
       predictions.push_back(comparison.plant().predict(stretch.recording, Model{}, disturbed(recording, sines, amplitude), stretch.end_row,
                                                        comparison.fidelity()));
     }
-    return comparison.predicted(predictions);
+    return comparison.predicted(predictions, comparison.fidelity());
   };
   constexpr double typical = 0.02;
   FitProblem problem;

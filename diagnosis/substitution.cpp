@@ -235,9 +235,9 @@ Eigen::VectorXd residualUnderMeasuredPressures(const Comparison& comparison) {
         commands[row][static_cast<std::size_t>(muscle)] = last;
       }
     }
-    predictions.push_back(plant.predict(stretch.recording, Model{}, commands, stretch.end_row, comparison.fidelity()));
+    predictions.push_back(plant.predict(stretch.recording, Model{}, commands, stretch.end_row, Fidelity::fine));
   }
-  const Eigen::VectorXd predicted = comparison.predicted(predictions);
+  const Eigen::VectorXd predicted = comparison.predicted(predictions, Fidelity::fine);
   if (!predicted.size()) return {};
   return comparison.measured() - predicted;
 }

@@ -132,7 +132,7 @@ TEST_F(PlantedRig, CoarseStepsAreTakenBesideALargeGap) {
   Comparison beside(far, far.split().fit), without(plant_, plant_.split().fit);
   const double shift_mm = 5.5 * planted::noise_mm;
   for (Comparison* comparison : {&beside, &without})
-    comparison->goCoarse(comparison->predicted(Model{}, Fidelity::coarse).array() - shift_mm);
+    comparison->goCoarse(comparison->predicted(Model{}, Fidelity::coarse).array() - shift_mm, 0.1);
   EXPECT_EQ(beside.fidelity(), Fidelity::coarse);
   EXPECT_EQ(without.fidelity(), Fidelity::fine);
 }
