@@ -2,8 +2,8 @@
 
 #include <chrono>
 
+#include "musclesim/error.h"
 #include "shared.h"
-#include "simulation/scene/scene_error.h"
 #include "window.h"
 
 namespace musclesim {
@@ -54,7 +54,7 @@ Display::Display(DisplayOptions options, ManualController& hands, Snapshot first
     if (!shared_->is_stuck) continue;
     const std::string reason = shared_->loss().value_or("the display is gone");
     abandon(thread_, shared_);
-    throw SceneError("no window can be opened: " + reason);
+    throw IoError("no window can be opened: " + reason);
   }
   opened.get();
 }

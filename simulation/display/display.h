@@ -23,12 +23,14 @@ struct DisplayOptions {
   std::string log_file;        ///< one line of JSON per key or click with the state after it; empty: none
 };
 
-/// A window with a thread of its own, so that the picture keeps its rate whatever a step costs. At most one in a process at a time.
+/// A window with a thread of its own, so that the picture keeps its rate whatever a step costs. At most one in a process at a time. After
+/// a loss() that thread never ends and holds the display: a program must leave by _Exit then.
 class Display {
  public:
   using Interrupted = std::function<bool()>;
 
-  /// Opens the window. Throws SceneError where there is no display or it cannot draw the scene.
+  /// Opens the window. Throws SceneError where there is no display or it cannot draw the scene, IoError where the display is lost
+  /// meanwhile.
   Display(DisplayOptions options, ManualController& hands, Snapshot first);
   /// Closes it.
   ~Display();

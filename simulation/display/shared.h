@@ -24,6 +24,7 @@ struct Display::Shared {
   ManualController& hands;
   Pace pace;
   std::promise<void> opened;            ///< or why it could not be
+  std::atomic<bool> is_ending = false;  ///< nothing is drawn any more
   std::atomic<bool> has_ended = false;  ///< the window's thread is done
   std::atomic<bool> is_stuck = false;   ///< it never will be: its display or its window is gone
   std::atomic<long> frame_count = 0;

@@ -42,9 +42,10 @@ int stopAtLostDisplay(::Display*) {
   stopHere("the connection to the display is lost");
 }
 
-/// Mostly the window is gone. Mesa's drawing in software would go on with a size that the failed question for it has left unset.
+/// Mostly the window is gone. Mesa's drawing in software would go on with a size that the failed question for it has left unset. Only where
+/// nothing is drawn any more an error does not matter.
 int stopAtError(::Display* display, XErrorEvent* error) {
-  if (shared_of_handlers->pace.isClosed()) return 0;
+  if (shared_of_handlers->is_ending) return 0;
   char text[256];
   XGetErrorText(display, error->error_code, text, sizeof text);
   stopHere(fmt::format("X error in request {}.{}: {}", error->request_code, error->minor_code, text));
@@ -137,9 +138,9 @@ void Window::open() {
   int count = 1;
   char name[] = "musclesim";
   char* arguments[] = {name, nullptr};
-  glutInit(&count, arguments);
   XSetIOErrorHandler(stopAtLostDisplay);
   XSetErrorHandler(stopAtError);
+  glutInit(&count, arguments);
   glutSetOption(GLUT_ACTION_ON_WINDOW_CLOSE, GLUT_ACTION_CONTINUE_EXECUTION);
   glutInitDisplayMode(GLUT_RGB | GLUT_DOUBLE | GLUT_DEPTH);
   glutInitWindowSize(width_, height_);
@@ -175,6 +176,7 @@ void Window::listen() {
 
 /// The context is still there and current.
 void Window::closed() {
+  shared_.is_ending = true;
   shared_.pace.close();
   window_ = 0;
   panel_.reset();
@@ -188,6 +190,7 @@ void Window::loop() {
   while (!shared_.pace.isClosed()) {
     glutMainLoopEvent();
     if (window_ == 0) return;
+    if (shared_.pace.isClosed()) break;
     const auto now = Clock::now();
     if (now < next_frame) {
       std::this_thread::sleep_for(std::min<Clock::duration>(next_frame - now, 2ms));
