@@ -37,7 +37,7 @@ Json toJson(const FoundEffect& effect) {
 }
 
 Json toJson(const Place& place) {
-  Json json = {{"stage", place.stage}, {"component", place.component}, {"share", place.share}};
+  Json json = {{"stage", place.stage}, {"component", place.component}, {"share", place.share}, {"ruled_out", place.is_ruled_out}};
   if (!place.regime.empty()) json["regime"] = place.regime;
   return json;
 }

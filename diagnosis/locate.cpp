@@ -222,7 +222,8 @@ Location locate(const Comparison& comparison, const std::vector<Suspect>& suspec
   Location location{{}, evidence.words()};
   for (std::size_t i = 0; i < stage_count; ++i) {
     const auto stage = static_cast<Stage>(i);
-    location.places.push_back({nameOf(stage), componentOf(stage, suspects, signatures, evidence.wrongSignal()), regime, weights[i]});
+    location.places.push_back({nameOf(stage), componentOf(stage, suspects, signatures, evidence.wrongSignal()), regime, weights[i],
+                               evidence.speaksAgainst(stage)});
   }
   std::ranges::stable_sort(location.places, [](const Place& a, const Place& b) { return a.share > b.share; });
   return location;

@@ -223,8 +223,9 @@ Prediction Plant::predict(int recording, const Model& model, int end_row, Fideli
   const std::size_t all_rows = recorded.time_s.size();
   const std::size_t rows = end_row > 0 ? std::min(static_cast<std::size_t>(end_row), all_rows) : all_rows;
   const std::string key = fmt::format("{} {} {} {}", recording, rows, ratioOf(possible(fidelity)), keyOf(model));
-  if (store_.isNew(key)) count(recorded.time_s[rows - 1] - recorded.time_s.front());
+  const bool is_new = store_.isNew(key);
   Prediction prediction = store_.get(key, [&] { return replay(recorded, model, end_row, fidelity); });
+  if (is_new && !prediction.refused) count(recorded.time_s[rows - 1] - recorded.time_s.front());
   holdWhereMeasured(recording, model, prediction);
   return prediction;
 }
@@ -259,7 +260,7 @@ Prediction Plant::replay(Recording recording, const Model& model, int end_row, F
   } catch (const BadParameter&) {
     // Such an effect cannot act on this plant, for example a payload that takes away more than there is.
     if (model.effects.empty() && model.parameters.empty()) throw;
-    return {std::vector<std::vector<double>>(signals_.size(), std::vector<double>(all_rows, nan)), true};
+    return {std::vector<std::vector<double>>(signals_.size(), std::vector<double>(all_rows, nan)), true, true};
   }
 
   Prediction prediction;

@@ -16,6 +16,7 @@ namespace musclesim {
 struct Prediction {
   std::vector<std::vector<double>> values;
   bool diverged = false;
+  bool refused = false;  ///< not simulated: such an effect cannot act on this plant
 };
 
 /// Predictions by what they were made of. May be used from several threads; what two ask for at the same time may be made twice.

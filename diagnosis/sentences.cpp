@@ -7,6 +7,8 @@
 #include <cctype>
 #include <cmath>
 
+#include "musclesim/effect/catalogue.h"
+
 namespace musclesim {
 
 namespace {
@@ -70,16 +72,39 @@ bool isTold(const std::vector<Place>& where) {
   return !where.empty() && where.front().share >= told_share;
 }
 
+namespace {
+
+/// The stages but the first that the signals do not speak against.
+std::vector<std::string> othersPossible(const std::vector<Place>& where) {
+  std::vector<std::string> others;
+  for (auto place = where.begin() + 1; place != where.end(); ++place)
+    if (!place->is_ruled_out) others.push_back(place->stage);
+  return others;
+}
+
+bool isBeforeTheForce(const std::string& stage) {
+  return stage == nameOf(Stage::command) || stage == nameOf(Stage::pressure);
+}
+
+}  // namespace
+
 std::string whereSentence(const Diagnosis& d) {
   const Place& place = d.where.front();
   const std::string regime = place.regime.empty() ? "" : ", mostly while " + place.regime;
-  if (isTold(d.where) || d.where.size() < 2)
-    return fmt::format("{:.0f} % of the gap is in the {} stage ({}){}", 100 * place.share, place.stage, componentWords(place.component),
-                       regime);
-  const Place& next = d.where[1];
-  return fmt::format("These signals do not tell at which stage the gap arises: {} ({}, {:.0f} %) or {} ({}, {:.0f} %) come nearest{}",
-                     place.stage, componentWords(place.component), 100 * place.share, next.stage, componentWords(next.component),
-                     100 * next.share, regime);
+  const std::string component = componentWords(place.component);
+  const double percent = 100 * place.share;
+  if (!isTold(d.where) && d.where.size() > 1) {
+    const Place& next = d.where[1];
+    return fmt::format("These signals do not tell at which stage the gap arises: {} ({}, {:.0f} %) or {} ({}, {:.0f} %) come nearest{}",
+                       place.stage, component, percent, next.stage, componentWords(next.component), 100 * next.share, regime);
+  }
+  const std::vector<std::string> others = othersPossible(d.where);
+  // A pressure is commanded: what is before the force is one place.
+  if (isBeforeTheForce(place.stage) ? std::ranges::all_of(others, isBeforeTheForce) : others.empty())
+    return fmt::format("{:.0f} % of the gap is in the {} stage ({}){}", percent, place.stage, component, regime);
+  constexpr std::size_t all_others = 4;
+  return fmt::format("By its shape the gap is of the {} stage ({}, {:.0f} %){}; these signals do not rule out {}", place.stage, component,
+                     percent, regime, others.size() == all_others ? "any other" : fmt::format("{}", fmt::join(others, " or ")));
 }
 
 namespace {

@@ -10,7 +10,7 @@ namespace musclesim {
 namespace {
 
 Prediction predictionOf(double value) {
-  return {{{value, value}, {value}}, false};
+  return {{{value, value}, {value}}};
 }
 
 TEST(PredictionStore, MakesAPredictionOnce) {

@@ -50,6 +50,19 @@ TEST(VerdictSentence, DoesNotNameAStageThatIsHardlyAheadOfTheNext) {
             "nearest");
 }
 
+TEST(VerdictSentence, TellsWhatSignalsShowFromWhatTheGapLooksLike) {
+  Diagnosis d = lagFound();
+  d.where = {{"force", "muscle_0", "", 0.95}, {"body", "hand", "", 0.04}, {"sensor", "all", "", 0.01}, {"pressure", "all", "", 0, true}};
+  EXPECT_EQ(whereSentence(d), "By its shape the gap is of the force stage (muscle 0, 95 %); these signals do not rule out body or sensor");
+  for (std::size_t i = 1; i < d.where.size(); ++i) d.where[i].is_ruled_out = true;
+  EXPECT_EQ(whereSentence(d), "95 % of the gap is in the force stage (muscle 0)");
+  d.where = {{"sensor", "all", "", 0.6}, {"force", "all", "", 0.2}, {"body", "all", "", 0.2}, {"command", "all"}, {"pressure", "all"}};
+  EXPECT_EQ(whereSentence(d),
+            "By its shape the gap is of the sensor stage (all components, 60 %); these signals do not rule out any other");
+  d.where = {{"pressure", "muscle_1", "venting", 0.81}, {"command", "all", "", 0.15}, {"force", "all", "", 0.04, true}};
+  EXPECT_EQ(whereSentence(d), "81 % of the gap is in the pressure stage (muscle 1), mostly while venting");
+}
+
 TEST(VerdictSentence, LeavesOutWhatSaysNothing) {
   Diagnosis d = lagFound();
   d.effects.front().parameters["fill_time_constant_s"] = {};

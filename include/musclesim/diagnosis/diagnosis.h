@@ -46,7 +46,8 @@ struct Estimate {
 
 struct Place {
   std::string stage, component, regime;
-  double share = 0;  ///< of the gap
+  double share = 0;           ///< of the gap
+  bool is_ruled_out = false;  ///< the signals speak against this stage; among the others the share is likeness alone
 };
 
 struct FoundEffect {
