@@ -167,8 +167,11 @@ std::string otherwise(const Diagnosis& d) {
   others.front().front() = static_cast<char>(std::toupper(static_cast<unsigned char>(others.front().front())));
   const char* which = d.next_experiment.separates.size() > others.size() ? "them" : "the likeliest of them";
   const bool pairs = std::ranges::any_of(d.alternatives, [](const std::string& labels) { return labels.find(" + ") != std::string::npos; });
-  return fmt::format(" {} would explain it as well{}{}.", fmt::join(others, pairs ? "; or " : " or "), place,
-                     d.next_experiment.commands.empty() ? "" : fmt::format("; record the schedule in next.csv to tell {} apart", which));
+  std::string experiment;
+  if (!d.next_experiment.commands.empty()) experiment = fmt::format("; record the schedule in next.csv to tell {} apart", which);
+  if (!experiment.empty() && d.next_experiment.difference < 1)
+    experiment += fmt::format(", though even there they differ by no more than {:.1f} times the noise", d.next_experiment.difference);
+  return fmt::format(" {} would explain it as well{}{}.", fmt::join(others, pairs ? "; or " : " or "), place, experiment);
 }
 
 /// Where that the catalogue holds the cause is not taken for granted.

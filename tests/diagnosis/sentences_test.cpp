@@ -105,7 +105,10 @@ TEST(VerdictSentence, SaysWhetherTheExperimentTellsAllApart) {
   Diagnosis d = lagFound();
   d.next_experiment.commands = {{0.5}};
   d.next_experiment.separates = d.ambiguity_set;
-  EXPECT_TRUE(contains(verdictSentence(d), "record the schedule in next.csv to tell them apart"));
+  d.next_experiment.difference = 3.2;
+  EXPECT_TRUE(contains(verdictSentence(d), "record the schedule in next.csv to tell them apart."));
+  d.next_experiment.difference = 0.7;
+  EXPECT_TRUE(contains(verdictSentence(d), "to tell them apart, though even there they differ by no more than 0.7 times the noise."));
   d.alternatives.emplace_back("leak@muscle_1");
   EXPECT_TRUE(contains(verdictSentence(d), "to tell the likeliest of them apart"));
 }
