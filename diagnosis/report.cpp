@@ -7,6 +7,7 @@
 
 #include "../log/svg.h"
 #include "musclesim/diagnosis/diagnosis.h"
+#include "musclesim/effect/catalogue.h"
 #include "musclesim/version.h"
 #include "report_figures.h"
 #include "sentences.h"
@@ -19,6 +20,7 @@ constexpr const char* style = R"(body{font:16px/1.5 system-ui,sans-serif;color:#
 h1{font-size:1.5rem}h2{font-size:1.15rem;border-bottom:1px solid #ccc;margin-top:2rem}
 .verdict{font-size:1.25rem;padding:.8rem 1rem;border-left:.4rem solid #333;background:#f3f3f3}
 body{overflow-wrap:break-word}table{border-collapse:collapse;width:100%}td,th{text-align:left;padding:.2rem .6rem;border-bottom:1px solid #ddd;vertical-align:top}
+@media(max-width:36rem){td,th{padding:.2rem .3rem;font-size:.85rem}}
 td.number,th.number{text-align:right;font-variant-numeric:tabular-nums}
 svg{max-width:100%;height:auto;display:block;margin:.5rem 0}code{font-size:.9em}
 .scroll,.trace{overflow-x:auto}.trace svg{min-width:36rem}@media print{.screen{display:none}.scroll,.trace{overflow:visible}.trace svg{min-width:0}body{max-width:none}h2{break-after:avoid}svg,table{break-inside:avoid}})";
@@ -42,11 +44,20 @@ std::string paragraph(const std::string& words) {
   return "<p>" + escapedXml(words) + "</p>\n";
 }
 
+/// What the robot's drawing shows in colour: the place that the signals show, or else where the best explanation acts.
+std::string drawing(const Diagnosis& d) {
+  if (isLocated(d.where)) return robotFigure(d.drawing, d.where.front());
+  const auto best =
+      std::ranges::find_if(d.effects, [&](const FoundEffect& effect) { return d.chosen.size() && effect.label() == d.chosen.front(); });
+  if (best == d.effects.end()) return robotFigure(d.drawing, {});
+  return robotFigure(d.drawing, {nameOf(effectInfo(best->id).stage), best->component, {}}) +
+         paragraph(fmt::format("In colour, where it can be drawn: {}, where the best explanation acts.", componentWords(best->component)));
+}
+
 std::string where(const Diagnosis& d) {
   if (d.where.empty()) return "";
   return heading("Where") + paragraph("A sample goes from command to pressure, force, body and sensor. " + whereSentence(d) + ".") +
-         stagesFigure(d.where) + robotFigure(d.drawing, isTold(d.where) ? d.where.front() : Place{}) +
-         paragraph("How this was told: " + d.where_method + ".");
+         stagesFigure(d.where) + drawing(d) + paragraph("How this was told: " + d.where_method + ".");
 }
 
 bool triedAlone(const Diagnosis& d, const FoundEffect& effect) {

@@ -58,7 +58,7 @@ std::string stagesFigure(const std::vector<Place>& where) {
     const double x = 2 + static_cast<double>(i) * (box + gap);
     const auto place = std::ranges::find(where, std::string(stages[i]), &Place::stage);
     const double share = place == where.end() ? 0 : place->share;
-    const bool first = isTold(where) && place == where.begin();
+    const bool first = isLocated(where) && place == where.begin();
     const int grey = static_cast<int>(std::lround(245 - 190 * share));
     const std::string ink = share > 0.5 ? "#ffffff" : "#222222";
     markup += fmt::format(

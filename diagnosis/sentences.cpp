@@ -88,6 +88,13 @@ bool isBeforeTheForce(const std::string& stage) {
 
 }  // namespace
 
+bool isLocated(const std::vector<Place>& where) {
+  if (!isTold(where)) return false;
+  const std::vector<std::string> others = othersPossible(where);
+  // A pressure is commanded: what is before the force is one place.
+  return isBeforeTheForce(where.front().stage) ? std::ranges::all_of(others, isBeforeTheForce) : others.empty();
+}
+
 std::string whereSentence(const Diagnosis& d) {
   const Place& place = d.where.front();
   const std::string regime = place.regime.empty() ? "" : ", mostly while " + place.regime;
@@ -98,10 +105,8 @@ std::string whereSentence(const Diagnosis& d) {
     return fmt::format("These signals do not tell at which stage the gap arises: {} ({}, {:.0f} %) or {} ({}, {:.0f} %) come nearest{}",
                        place.stage, component, percent, next.stage, componentWords(next.component), 100 * next.share, regime);
   }
+  if (isLocated(d.where)) return fmt::format("{:.0f} % of the gap is in the {} stage ({}){}", percent, place.stage, component, regime);
   const std::vector<std::string> others = othersPossible(d.where);
-  // A pressure is commanded: what is before the force is one place.
-  if (isBeforeTheForce(place.stage) ? std::ranges::all_of(others, isBeforeTheForce) : others.empty())
-    return fmt::format("{:.0f} % of the gap is in the {} stage ({}){}", percent, place.stage, component, regime);
   constexpr std::size_t all_others = 4;
   return fmt::format("By its shape the gap is of the {} stage ({}, {:.0f} %){}; these signals do not rule out {}", place.stage, component,
                      percent, regime, others.size() == all_others ? "any other" : fmt::format("{}", fmt::join(others, " or ")));

@@ -10,6 +10,8 @@ namespace musclesim {
 std::string verdictSentence(const Diagnosis& diagnosis);
 /// The first place holds half of the gap or more.
 bool isTold(const std::vector<Place>& where);
+/// And the signals rule out that it is anywhere else.
+bool isLocated(const std::vector<Place>& where);
 std::string whereSentence(const Diagnosis& diagnosis);
 /// "muscle 1" of "muscle_1", "all components" of "all".
 std::string componentWords(const std::string& component);

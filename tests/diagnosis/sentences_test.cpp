@@ -56,7 +56,8 @@ TEST(VerdictSentence, TellsWhatSignalsShowFromWhatTheGapLooksLike) {
   EXPECT_EQ(whereSentence(d), "By its shape the gap is of the force stage (muscle 0, 95 %); these signals do not rule out body or sensor");
   for (std::size_t i = 1; i < d.where.size(); ++i) d.where[i].is_ruled_out = true;
   EXPECT_EQ(whereSentence(d), "95 % of the gap is in the force stage (muscle 0)");
-  d.where = {{"sensor", "all", "", 0.6}, {"force", "all", "", 0.2}, {"body", "all", "", 0.2}, {"command", "all"}, {"pressure", "all"}};
+  d.where = {
+      {"sensor", "all", "", 0.6}, {"force", "all", "", 0.2}, {"body", "all", "", 0.2}, {"command", "all", ""}, {"pressure", "all", ""}};
   EXPECT_EQ(whereSentence(d),
             "By its shape the gap is of the sensor stage (all components, 60 %); these signals do not rule out any other");
   d.where = {{"pressure", "muscle_1", "venting", 0.81}, {"command", "all", "", 0.15}, {"force", "all", "", 0.04, true}};
