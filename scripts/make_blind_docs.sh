@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Writes docs/blind.md and three figures: makes cases with withheld causes from a seed, diagnoses them without the key, scores.
 # Resumable: the same call goes on with the diagnoses where it was stopped; making the cases, a matter of minutes, begins anew. A case on rig
-# or elbow takes a quarter to one CPU minute, and as much again to follow up on (FOLLOW=no leaves that out); one on the arm a quarter of an
-# hour. 132 cases: about two hours on two free cores.
+# or elbow takes one to four CPU minutes, a null one a second, and as much again to follow up on (FOLLOW=no leaves that out); one on the
+# arm more than a quarter of an hour. 120 cases on rig and elbow: about an hour and a half on two free cores without follow-ups.
 # Usage: scripts/make_blind_docs.sh SEED CASES KEYS [build folder] [options of `blind make`]
 #     SEED           of all draws; one that has not been used since the diagnosis was changed last. That of the cases where there are any
 #     CASES          folder for the cases; new, or of a call that was stopped after it had made them
