@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -54,36 +53,6 @@ TEST(Diagnose, DoesNotDependOnTheNumberOfThreads) {
     answers.push_back(diagnosisJson(found));
   }
   EXPECT_EQ(answers[0], answers[1]);
-}
-
-/// The trial with that effect alone.
-const Trial& trialOf(const Diagnosis& diagnosis, const std::string& label) {
-  return *std::ranges::find(diagnosis.trials, std::vector<std::string>{label}, &Trial::effects);
-}
-
-/// ln of what is left unseen over what is left seen, summed over all cells.
-double lostUnseen(const Trial& trial) {
-  double sum = 0;
-  for (std::size_t i = 0; i < trial.rms.size(); ++i) sum += std::log(trial.rms_unseen.at(i) / trial.rms[i]);
-  return sum;
-}
-
-TEST(Diagnose, JudgesByRecordingsThatTheNumbersWereNotFittedTo) {
-  // The scale of the force is 10 % off in one recording and 20 % in the other: no number fits both.
-  auto scaled = [](double gain, double amplitude, std::uint64_t seed) {
-    return recorded({{"force_gain", "muscle_0", {{"gain", gain}}}}, amplitude, seed);
-  };
-  const DiagnosisOptions options = few({"force_gain"});
-  const Diagnosis same = diagnose({scaled(0.85, 0.15, 1), scaled(0.85, 0.1, 3), scaled(0.85, 0.2, 2)}, options),
-                  different = diagnose({scaled(0.9, 0.15, 1), scaled(0.8, 0.1, 3), scaled(0.9, 0.2, 2)}, options);
-  EXPECT_NEAR(lostUnseen(trialOf(same, "force_gain@muscle_0")), 0, 0.1);
-  EXPECT_GT(lostUnseen(trialOf(different, "force_gain@muscle_0")), 1);
-}
-
-TEST(Diagnose, OneRecordingAndItsRepeatAreSeenTogether) {
-  const std::vector<ActiveEffect> heavy = {{"payload", "hand", {{"mass_kg", 0.2}}}};
-  const Diagnosis found = diagnose({recorded(heavy, 0.15, 1), recorded(heavy, 0.15, 3), recorded(heavy, 0.2, 2)}, few({"payload"}));
-  EXPECT_TRUE(trialOf(found, "payload@hand").rms_unseen.empty());
 }
 
 TEST(Diagnose, JsonHasWhatTheContractAsksFor) {
