@@ -48,7 +48,7 @@ std::string paragraph(const std::string& words) {
 std::string drawing(const Diagnosis& d) {
   if (isLocated(d.where)) return robotFigure(d.drawing, d.where.front());
   const auto best =
-      std::ranges::find_if(d.effects, [&](const FoundEffect& effect) { return d.chosen.size() && effect.label() == d.chosen.front(); });
+      std::ranges::find_if(d.effects, [&](const FoundEffect& effect) { return !d.chosen.empty() && effect.label() == d.chosen.front(); });
   if (best == d.effects.end()) return robotFigure(d.drawing, {});
   return robotFigure(d.drawing, {nameOf(effectInfo(best->id).stage), best->component, {}}) +
          paragraph(fmt::format("In colour, where it can be drawn: {}, where the best explanation acts.", componentWords(best->component)));
