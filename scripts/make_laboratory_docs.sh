@@ -3,11 +3,11 @@
 # the figures docs/figures/fit_festo.svg and docs/figures/experiment_medium.svg.
 # Usage: scripts/make_laboratory_docs.sh DATA [build folder]
 #     DATA           folder with martens-dmsp-static/dmsp20_300.csv and psu-bpa10-isometric/static_points.csv
-#     build folder   default: build/dev; holds musclesim and tests/bench/fit_coverage
+#     build folder   default: build/release; holds musclesim and tests/bench/fit_coverage
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 data="${1:?usage: scripts/make_laboratory_docs.sh DATA [build folder]}"
-build="${2:-build/dev}"
+build="${2:-build/release}"
 festo="$data/martens-dmsp-static/dmsp20_300.csv"
 braided="$data/psu-bpa10-isometric/static_points.csv"
 for file in "$festo" "$braided"; do

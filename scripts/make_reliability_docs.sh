@@ -4,11 +4,11 @@
 #     scripts/make_reliability_docs.sh [ROW ...]       default: all that need no fresh machine; DATE of the last run stands in each row
 #
 # A command that ends with status 77 could not try what it should: "not tried". The last result of every row is kept in docs/reliability/ROW.txt: how it ended, when, and what its command printed. Rows that are not named
-# keep theirs. Uses build/dev and, for the parsers, build/fuzz. BUILD=folder chooses another build.
+# keep theirs. Uses build/release and, for the parsers, build/fuzz. BUILD=folder chooses another build.
 set -euo pipefail
 root=$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")
 cd "$root"
-build=${BUILD:-build/dev}
+build=${BUILD:-build/release}
 
 # name|what is promised|command
 rows=(
@@ -29,7 +29,7 @@ rows=(
   "slurm|a disturbed sweep under Slurm, batch file of the documentation|tests/cluster/cluster_check.sh slurm $build/musclesim"
 )
 
-[[ -e $build/build.ninja ]] || { echo "make_reliability_docs: there is no build in $build; cmake --preset dev makes one" >&2; exit 2; }
+[[ -e $build/build.ninja ]] || { echo "make_reliability_docs: there is no build in $build; cmake --preset release makes one" >&2; exit 2; }
 cmake --build "$build" --target musclesim fuzz_tests reliability_tests robot_tests log_tests analytic_tests soak_study sweep_study >&2
 mkdir -p docs/reliability
 # passed_some: whether a test program's output (standard input) tells of at least one test that passed; a filter may match none.

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # Makes the pictures of docs/window.md, docs/figures/window*.png, and the table of its section "Measured".
-# Usage: scripts/make_window_docs.sh [build folder]   (default: build/dev)
+# Usage: scripts/make_window_docs.sh [build folder]   (default: build/release)
 # Needs Xvfb, xdotool, ffmpeg and ImageMagick.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-build="${1:-build/dev}"
+build="${1:-build/release}"
 program="$PWD/$build/musclesim"
 figures="$PWD/docs/figures"
 page="$PWD/docs/window.md"

@@ -14,8 +14,8 @@ root=$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")
 source "$root/scripts/common.sh"
 
 "$root/scripts/install_dependencies.sh"
-# A user's compiler may warn where ours does not, and the tests are not built here. Settings of an existing build stay.
-build_preset release musclesim -DMUSCLESIM_TESTS=OFF -DMUSCLESIM_WARNINGS_AS_ERRORS=OFF
+# The tests are not built here. Settings of an existing build stay.
+build_preset release musclesim -DMUSCLESIM_TESTS=OFF
 
 if (($# == 0)); then
   if [[ -z ${DISPLAY-} ]]; then

@@ -2,7 +2,7 @@
 # No network and no shell: the program and the library may import no function of either. Usage: security_check.sh [PROGRAM]
 set -euo pipefail
 root=$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")
-program=${1:-$root/build/dev/musclesim}
+program=${1:-$root/build/release/musclesim}
 forbidden='socket|connect|bind|listen|accept|sendto|recvfrom|getaddrinfo|gethostbyname|system|popen|wordexp|execlp|execvp|posix_spawnp'
 status=0
 if nm -D --undefined-only "$program" | sed 's/@.*//' | grep -wE "U ($forbidden)"; then

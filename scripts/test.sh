@@ -3,8 +3,8 @@
 #
 #     scripts/test.sh          layout of the sources, links of the documents, build, tests, clang-tidy, tests under the address and
 #                              undefined-behaviour sanitizers
-#     scripts/test.sh --no-sanitizers
-#                              all but the sanitizers: what continuous integration has time for
+#     scripts/test.sh --ci     all but the sanitizers, and clang-tidy only on sources of the last commits: what continuous integration
+#                              has time for
 #     scripts/test.sh --fast   all but clang-tidy and sanitizers
 #
 # A failed phase does not keep the others from running. At the end: a line per phase, then how many tests ran and which failed.
@@ -15,19 +15,21 @@ root=$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")
 source "$root/scripts/common.sh"
 
 fast=false
-sanitizers=true
+ci=false
 case "${1-}" in
   "") ;;
-  --no-sanitizers) sanitizers=false ;;
+  --ci) ci=true ;;
   --fast) fast=true ;;
   *)
-    say "test: unknown argument '$1'; allowed: --no-sanitizers, --fast"
+    say "test: unknown argument '$1'; allowed: --ci, --fast"
     exit 2
     ;;
 esac
 cd "$root"
 jobs=2
-test_log=build/dev/test_summary.txt
+last_commits=50  # whose sources --ci looks through
+build=build/release  # what users run is what is tested
+test_log=$build/test_summary.txt
 summary=()
 failed=false
 
@@ -53,18 +55,38 @@ check_layout() {
 # One line per test; the output of failed tests; totals, which are kept for the end.
 run_tests() {
   local status=0
-  ctest --preset dev --parallel "$jobs" 2>&1 | tee "$test_log.all" || status=$?
+  ctest --preset release --parallel "$jobs" 2>&1 | tee "$test_log.all" || status=$?
   sed -n '/^[0-9]*% tests passed/,$p' "$test_log.all" >"$test_log"
   rm "$test_log.all"
   return "$status"
 }
 
+# A build that scripts/run.sh has made has no tests.
+build_all() {
+  [[ ! -f $build/CMakeCache.txt ]] || sed -i 's/^MUSCLESIM_TESTS:BOOL=OFF$/MUSCLESIM_TESTS:BOOL=ON/' "$build/CMakeCache.txt"
+  build_preset release all
+}
+
 # The sources of library and program, as the build lists them; tests are left out, their macros drown everything else.
+sources() {
+  sed -n 's/^ *"file": "\(.*\)",\{0,1\}$/\1/p' "$build/compile_commands.json" | grep -vF "$root/tests/"
+}
+
+# Those that the last commits changed, or whose header they changed; all where that many commits are not at hand.
+recent_sources() {
+  local changed
+  if changed=$(git diff --name-only "HEAD~$last_commits" -- '*.cpp' '*.h' 2>/dev/null); then
+    sources | grep -E -f <(sed -E 's|.*/||; s|[.][a-z]+$||; s|.*|/&[.]cpp$|' <<<"$changed")
+  else
+    sources
+  fi
+}
+
 check_sources() {
   local status=0 messages
   messages=$(mktemp)
-  sed -n 's/^ *"file": "\(.*\)",\{0,1\}$/\1/p' build/dev/compile_commands.json | grep -vF "$root/tests/" | tr '\n' '\0' |
-    xargs -0 -n 1 -P "$jobs" clang-tidy -p build/dev --quiet 2>"$messages" || status=$?
+  if $ci; then recent_sources; else sources; fi | tr '\n' '\0' |
+    xargs -0 -r -n 1 -P "$jobs" clang-tidy -p "$build" --quiet 2>"$messages" || status=$?
   grep -v 'warnings\{0,1\} \(generated\|treated as errors\)' "$messages" || true
   rm "$messages"
   return "$status"
@@ -77,15 +99,15 @@ run_sanitized_tests() {
 }
 
 phase dependencies scripts/install_dependencies.sh --test || exit 1
-mkdir -p build/dev
+mkdir -p "$build"
 rm -f "$test_log"
 phase layout check_layout || true
 phase documents scripts/check_docs.sh || true
-if phase build build_preset dev all; then
+if phase build build_all; then
   phase tests run_tests || true
   if ! $fast; then
     phase clang-tidy check_sources || true
-    if $sanitizers; then
+    if ! $ci; then
       phase sanitizers run_sanitized_tests || true
     fi
   fi

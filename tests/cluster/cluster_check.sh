@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Sweeps under GNU parallel and under a real Slurm, disturbed on purpose, must give the table of the undisturbed sweep.
 #
-#     tests/cluster/cluster_check.sh parallel|slurm|mpirun [PROGRAM]      default: build/dev/musclesim
+#     tests/cluster/cluster_check.sh parallel|slurm|mpirun [PROGRAM]      default: build/release/musclesim
 #
 # slurm: starts munged, slurmctld and slurmd on this machine with a configuration of their own in a temporary folder, submits the batch file
 # of docs/cluster.md as an array of three workers, kills one worker (SIGKILL) in mid-row and lets one run crash (SIGSEGV). Needs root.
@@ -9,7 +9,7 @@
 set -euo pipefail
 root=$(dirname "$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")")
 tool=${1:?usage: cluster_check.sh parallel|slurm|mpirun [PROGRAM]}
-program=$(realpath "${2:-$root/build/dev/musclesim}")
+program=$(realpath "${2:-$root/build/release/musclesim}")
 start=$SECONDS
 
 say() { printf 'cluster_check: %s\n' "$*"; }

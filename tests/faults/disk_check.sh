@@ -5,7 +5,7 @@
 # exit status 77 then, if nothing else is wrong.
 set -euo pipefail
 root=$(dirname "$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")")
-program=$(realpath "${1:-$root/build/dev/musclesim}")
+program=$(realpath "${1:-$root/build/release/musclesim}")
 if [[ ${MUSCLESIM_PRIVATE_MOUNTS-} != yes && $EUID -eq 0 ]]; then
   MUSCLESIM_PRIVATE_MOUNTS=yes exec unshare --mount --propagation private "$0" "$program"
 fi

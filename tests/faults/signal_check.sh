@@ -3,7 +3,7 @@
 # Usage: signal_check.sh [PROGRAM] [runs per signal = 20]       SEED=N chooses other instants
 set -euo pipefail
 root=$(dirname "$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")")
-program=$(realpath "${1:-$root/build/dev/musclesim}")
+program=$(realpath "${1:-$root/build/release/musclesim}")
 count=${2:-20}
 RANDOM=${SEED:-1}
 work=$(mktemp -d)
