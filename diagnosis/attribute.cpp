@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <mutex>
+#include <numeric>
 #include <set>
 
 #include "data_checks.h"
@@ -15,17 +15,20 @@ namespace musclesim {
 
 namespace {
 
-constexpr int look_rows = 1500;             ///< the look's stretches have that many rows together
-constexpr std::size_t look_count = 3;       ///< recordings that are looked at
-constexpr std::size_t single_count = 14;    ///< suspects that are fitted
-constexpr std::size_t component_count = 8;  ///< suspects on the component of the best that are fitted
-constexpr std::size_t pair_count = 6;       ///< further effects that are fitted beside the best
-constexpr std::size_t base_count = 3;       ///< explanations beside which further effects are looked for
-constexpr std::size_t fewer_pairs = 3;      ///< further effects that are fitted beside the second and third of them
-constexpr double likely_share = 0.1;        ///< of the best one's probability, that those have at least
-constexpr double least_hope = -1;           ///< ln of the odds of one more effect that leaves nothing; below, none is looked for
-constexpr int few_effects = 2;              ///< up to that many, the first look serves for all of them
-constexpr double share_of_gap = 0.1;        ///< that coarse steps may change on the look, which only chooses what is fitted further
+constexpr int look_rows = 1500;              ///< the look's stretches have that many rows together
+constexpr std::size_t look_count = 3;        ///< recordings that are looked at
+constexpr std::size_t many_suspects = 200;   ///< with more, most are looked at on the first stretch of the look only
+constexpr std::size_t nearest_count = 80;    ///< suspects that are looked at on all of it then
+constexpr std::size_t per_effect_count = 3;  ///< and at least so many of every effect
+constexpr std::size_t single_count = 14;     ///< suspects that are fitted
+constexpr std::size_t component_count = 8;   ///< suspects on the component of the best that are fitted
+constexpr std::size_t pair_count = 6;        ///< further effects that are fitted beside the best
+constexpr std::size_t base_count = 3;        ///< explanations beside which further effects are looked for
+constexpr std::size_t fewer_pairs = 3;       ///< further effects that are fitted beside the second and third of them
+constexpr double likely_share = 0.1;         ///< of the best one's probability, that those have at least
+constexpr double least_hope = -1;            ///< ln of the odds of one more effect that leaves nothing; below, none is looked for
+constexpr int few_effects = 2;               ///< up to that many, the first look serves for all of them
+constexpr double share_of_gap = 0.1;         ///< that coarse steps may change on the look, which only chooses what is fitted further
 constexpr int first_rounds = 2, more_rounds = 6, last_rounds = 2;
 constexpr int many_rounds = 12;  ///< in place of the last rounds where many effects act together
 constexpr Reach single_reach = {0.8, 0.4}, pair_reach = {0.25, 0.1};
@@ -53,15 +56,17 @@ Attributor::Attributor(const Plant& plant, const DiagnosisOptions& options, OnSi
       look_(plant, lookStretches(plant), Comparison::Averages::with),
       fit_(plant, plant.split().fit, Comparison::Averages::with) {}
 
+Comparison Attributor::firstOfLook() const {
+  Comparison result(plant_, {look_.stretches().front()}, Comparison::Averages::with);
+  result.goCoarse(result.predicted(Model{}), share_of_gap);
+  return result;
+}
+
 /// Of variants without any strength (numbers of bits), those of one component that leave least on the first stretch of the look: simulating
 /// all of them on all of it would take as long as everything else.
 void Attributor::keepNearestVariants() {
   constexpr std::size_t kept = 2;
-  const Comparison brief = [&] {
-    Comparison result(plant_, {look_.stretches().front()}, Comparison::Averages::with);
-    result.goCoarse(result.predicted(Model{}), share_of_gap);
-    return result;
-  }();
+  const Comparison brief = firstOfLook();
   std::vector<Suspect>& all = result_.suspects;
   std::map<std::string, std::vector<std::size_t>> variants;
   for (std::size_t i = 0; i < all.size(); ++i)
@@ -90,6 +95,46 @@ void Attributor::keepNearestVariants() {
   all = std::move(rest);
 }
 
+/// The suspects that are looked at on all of the look. Where there are many - ten muscles have ten of most kinds - those that explain most
+/// of its first stretch, and some of every effect. That does not depend on what may be an answer: nor does where the gap lies.
+std::vector<std::size_t> Attributor::worthLookingAt() const {
+  const std::vector<Suspect>& all = result_.suspects;
+  std::vector<std::size_t> order(all.size());
+  std::iota(order.begin(), order.end(), 0);
+  if (all.size() <= many_suspects || look_.stretches().size() < 2) return order;
+  const Comparison brief = firstOfLook();
+  std::vector<Suspect> suspects = all;
+  const std::vector<Signature> looks =
+      screen(brief, suspects, brief.predicted(Model{}), Model{}, Strengths::adapted, options_.job_count, on_simulation_);
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return looks[i].log_misfit; });
+  std::map<std::string, std::size_t> per_effect;
+  std::vector<std::size_t> chosen;
+  for (std::size_t rank = 0; rank < order.size(); ++rank) {
+    const bool among_first_of_effect = per_effect[all[order[rank]].info().id]++ < per_effect_count;
+    if (rank < nearest_count || among_first_of_effect) chosen.push_back(order[rank]);
+  }
+  std::ranges::sort(chosen);
+  return chosen;
+}
+
+void Attributor::lookAtSuspects(const Eigen::VectorXd& nominal) {
+  const std::vector<std::size_t> chosen = worthLookingAt();
+  std::vector<Suspect> suspects;
+  for (const std::size_t i : chosen) suspects.push_back(result_.suspects[i]);
+  std::vector<Signature> looks = screen(look_, suspects, nominal, Model{}, Strengths::adapted, options_.job_count, on_simulation_);
+  for (const Suspect& suspect : result_.suspects) {
+    Signature unknown;
+    unknown.per_strength.resize(std::max<std::size_t>(1, suspect.strengths().size()));
+    explain(look_, suspect, look_residual_, unknown);
+    result_.signatures.push_back(std::move(unknown));
+  }
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    result_.suspects[chosen[k]] = std::move(suspects[k]);
+    result_.signatures[chosen[k]] = std::move(looks[k]);
+  }
+  result_.looked_at_count = chosen.size();
+}
+
 void Attributor::look() {
   const Eigen::VectorXd nominal = look_.predicted(Model{});
   if (!nominal.size()) throw Diverged(0, plant_.robot(), "the model without further effects cannot follow the recordings");
@@ -101,7 +146,7 @@ void Attributor::look() {
   result_.suspects = suspects(plant_, DiagnosisOptions{});
   keepNearestVariants();
   for (const Suspect& suspect : result_.suspects) result_.allowed.push_back(allows(options_, suspect.info().id));
-  result_.signatures = screen(look_, result_.suspects, nominal, Model{}, Strengths::adapted, options_.job_count, on_simulation_);
+  lookAtSuspects(nominal);
 }
 
 Model Attributor::modelOf(const Explanation& explanation) const {

@@ -19,7 +19,8 @@ struct Attribution {
   std::vector<Suspect> suspects;          ///< of the whole catalogue: where the gap lies does not depend on what may be an answer
   std::vector<char> allowed;              ///< of every suspect: it may be an answer
   std::set<std::string> thinned;          ///< labels of which not all variants are among the suspects
-  std::vector<Signature> signatures;      ///< of all suspects, on the first look
+  std::vector<Signature> signatures;      ///< of all suspects, on the first look; without changes where that was not worth its time
+  std::size_t looked_at_count = 0;        ///< suspects that were looked at on all of the look
   std::vector<Explanation> explanations;  ///< best first
   double none_of_these = 0, no_effect = 0;
 };
@@ -56,7 +57,10 @@ class Attributor {
   Eigen::VectorXd clampedAll(const std::vector<std::size_t>& members, const Eigen::VectorXd& z) const;
   FitProblem problemOf(const Explanation& explanation, const Comparison& comparison, Fidelity fidelity) const;
   void refit(Explanation& explanation, const Comparison& comparison, int rounds, Fidelity fidelity) const;
+  Comparison firstOfLook() const;
   void keepNearestVariants();
+  std::vector<std::size_t> worthLookingAt() const;
+  void lookAtSuspects(const Eigen::VectorXd& nominal);
   void weakenStart(Candidate& candidate) const;
   bool gainsOnLook(const Candidate& candidate) const;
   bool mayBeBelieved(const Explanation& explanation) const;

@@ -138,6 +138,9 @@ class Run {
     monitor_.phase("looking at every effect once", static_cast<long>(suspects(plant_, DiagnosisOptions{}).size()));
     attributor_.look();
     const Attribution& attribution = attributor_.result();
+    if (attribution.looked_at_count < attribution.suspects.size())
+      diagnosis_.notes.push_back(fmt::format("of {} possible causes the {} nearest on the first recording were looked at on the others too",
+                                             attribution.suspects.size(), attribution.looked_at_count));
     const Location location =
         locate(attributor_.lookComparison(), attribution.suspects, attribution.signatures, attributor_.lookResidual());
     diagnosis_.where = location.places;

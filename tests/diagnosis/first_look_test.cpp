@@ -1,0 +1,98 @@
+// With many muscles most suspects are looked at on the first recording only.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "diagnosis/attribute.h"
+#include "diagnosis/plant.h"
+#include "musclesim/random.h"
+#include "planted.h"
+
+namespace musclesim {
+namespace {
+
+/// An arm with massless muscles, which are fast, under steps of all commands.
+Recording armRecorded(const std::vector<ActiveEffect>& effects, std::uint64_t seed) {
+  constexpr int muscle_count = 10, row_count = 60, rows_per_step = 20;
+  constexpr double noise = 0.05;
+  Recording plan;
+  plan.file = "arm_" + std::to_string(seed) + ".csv";
+  plan.info.robot = "arm";
+  plan.info.robot_parameters = {{"muscle.model", std::string("line")}};
+  RandomStream random(seed, "arm");
+  for (int muscle = 0; muscle < muscle_count; ++muscle) {
+    Signal& command = plan.signals.emplace_back(Signal{"command_" + std::to_string(muscle), {}});
+    double level = 0;
+    for (int row = 0; row < row_count; ++row) {
+      if (row % rows_per_step == 0) level = 0.2 + 0.5 * random.uniform();
+      command.values.push_back(level);
+    }
+  }
+  for (int row = 0; row < row_count; ++row) plan.time_s.push_back(0.01 * row);
+  ReplayOptions options;
+  options.effects = effects;
+  Recording recording = replayRecording(plan, options).simulated;
+  recording.file = plan.file;
+  recording.info.active_effects.clear();
+  std::erase_if(recording.signals, [](const Signal& s) { return !s.name.starts_with("command_") && !s.name.starts_with("length_"); });
+  for (Signal& signal : recording.signals) {
+    if (signal.name.starts_with("command_")) continue;
+    recording.info.noise_std[signal.name] = noise;
+    for (double& value : signal.values) value += noise * random.normal();
+  }
+  return recording;
+}
+
+bool wasLookedAt(const Signature& signature) {
+  return std::ranges::all_of(signature.per_strength, [](const Eigen::VectorXd& change) { return change.size() > 0; });
+}
+
+class FirstLook : public ::testing::Test {
+ protected:
+  static const std::vector<Recording>& weakMuscle() {
+    static const std::vector<Recording> all = [] {
+      const std::vector<ActiveEffect> weak = {{"force_gain", "muscle_3", {{"gain", 0.97}}}};
+      return std::vector<Recording>{armRecorded(weak, 1), armRecorded(weak, 2), armRecorded(weak, 3)};
+    }();
+    return all;
+  }
+  static Attribution lookedAt(const std::vector<Recording>& recordings, const DiagnosisOptions& options) {
+    const Plant plant(recordings, options);
+    Attributor attributor(plant, options, [] {});
+    attributor.look();
+    return attributor.result();
+  }
+};
+
+TEST_F(FirstLook, OfManyMusclesKeepsTheNearestAndEveryEffect) {
+  const Attribution look = lookedAt(weakMuscle(), planted::few({}));
+  EXPECT_LT(look.looked_at_count, look.suspects.size() / 2);
+  std::size_t count = 0;
+  std::set<std::string> effects, all_effects;
+  std::size_t best = 0;
+  for (std::size_t i = 0; i < look.suspects.size(); ++i) {
+    if (look.signatures[i].log_misfit < look.signatures[best].log_misfit) best = i;
+    all_effects.insert(look.suspects[i].info().id);
+    if (!wasLookedAt(look.signatures[i])) continue;
+    ++count;
+    effects.insert(look.suspects[i].info().id);
+  }
+  EXPECT_EQ(count, look.looked_at_count);
+  EXPECT_EQ(effects, all_effects);
+  EXPECT_EQ(look.suspects[best].component(), "muscle_3") << look.suspects[best].label();
+}
+
+TEST_F(FirstLook, DoesNotDependOnWhatMayBeAnAnswer) {
+  const Attribution all = lookedAt(weakMuscle(), planted::few({})), creep = lookedAt(weakMuscle(), planted::few({"creep"}));
+  ASSERT_EQ(all.signatures.size(), creep.signatures.size());
+  for (std::size_t i = 0; i < all.signatures.size(); ++i) EXPECT_EQ(all.signatures[i].log_misfit, creep.signatures[i].log_misfit);
+}
+
+TEST_F(FirstLook, OfFewMusclesTakesAll) {
+  const Attribution look = lookedAt(planted::plant({{"payload", "hand", {{"mass_kg", 0.2}}}}), planted::few({}));
+  EXPECT_EQ(look.looked_at_count, look.suspects.size());
+}
+
+}  // namespace
+}  // namespace musclesim
