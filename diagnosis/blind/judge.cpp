@@ -56,7 +56,7 @@ void judgeRanking(Judgement& j, const std::vector<Answer>& candidates, const Pat
                                   candidates.begin() + static_cast<std::ptrdiff_t>(std::min(listed, candidates.size())));
   j.top1 = !first.empty() && names(first.front());
   j.top3 = std::ranges::any_of(first, names);
-  j.acceptable = !first.empty() && fitsAccepted(first.front());
+  j.acceptable = j.namesEffect() && !first.empty() && fitsAccepted(first.front());
   j.acceptable3 = std::ranges::any_of(first, fitsAccepted);
   if (*j.top1) j.component = fitsAny(first.front().label, truth);
   if (j.kind == "single") {
@@ -122,7 +122,7 @@ void judgeFound(Judgement& j, const json& key, const json& answer, const std::ve
   judgeRanking(j, candidates, acceptable, flat(truths));
   judgeShrink(j, answer, candidates, flat(truths));
   judgeSets(j, answer, acceptable, truths);
-  j.claim = claimOf(j, *j.acceptable && j.namesEffect());
+  j.claim = claimOf(j, *j.acceptable);
 }
 
 void judgeOpen(Judgement& j) {

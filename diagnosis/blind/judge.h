@@ -22,12 +22,13 @@ struct Judgement {
   std::string top;                                               ///< the most probable effect, "id@component"; empty if there is none
   double top_probability = 0, none_of_these = 0, no_effect = 0;  ///< as answered
   std::optional<bool> top1, top3;                                ///< the true id is first, among the first three
-  std::optional<bool> acceptable, acceptable3;                   ///< an acceptable answer is
-  std::optional<bool> named;                                     ///< single: first, the true cause, likelier than none of these and no gap
-  std::optional<bool> component;                                 ///< of the first entry, if its id is right
-  std::optional<bool> stage;                                     ///< the first entry of "where" is a true stage
-  std::optional<bool> covered;                                   ///< the truth is in the ambiguity set or chosen; of doubles both
-  std::optional<bool> pair;                                      ///< doubles: both causes, or acceptable ones, are chosen
+  std::optional<bool> acceptable;              ///< an acceptable answer is first, and likelier than none of these and no gap
+  std::optional<bool> acceptable3;             ///< an acceptable answer is among the first three
+  std::optional<bool> named;                   ///< single: first, the true cause, likelier than none of these and no gap
+  std::optional<bool> component;               ///< of the first entry, if its id is right
+  std::optional<bool> stage;                   ///< the first entry of "where" is a true stage
+  std::optional<bool> covered;                 ///< the truth is in the ambiguity set or chosen; of doubles both
+  std::optional<bool> pair;                    ///< doubles: both causes, or acceptable ones, are chosen
   std::optional<bool> spurious;                ///< single, double: a cause was chosen that is neither a true one nor a look-alike of one
   std::optional<bool> open_detected;           ///< open: "unexplained", or no effect above probability 0.5, but not "no gap"
   std::optional<bool> false_alarm;             ///< null: a gap was seen

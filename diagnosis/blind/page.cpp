@@ -72,7 +72,7 @@ std::string overview(const json& totals) {
     text += fmt::format("| {} | {} | {} |\n", what, aim, found);
   };
   row("verdict right, all kinds", "", longRate(all, "verdict"));
-  row("acceptable answer first, single", ">= 80 %", longRate(single, "acceptable"));
+  row("acceptable answer first, and likelier than none of these and no gap, single", ">= 80 %", longRate(single, "acceptable"));
   row("acceptable answer among the first three, single", ">= 95 %", longRate(single, "acceptable3"));
   row("true effect first / among the first three, single", "", longRate(single, "top1") + " / " + longRate(single, "top3"));
   row("true effect first, on its component, likelier than none of these and no gap, single", "", longRate(single, "named"));

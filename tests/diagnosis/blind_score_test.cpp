@@ -61,8 +61,8 @@ TEST(BlindJudge, DoesNotTakeOneCauseForTwo) {
 TEST(BlindJudge, KnowsWhatWasSaid) {
   const Judgement j =
       judge("h", keyOf("single", {lag}, {{"valve_lag@*"}}), answerOf("unexplained", {candidate("valve_lag", "all", 0.3)}, 0.7));
-  EXPECT_TRUE(*j.acceptable);
-  EXPECT_FALSE(*j.named || j.namesEffect() || j.claim->right);
+  EXPECT_TRUE(*j.top1 && *j.acceptable3);
+  EXPECT_FALSE(*j.acceptable || *j.named || j.namesEffect() || j.claim->right);
   EXPECT_DOUBLE_EQ(j.confidence(), 0.7);
 }
 
