@@ -84,7 +84,7 @@ double Elbow::torqueNmm(double angle_rad) {
 void Elbow::settle(const Action& first_command) {
   simulation().effects().settlePressures(first_command);
   const double low_rad = dJointGetHingeParam(hinge_->id(), dParamLoStop), high_rad = dJointGetHingeParam(hinge_->id(), dParamHiStop);
-  const double angle = rootBetween([&](double q) { return -torqueNmm(q); }, low_rad, high_rad);
+  const double angle = restFrom([&](double q) { return -torqueNmm(q); }, 0, low_rad, high_rad);
   placeForearm(angle);
   for (int i = 0; i < 2; ++i) {
     const double side = i == 0 ? 1 : -1;

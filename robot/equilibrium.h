@@ -1,6 +1,8 @@
 /// Where a function that grows from negative to positive crosses zero.
 #pragma once
 
+#include <algorithm>
+
 namespace musclesim {
 
 /// Root of an increasing function on low..high by bisection to the last bit; the nearer end where there is no change of sign.
@@ -13,6 +15,23 @@ double rootBetween(const Function& f, double low, double high) {
     if (middle <= low || middle >= high) return middle;
     (f(middle) < 0 ? low : high) = middle;
   }
+}
+
+/// Where something comes to rest that starts between low and high and is pushed up where f < 0, down where f > 0: the first root on the way,
+/// found in steps of a 64th of it, or the end that it is pushed to.
+template <class Function>
+double restFrom(const Function& f, double start, double low, double high) {
+  constexpr int step_count = 64;
+  start = std::clamp(start, low, high);
+  const bool up = f(start) < 0;
+  const double end = up ? high : low;
+  double last = start;
+  for (int i = 1; i <= step_count; ++i) {
+    const double next = i == step_count ? end : start + (end - start) * i / step_count;
+    if ((f(next) < 0) != up) return rootBetween(f, std::min(last, next), std::max(last, next));
+    last = next;
+  }
+  return end;
 }
 
 }  // namespace musclesim

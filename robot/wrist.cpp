@@ -84,7 +84,7 @@ double Wrist::torqueNmm(double angle_rad) {
 void Wrist::settle(const Action& first_command) {
   simulation().effects().settlePressures(first_command);
   const double low_rad = dJointGetHingeParam(hinge_->id(), dParamLoStop), high_rad = dJointGetHingeParam(hinge_->id(), dParamHiStop);
-  const double angle = rootBetween([&](double q) { return -torqueNmm(q); }, low_rad, high_rad);
+  const double angle = restFrom([&](double q) { return -torqueNmm(q); }, 0, low_rad, high_rad);
   placeHand(angle);
   for (int i = 0; i < 2; ++i) muscles_[i]->placeStraight(upper_mm_[i], leverEnd(i, angle));
 }

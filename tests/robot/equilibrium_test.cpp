@@ -22,5 +22,19 @@ TEST(RootBetween, TakesAStepAsWell) {
   EXPECT_NEAR(rootBetween([](double x) { return x < 0.3 ? -1.0 : 1.0; }, 0, 1), 0.3, 1e-15);
 }
 
+TEST(RestFrom, FindsTheFirstRootOnTheWayItIsPushed) {
+  auto wave = [](double x) { return std::sin(x); };
+  EXPECT_NEAR(restFrom(wave, 0.5, -6, 6), 0, 1e-15);
+  EXPECT_NEAR(restFrom(wave, 4, -6, 7), 2 * M_PI, 1e-15);
+  EXPECT_NEAR(restFrom(wave, -2, -6, 6), 0, 1e-15);
+  EXPECT_DOUBLE_EQ(restFrom([](double x) { return x * x - 2; }, 0, 0, 2), std::sqrt(2.0));
+}
+
+TEST(RestFrom, EndsAtTheEndItIsPushedTo) {
+  EXPECT_EQ(restFrom([](double x) { return std::sin(x); }, 4, -6, 6), 6);
+  EXPECT_EQ(restFrom([](double) { return 1.0; }, 0, -0.1, 0.7), -0.1);
+  EXPECT_EQ(restFrom([](double) { return -1.0; }, 0, 0.2, 0.7), 0.7) << "a start out of range";
+}
+
 }  // namespace
 }  // namespace musclesim

@@ -13,7 +13,8 @@ namespace musclesim {
 class Elbow : public Robot {
  public:
   explicit Elbow(Simulation& simulation);
-  /// Frictionless equilibrium of all torques about the hinge, those of effects included, between the stops.
+  /// Frictionless equilibrium of all torques about the hinge, those of effects included, between the stops: the first one on the way from
+  /// the angle as built.
   void settle(const Action& first_command) override;
   std::string initialState() const override { return "settled"; }
 

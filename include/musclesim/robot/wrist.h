@@ -15,7 +15,8 @@ namespace musclesim {
 class Wrist : public Robot {
  public:
   explicit Wrist(Simulation& simulation);
-  /// Frictionless equilibrium of all torques about the hinge, those of effects included, between the stops.
+  /// Frictionless equilibrium of all torques about the hinge, those of effects included, between the stops: the first one on the way from
+  /// the angle as built.
   void settle(const Action& first_command) override;
   std::string initialState() const override { return "settled"; }
 
