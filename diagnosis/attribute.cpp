@@ -29,7 +29,7 @@ constexpr double likely_share = 0.1;         ///< of the best one's probability,
 constexpr double least_hope = -1;            ///< ln of the odds of one more effect that leaves nothing; below, none is looked for
 constexpr int few_effects = 2;               ///< up to that many, the first look serves for all of them
 constexpr double share_of_gap = 0.1;         ///< that coarse steps may change on the look, which only chooses what is fitted further
-constexpr int first_rounds = 2, more_rounds = 6, last_rounds = 2;
+constexpr int first_rounds = 2, last_rounds = 2;
 constexpr int many_rounds = 12;  ///< in place of the last rounds where many effects act together
 constexpr Reach single_reach = {0.8, 0.4}, pair_reach = {0.25, 0.1};
 
@@ -166,7 +166,7 @@ Eigen::VectorXd Attributor::startOf(std::size_t index, const Signature& signatur
   Eigen::VectorXd z = Eigen::VectorXd::Zero(suspect.coordinateCount());
   for (std::size_t k = 0; k < suspect.strengths().size(); ++k) {
     const double amount = signature.amount[static_cast<Eigen::Index>(k)];
-    z[suspect.strengths()[k]] = std::abs(amount) < 0.05 ? 0.05 : amount;
+    z[suspect.strengths()[k]] = signature.from_threshold ? 1 : std::abs(amount) < 0.05 ? 0.05 : amount;
   }
   return z;
 }
@@ -219,6 +219,13 @@ void Attributor::refit(Explanation& explanation, const Comparison& comparison, i
   explanation.log_misfit = result.log_misfit / comparison.affectedCells(&comparison == &fit_ ? nominal_residual_ : look_residual_);
 }
 
+/// In fine steps.
+void Attributor::fitToAll(Explanation& explanation) const {
+  if (explanation.fitted_to_all) return;
+  refit(explanation, fit_, options_.max_effects > few_effects ? many_rounds : last_rounds, Fidelity::fine);
+  explanation.fitted_to_all = true;
+}
+
 /// The last suspect's strengths are taken down until the prediction on the look is no worse than without it.
 void Attributor::weakenStart(Candidate& candidate) const {
   constexpr double share = 0.3;
@@ -245,8 +252,8 @@ bool Attributor::mayBeBelieved(const Explanation& explanation) const {
   constexpr double far_behind = 4;  // ln of the odds; what a fit in fine steps may still gain
   if (explanation.suspects.size() == 1) return true;
   double best = -std::numeric_limits<double>::infinity();
-  for (const Explanation& other : result_.explanations) best = std::max(best, logOdds(other));
-  return explanation.residual.size() == fit_.size() && logOdds(explanation) > best - far_behind;
+  for (const Explanation& other : result_.explanations) best = std::max(best, odds().ofExplanation(other));
+  return explanation.residual.size() == fit_.size() && odds().ofExplanation(explanation) > best - far_behind;
 }
 
 /// In three rounds, each for those that the round before left within reach of the best: a few steps on the look, more steps, all recordings
@@ -264,7 +271,6 @@ void Attributor::fitTogether(std::vector<Candidate> candidates, Reach reach) {
     for (const Candidate& candidate : candidates) best = std::min(best, candidate.explanation.log_misfit);
     return best + distance;
   };
-  const int rounds = options_.max_effects > few_effects ? many_rounds : last_rounds;
   auto all = [](const Candidate&) { return true; };
   forEach(all, [&](Candidate& candidate) {
     weakenStart(candidate);
@@ -276,10 +282,7 @@ void Attributor::fitTogether(std::vector<Candidate> candidates, Reach reach) {
   forEach(all, [&](Candidate& candidate) { refit(candidate.explanation, fit_, 0, Fidelity::coarse); });
   forEach([&, within = limit(reach.on_all)](
               const Candidate& candidate) { return candidate.explanation.log_misfit <= within && mayBeBelieved(candidate.explanation); },
-          [&](Candidate& candidate) {
-            refit(candidate.explanation, fit_, rounds, Fidelity::fine);
-            candidate.explanation.fitted_to_all = true;
-          });
+          [&](Candidate& candidate) { fitToAll(candidate.explanation); });
   for (Candidate& candidate : candidates)
     if (candidate.explanation.residual.size() == fit_.size()) result_.explanations.push_back(std::move(candidate.explanation));
 }
@@ -344,7 +347,7 @@ bool Attributor::fitFurther(std::size_t count) {
     if (explanation.suspects.size() + 1 != count) continue;
     likeliest = std::max(likeliest, explanation.probability);
     if (bases.size() == base_count || explanation.probability < likely_share * likeliest) break;
-    if (odds().hopeBeyond(explanation, bestAlone(explanation)) >= least_hope)
+    if (odds().hopeBeyond(explanation) >= least_hope)
       bases.push_back(explanation);
     else if (bases.empty())
       return false;
@@ -400,26 +403,11 @@ std::vector<Attributor::Candidate> Attributor::candidatesBeside(const Explanatio
   return candidates;
 }
 
-/// That of its effects which leaves least alone.
-const Explanation& Attributor::bestAlone(const Explanation& explanation) const {
-  const Explanation* best = nullptr;
-  for (const Explanation& other : result_.explanations) {
-    const bool member =
-        other.suspects.size() == 1 && std::ranges::find(explanation.suspects, other.suspects.front()) != explanation.suspects.end();
-    if (member && (!best || odds().misfitLeftBy(other.judged()) < odds().misfitLeftBy(best->judged()))) best = &other;
-  }
-  return *best;
-}
-
-double Attributor::logOdds(const Explanation& explanation) const {
-  return odds().ofExplanation(explanation, bestAlone(explanation));
-}
-
 /// Sorts by the odds; "none of these" and "no effect" are explanations like any other.
 void Attributor::weigh() {
   if (result_.explanations.empty() && plant_.interrupted()) return;  // nothing is known yet
-  std::vector<double> all = {odds().ofNoEffect(), odds().ofNoneOfThese()};
-  for (const Explanation& explanation : result_.explanations) all.push_back(logOdds(explanation));
+  std::vector<double> all = {odds().ofNoEffect(), odds().ofNoneOfThese(result_.explanations)};
+  for (const Explanation& explanation : result_.explanations) all.push_back(odds().ofExplanation(explanation));
   const double largest = *std::ranges::max_element(all);
   double sum = 0;
   for (double& value : all) sum += value = std::exp(value - largest);

@@ -57,6 +57,8 @@ class Attributor {
   Eigen::VectorXd clampedAll(const std::vector<std::size_t>& members, const Eigen::VectorXd& z) const;
   FitProblem problemOf(const Explanation& explanation, const Comparison& comparison, Fidelity fidelity) const;
   void refit(Explanation& explanation, const Comparison& comparison, int rounds, Fidelity fidelity) const;
+  static constexpr int more_rounds = 6;  ///< of a fit that is worth going on with
+  void fitToAll(Explanation& explanation) const;
   Comparison firstOfLook() const;
   void keepNearestVariants();
   std::vector<std::size_t> worthLookingAt() const;
@@ -73,8 +75,6 @@ class Attributor {
   bool fitFurther(std::size_t count);
   bool sameEffects(const Explanation& one, const Explanation& other) const;
   std::vector<Candidate> candidatesBeside(const Explanation& base, std::size_t most) const;
-  const Explanation& bestAlone(const Explanation& explanation) const;
-  double logOdds(const Explanation& explanation) const;
   Odds odds() const { return {fit_, nominal_residual_, result_.suspects}; }
   void weigh();
   void crossCheck();

@@ -64,12 +64,12 @@ Attributor::Unmoved Attributor::unmoved(const Explanation& explanation) const {
   return result;
 }
 
-/// The explanation moved by a step, or by as much of it as does not fit the stretches that are not left out worse than it does unmoved. In
-/// coarse steps, with what these change in the explanation as it is.
+/// The explanation moved by a step, or by a half or quarter of it where that fits the stretches that are not left out worse than it does
+/// unmoved. In coarse steps, with what these change in the explanation as it is.
 Explanation Attributor::movedWithout(const std::set<std::size_t>& left_out, const Explanation& explanation, Eigen::VectorXd step,
                                      const Unmoved& unmoved) const {
   constexpr int halving_count = 3;
-  constexpr double worse = 0.02;  // misfit that is no reason to go less far
+  const double worse = 0.02 * fit_.affectedCells(nominal_residual_);  // misfit that is no reason to go less far
   Explanation moved = explanation;
   auto gainOf = [&](std::size_t k) {
     const Eigen::VectorXd coarse = one_by_one_[k].predicted(modelOf(moved));
@@ -77,14 +77,15 @@ Explanation Attributor::movedWithout(const std::set<std::size_t>& left_out, cons
     if (!coarse.size()) return -std::numeric_limits<double>::infinity();
     return unmoved.misfit[k] - one_by_one_[k].logMisfit(one_by_one_[k].measured() - coarse - unmoved.shift[k]);
   };
+  double gain = 0;
   for (int i = 0; i < halving_count && step.size(); ++i, step *= 0.5) {
     moved.z = clampedAll(explanation.suspects, explanation.z + step);
-    double gain = worse;
+    gain = worse;
     for (std::size_t k = 0; k < one_by_one_.size(); ++k)
       if (!left_out.contains(k)) gain += gainOf(k);
-    if (gain > 0) return moved;
+    if (gain > 0) break;
   }
-  return explanation;
+  return std::isfinite(gain) ? moved : explanation;
 }
 
 /// Leave-one-out cross-validation (Stone 1974): each stretch as predicted by the numbers that fit the others; one with the same commands is
@@ -129,12 +130,12 @@ std::set<std::size_t> Attributor::sameCommandsAs(std::size_t stretch) const {
   return result;
 }
 
-/// Judges every explanation that is not out of the question by stretches that it has not seen, and its effects alone with it, until all of
-/// those have been.
+/// Fits every explanation that is not out of the question to all recordings and judges it by stretches that it has not seen, and its
+/// effects alone with it, until all of those have been.
 void Attributor::crossCheck() {
   constexpr double out_of_the_question = 0.003;
-  if (sameCommandsAs(0).size() == fit_.stretches().size()) return;
-  if (one_by_one_.empty())
+  const bool some_unlike = sameCommandsAs(0).size() < fit_.stretches().size();
+  if (some_unlike && one_by_one_.empty())
     for (const Stretch& stretch : fit_.stretches()) {
       Comparison& one = one_by_one_.emplace_back(plant_, std::vector{stretch}, Comparison::Averages::with);
       one.goCoarse(one.predicted(Model{}));
@@ -146,11 +147,16 @@ void Attributor::crossCheck() {
     std::vector<Explanation*> open;
     for (Explanation& explanation : result_.explanations) {
       const bool alone = explanation.suspects.size() == 1 && members.contains(explanation.suspects.front());
-      if (explanation.fitted_to_all && explanation.unseen.size() == 0 && (alone || explanation.probability > out_of_the_question))
-        open.push_back(&explanation);
+      const bool done = explanation.fitted_to_all && (explanation.unseen.size() > 0 || !some_unlike);
+      if (!done && (alone || explanation.probability > out_of_the_question)) open.push_back(&explanation);
     }
     if (open.empty()) return;
-    parallelFor(static_cast<int>(open.size()), options_.job_count, [&](int i) { predictFromOthers(*open[static_cast<std::size_t>(i)]); });
+    parallelFor(static_cast<int>(open.size()), options_.job_count, [&](int i) {
+      Explanation& explanation = *open[static_cast<std::size_t>(i)];
+      if (!explanation.fitted_to_all) refit(explanation, fit_, more_rounds, Fidelity::coarse);
+      fitToAll(explanation);
+      if (some_unlike) predictFromOthers(explanation);
+    });
     if (!plant_.interrupted()) weigh();
   }
 }

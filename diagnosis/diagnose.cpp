@@ -185,7 +185,7 @@ class Run {
     diagnosis_.nominal_refit_shrink_percent = shrinkOf(nominal);
     diagnosis_.sham_shrink_percent = shrinkOf(sham);
     const Estimate interval = shrinkInterval({held_out_, before_residual_, after},
-                                             {attributor_.fitComparison(), attributor_.nominalResidual(), best.residual}, options_.seed);
+                                             {attributor_.fitComparison(), attributor_.nominalResidual(), best.judged()}, options_.seed);
     const Attempt attempt{labelsOf(model), model.effects, gap_after, shrinkOf(after), interval.low, interval.high};
     const bool found =
         !none && clearlyBeats(attempt.shrink_percent, diagnosis_.nominal_refit_shrink_percent, diagnosis_.sham_shrink_percent);
@@ -243,6 +243,9 @@ class Run {
       if (effect.probability >= listed) diagnosis_.effects.push_back(effect);
     std::ranges::stable_sort(diagnosis_.effects, [](const auto& a, const auto& b) { return a.probability > b.probability; });
     ambiguity();
+    // What was found shows, if not where it is as strong as usual.
+    std::erase_if(diagnosis_.not_excited,
+                  [&](const std::string& label) { return found.contains(label) && found[label].probability >= listed; });
     for (FoundEffect& effect : diagnosis_.effects) effect.shrink_percent = singleShrink(effect.label());
   }
 

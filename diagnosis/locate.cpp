@@ -26,18 +26,6 @@ std::size_t indexOf(Stage stage) {
   return static_cast<std::size_t>(stage);
 }
 
-/// Mean ln(RMS / floor) of motion and tension.
-double motionMisfit(const Comparison& comparison, const Eigen::VectorXd& residual) {
-  double sum = 0;
-  int count = 0;
-  for (const Comparison::Cell& cell : comparison.cells()) {
-    if (comparison.plant().signals()[static_cast<std::size_t>(cell.signal)].name.starts_with("pressure_")) continue;
-    sum += 0.5 * std::log(std::max(1.0, comparison.meanSquare(cell, residual) / (cell.floor * cell.floor)));
-    ++count;
-  }
-  return count ? sum / count : 0;
-}
-
 /// Whether a suspect is the fault of one sensor of motion.
 bool isOneMotionSensor(const Suspect& suspect) {
   const std::string& component = suspect.component();
@@ -153,27 +141,33 @@ class Evidence {
       say("measured pressures are as predicted, so the gap arises behind the pressure stage", {Stage::command, Stage::pressure});
       return;
     }
-    const Eigen::VectorXd left = residualUnderMeasuredPressures(comparison_);
-    if (!left.size()) {
+    const auto test = testPressures(comparison_, residual_);
+    if (!test)
       say("pressures differ from the predicted ones, but the model cannot follow them or they are not complete: shares say how much "
-          "typical "
-          "disturbances of each stage resemble the gap",
+          "typical disturbances of each stage resemble the gap",
           {});
-      return;
-    }
-    const double before = motionMisfit(comparison_, residual_), after = motionMisfit(comparison_, left);
-    if (before > small_misfit && after < 0.5 * before)
-      say(fmt::format("with the measured pressures in place of the simulated ones {:.0f} % of the log gap of the motion vanishes",
-                      100 * (1 - after / before)),
-          {Stage::force, Stage::body, Stage::sensor});
-    else if (before > small_misfit)
-      say("pressures differ from the predicted ones, but most of the motion's gap stays when they are put in their place: there is more "
-          "than "
-          "one cause, and shares say how much typical disturbances of each stage resemble the whole gap",
-          {});
-    else if (after > before + 2 * small_misfit)
+    else if (test->misfit > small_misfit)
+      askWhatPressuresMake(*test);
+    else if (test->misfit_increase > 2 * small_misfit)
       sayItIsTheSensor(mostAffected(comparison_, residual_, "pressure_"),
                        "measured pressures are not as predicted, but the motion is, and would not be under the pressures that were read");
+  }
+
+  void askWhatPressuresMake(const PressureTest& test) {
+    constexpr double most = 0.5, sure = 2;  // of the gap; standard deviations
+    const double reach = sure * test.share_deviation;
+    if (test.share > most && test.share > reach && test.misfit_increase < 2 * small_misfit)
+      say(fmt::format("the measured pressures in place of the simulated ones make {:.0f} ± {:.0f} % of the gap of the motion", 100 * test.share,
+                      100 * reach),
+          {Stage::force, Stage::body, Stage::sensor});
+    else if (test.share + reach < most)
+      say("pressures differ from the predicted ones, but most of the motion's gap stays when they are put in their place: there is more "
+          "than one cause, and shares say how much typical disturbances of each stage resemble the whole gap",
+          {});
+    else
+      say("pressures differ from the predicted ones, but how much of the motion's gap they make is uncertain: shares say how much "
+          "typical disturbances of each stage resemble the gap",
+          {});
   }
 
   void askTensions() {

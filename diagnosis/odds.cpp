@@ -6,38 +6,14 @@
 
 namespace musclesim {
 
-/// Mean square per cell of a share of the residual.
-Eigen::VectorXd Odds::mismatchOf(double share, const Eigen::VectorXd& residual) const {
-  Eigen::VectorXd squares(static_cast<Eigen::Index>(comparison_.cells().size()));
-  for (Eigen::Index i = 0; i < squares.size(); ++i)
-    squares[i] = share * share * comparison_.meanSquare(comparison_.cells()[static_cast<std::size_t>(i)], residual);
-  return squares;
-}
-
-/// Mean over affected cells of ln(RMS / floor), where floor^2 = noise floor^2 + mismatch, but no less than 0 per cell.
-double Odds::weighedMisfit(const Eigen::VectorXd& residual, const Eigen::VectorXd& mismatch) const {
+double Odds::misfitLeftBy(const Eigen::VectorXd& residual) const {
   double sum = 0;
-  for (Eigen::Index i = 0; i < mismatch.size(); ++i) {
-    const Comparison::Cell& cell = comparison_.cells()[static_cast<std::size_t>(i)];
-    sum += 0.5 * std::log(std::max(1.0, comparison_.meanSquare(cell, residual) / (cell.floor * cell.floor + mismatch[i])));
+  for (const Comparison::Cell& cell : comparison_.cells()) {
+    const double share = weighing_.law_mismatch, gap_square = comparison_.meanSquare(cell, nominal_residual_);
+    const double floor_square = cell.floor * cell.floor + share * share * gap_square;
+    sum += 0.5 * std::log(std::max(1.0, comparison_.meanSquare(cell, residual) / floor_square));
   }
   return sum / comparison_.affectedCells(nominal_residual_);
-}
-
-double Odds::misfitLeftBy(const Eigen::VectorXd& residual) const {
-  return weighedMisfit(residual, mismatchOf(weighing_.law_mismatch, nominal_residual_));
-}
-
-/// What further effects gain where they do more than mend the law of the one that leaves least alone: the misfit with a large share of
-/// what that one changes counted as noise, with it alone less with them.
-double Odds::ownGain(const Eigen::VectorXd& residual, const Explanation& alone) const {
-  const Eigen::VectorXd mismatch = mismatchOf(weighing_.mended_share, nominal_residual_ - alone.residual);
-  return weighedMisfit(alone.judged(), mismatch) - weighedMisfit(residual, mismatch);
-}
-
-/// ln of the odds by what is left, and by what further effects gain of their own.
-double Odds::ofMisfit(const Explanation& explanation, const Explanation& alone) const {
-  return -weighing_.per_misfit * misfitLeftBy(explanation.judged()) + weighing_.per_own_gain * ownGain(explanation.judged(), alone);
 }
 
 /// Whether an effect acts where one before it does: on the same muscle, on the same signal, both on the body.
@@ -85,22 +61,27 @@ double Odds::beforehand(const Explanation& explanation) const {
   return odds;
 }
 
-double Odds::ofExplanation(const Explanation& explanation, const Explanation& alone) const {
-  return ofMisfit(explanation, alone) + beforehand(explanation);
+double Odds::ofExplanation(const Explanation& explanation) const {
+  return beforehand(explanation) - weighing_.per_misfit * misfitLeftBy(explanation.judged());
 }
 
 double Odds::ofNoEffect() const {
   return -weighing_.per_misfit * misfitLeftBy(nominal_residual_);
 }
 
-double Odds::ofNoneOfThese() const {
-  return weighing_.none_share * ofNoEffect() - weighing_.per_parameter;
+double Odds::ofNoneOfThese(const std::vector<Explanation>& explanations) const {
+  double best = ofNoEffect(), share_left = 1;
+  const double gap = misfitLeftBy(nominal_residual_);
+  for (const Explanation& explanation : explanations)
+    if (const double odds = ofExplanation(explanation); odds > best) {
+      best = odds;
+      share_left = gap > 0 ? misfitLeftBy(explanation.judged()) / gap : 1;
+    }
+  return best + weighing_.per_share_left * (share_left - weighing_.share_of_unknown);
 }
 
-double Odds::hopeBeyond(const Explanation& explanation, const Explanation& alone) const {
-  Explanation perfect = explanation;
-  perfect.unseen = Eigen::VectorXd::Zero(comparison_.size());
-  return ofMisfit(perfect, alone) - ofMisfit(explanation, alone) - weighing_.per_effect - weighing_.per_parameter;
+double Odds::hopeBeyond(const Explanation& explanation) const {
+  return weighing_.per_misfit * misfitLeftBy(explanation.judged()) - weighing_.per_effect - weighing_.per_parameter;
 }
 
 }  // namespace musclesim

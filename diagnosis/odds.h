@@ -27,16 +27,15 @@ struct Explanation {
 
 /// How answers are weighed; docs/diagnosing.md says on which cases the numbers were found.
 struct Weighing {
-  double per_misfit = 8;       ///< ln of the odds per unit of log misfit per affected cell
-  double per_parameter = 1;    ///< ln of the odds that a further parameter costs
-  double per_effect = 5;       ///< ln of the odds that a further effect costs
-  double per_same_place = 6;   ///< the same besides, where it acts on a component of an effect before it and may only mend its law
-  double per_own_gain = 14;    ///< ln of the odds per unit of log misfit that further effects gain where they do more than mend a law
-  double mended_share = 0.5;   ///< what they gain below this share of what the best one alone changes may only mend its law
-  double per_excess = 1.5;     ///< ln of the odds per e-fold by which a parameter is beyond its usual range
-  double shared_sensor = 3;    ///< ln of the odds of one sensor's fault against one that all sensors share
-  double law_mismatch = 0.01;  ///< share of the residual that the right cause may leave since its law is not quite ours
-  double none_share = 0.6;     ///< "none of these" stands for a cause that would leave this share of the log misfit without effects
+  double per_misfit = 18;         ///< ln of the odds per unit of log misfit per affected cell
+  double per_parameter = 1.25;    ///< ln of the odds that a further parameter costs
+  double per_effect = 6;          ///< ln of the odds that a further effect costs
+  double per_same_place = 3;      ///< the same besides, where it acts on a component of an effect before it and may only mend its law
+  double per_excess = 1.5;        ///< ln of the odds per e-fold by which a parameter is beyond its usual range
+  double shared_sensor = 3;       ///< ln of the odds of one sensor's fault against one that all sensors share
+  double law_mismatch = 0.1;      ///< share of the gap that the right cause may leave since its law is not quite ours
+  double per_share_left = 12;     ///< ln of the odds of "none of these" per share of the log misfit that the best explanation leaves
+  double share_of_unknown = 0.3;  ///< share left with which "none of these" is as likely as the best explanation
 };
 
 class Odds {
@@ -45,22 +44,20 @@ class Odds {
   Odds(const Comparison& comparison, const Eigen::VectorXd& nominal_residual, const std::vector<Suspect>& suspects)
       : comparison_(comparison), nominal_residual_(nominal_residual), suspects_(suspects) {}
 
-  /// ln of the odds of an explanation, but for a constant; `alone` is that of its effects which leaves least alone.
-  double ofExplanation(const Explanation& explanation, const Explanation& alone) const;
-  /// The same of no effect at all, and of a cause that the catalogue does not hold.
+  /// ln of the odds of an explanation, but for a constant.
+  double ofExplanation(const Explanation& explanation) const;
+  /// The same of no effect at all.
   double ofNoEffect() const;
-  double ofNoneOfThese() const;
+  /// The same of a cause that the catalogue does not hold, beside the likeliest of some explanations and no effect: a cause that the
+  /// catalogue holds leaves a small share of the log misfit, what only resembles the cause a larger one.
+  double ofNoneOfThese(const std::vector<Explanation>& explanations) const;
   /// ln of the odds of one more effect that would leave nothing against the explanation without it.
-  double hopeBeyond(const Explanation& explanation, const Explanation& alone) const;
-  /// Mean over affected cells of ln(RMS / floor), a small share of the gap counted as noise: the right cause's law is not quite ours.
+  double hopeBeyond(const Explanation& explanation) const;
+  /// Mean over affected cells of ln(RMS / floor), floor^2 = noise floor^2 + (law_mismatch gap)^2: the right cause's law is not quite ours.
   double misfitLeftBy(const Eigen::VectorXd& residual) const;
 
  private:
-  Eigen::VectorXd mismatchOf(double share, const Eigen::VectorXd& residual) const;
-  double weighedMisfit(const Eigen::VectorXd& residual, const Eigen::VectorXd& mismatch) const;
-  double ownGain(const Eigen::VectorXd& residual, const Explanation& alone) const;
   bool actsWhereOthersDo(const Explanation& explanation, std::size_t member) const;
-  double ofMisfit(const Explanation& explanation, const Explanation& alone) const;
   double beforehand(const Explanation& explanation) const;
 
   const Comparison& comparison_;

@@ -137,6 +137,12 @@ std::vector<Eigen::VectorXd> changesBy(const Comparison& comparison, const std::
   return changes;
 }
 
+/// Whether a strength changes something at its typical value.
+bool shows(const Comparison& comparison, const Suspect& suspect, std::size_t strength, const Signature& look) {
+  const double least = suspect.isSigned(suspect.strengths()[strength]) ? nothing : 1;
+  return excitationOf(comparison, {look.per_strength[strength]}) >= least;
+}
+
 /// Strengths that change nothing at their typical value, though they would if they were stronger: limits that nothing reaches. `direction`
 /// -1: those that may have either sign.
 std::vector<Probe> strongerProbes(const Comparison& comparison, const std::vector<Suspect>& suspects, const std::vector<Signature>& looks,
@@ -146,8 +152,7 @@ std::vector<Probe> strongerProbes(const Comparison& comparison, const std::vecto
     if (suspects[s].info().stage == Stage::sensor) continue;
     for (std::size_t k = 0; k < suspects[s].strengths().size(); ++k) {
       const int coordinate = suspects[s].strengths()[k];
-      const bool either_sign = suspects[s].isSigned(coordinate);
-      if ((direction < 0 && !either_sign) || excitationOf(comparison, {looks[s].per_strength[k]}) >= (either_sign ? nothing : 1)) continue;
+      if ((direction < 0 && !suspects[s].isSigned(coordinate)) || shows(comparison, suspects[s], k, looks[s])) continue;
       Eigen::VectorXd z = Eigen::VectorXd::Zero(suspects[s].coordinateCount());
       z[coordinate] = direction * strong;
       result.push_back({{{suspects[s].at(z)}, {}}, {{s, k, -1}}});
@@ -172,7 +177,7 @@ std::vector<Probe> weakerProbes(const Comparison& comparison, std::vector<Suspec
   constexpr double too_much = 3, after_divergence = 0.1;
   std::vector<Probe> result;
   for (std::size_t s = 0; s < suspects.size(); ++s) {
-    if (suspects[s].info().stage == Stage::sensor) continue;
+    if (suspects[s].info().stage == Stage::sensor || looks[s].from_threshold) continue;
     for (std::size_t k = 0; k < suspects[s].strengths().size(); ++k) {
       const Eigen::VectorXd& change = looks[s].per_strength[k];
       const double size = change.size() ? sizeOver(comparison, residual, change) : 1 / after_divergence;
@@ -186,6 +191,109 @@ std::vector<Probe> weakerProbes(const Comparison& comparison, std::vector<Suspec
   }
   return result;
 }
+
+/// A suspect's only strength made stronger or weaker than typical.
+class OnlyStrength {
+ public:
+  OnlyStrength(const Comparison& comparison, const Eigen::VectorXd& nominal, const Model& base, const OnSimulation& on_simulation,
+               Suspect& suspect, Signature& look)
+      : comparison_(comparison), nominal_(nominal), base_(base), on_simulation_(on_simulation), suspect_(suspect), look_(look) {}
+
+  /// Where the typical strength shows nothing: stronger and stronger until it does, to either side where that is possible, then closer to
+  /// where it begins to, and about the one that leaves least. That one is typical from here on. Beside a threshold derivatives tell little.
+  void lookFromThreshold() {
+    constexpr double growth = 4;
+    constexpr int halvings = 3;
+    for (const double side : {1.0, -1.0}) {
+      if (side < 0 && !suspect_.isSigned(coordinate())) continue;
+      double hidden = side, visible = side * growth;
+      while (!showsClearlyAt(visible)) {
+        if (isBound(visible) || comparison_.plant().interrupted()) break;
+        hidden = visible;
+        visible *= growth;
+      }
+      if (!showsClearlyAt(visible)) continue;
+      keepIfNearer(visible);
+      for (int i = 0; i < halvings; ++i) {
+        const double between = side * std::sqrt(hidden * visible);
+        const bool is_visible = showsClearlyAt(between);
+        (is_visible ? visible : hidden) = between;
+        if (is_visible) keepIfNearer(between);
+      }
+    }
+    if (best_.strength != 0 && best_.look.log_misfit < worth_refining * comparison_.logMisfit(comparison_.measured() - nominal_)) refine();
+    take(true);
+  }
+
+  /// Where as much as a straight line may tell is called for: from there on again, while that leaves less.
+  void lookFarther() {
+    while (std::abs(look_.amount[0]) >= largest_amount && !isBound(look_.amount[0])) {
+      const double strength = look_.amount[0];
+      best_ = {};
+      keepIfNearer(strength);
+      if (!(best_.look.log_misfit < look_.log_misfit)) return;
+      take(look_.from_threshold);
+    }
+  }
+
+ private:
+  struct Found {
+    double strength = 0;
+    Signature look;
+  };
+  static constexpr double worth_refining = 0.97;  ///< of the misfit without the effect
+  int coordinate() const { return suspect_.strengths().front(); }
+  Eigen::VectorXd at(double strength) const {
+    Eigen::VectorXd z = Eigen::VectorXd::Zero(suspect_.coordinateCount());
+    z[coordinate()] = strength;
+    return z;
+  }
+  bool isBound(double strength) const { return suspect_.clamped(at(strength))[coordinate()] != strength; }
+  /// Empty where the model diverges.
+  Eigen::VectorXd changeAt(double strength) const {
+    if (comparison_.plant().interrupted()) return {};
+    Model model = base_;
+    model.effects.push_back(suspect_.at(suspect_.clamped(at(strength))));
+    const Eigen::VectorXd predicted = comparison_.predicted(model);
+    on_simulation_();
+    if (predicted.size() != nominal_.size() || !predicted.allFinite()) return {};
+    return predicted - nominal_;
+  }
+  /// Of the change's RMS a floor or more in some cell.
+  bool showsClearlyAt(double strength) const {
+    const Eigen::VectorXd change = changeAt(strength);
+    return change.size() && excitationOf(comparison_, {change}) >= 1;
+  }
+  void keepIfNearer(double strength) {
+    Signature look = look_;
+    look.per_strength = {changeAt(strength)};
+    if (!look.per_strength.front().size()) return;
+    explain(comparison_, suspect_, comparison_.measured() - nominal_, look);
+    if (best_.strength == 0 || look.log_misfit < best_.look.log_misfit)
+      best_ = {suspect_.clamped(at(strength))[coordinate()], std::move(look)};
+  }
+  void refine() {
+    for (const double factor : {1.2, 1.1, 1.05, 1.025, 1.0125}) {
+      const double middle = best_.strength;
+      keepIfNearer(middle * factor);
+      keepIfNearer(middle / factor);
+    }
+  }
+  void take(bool from_threshold) {
+    if (best_.strength == 0) return;
+    suspect_.weaken(coordinate(), best_.strength);
+    look_ = std::move(best_.look);
+    look_.from_threshold = from_threshold;
+  }
+
+  const Comparison& comparison_;
+  const Eigen::VectorXd& nominal_;
+  const Model& base_;
+  const OnSimulation& on_simulation_;
+  Suspect& suspect_;
+  Signature& look_;
+  Found best_;
+};
 
 /// Changes that are multiples of each other, but for what can hardly be seen.
 bool actAlike(const Eigen::VectorXd& one, const Eigen::VectorXd& other) {
@@ -245,9 +353,21 @@ std::vector<Signature> screen(const Comparison& comparison, std::vector<Suspect>
   for (Signature& signature : result)
     if (std::ranges::all_of(signature.per_strength, [](const Eigen::VectorXd& change) { return change.size() > 0; }))
       signature.excitation_ratio = excitationOf(comparison, signature.per_strength);
-  for (const int direction : {1, -1}) look(strongerProbes(comparison, suspects, result, direction), direction * strong);
   const Eigen::VectorXd residual = comparison.measured() - nominal;
   const bool adapt = strengths == Strengths::adapted;
+  auto adaptOnlyStrengths = [&](const std::function<bool(std::size_t)>& chosen, const std::function<void(OnlyStrength&)>& adapted) {
+    std::vector<std::size_t> those;
+    for (std::size_t s = 0; adapt && s < suspects.size(); ++s)
+      if (suspects[s].info().stage != Stage::sensor && suspects[s].strengths().size() == 1 && chosen(s)) those.push_back(s);
+    parallelFor(static_cast<int>(those.size()), job_count, [&](int i) {
+      const std::size_t s = those[static_cast<std::size_t>(i)];
+      OnlyStrength only_strength(comparison, nominal, base, on_simulation, suspects[s], result[s]);
+      adapted(only_strength);
+    });
+  };
+  adaptOnlyStrengths([&](std::size_t s) { return result[s].per_strength.front().size() && !shows(comparison, suspects[s], 0, result[s]); },
+                     [](OnlyStrength& it) { it.lookFromThreshold(); });
+  for (const int direction : {1, -1}) look(strongerProbes(comparison, suspects, result, direction), direction * strong);
   for (std::size_t s = 0; adapt && s < suspects.size(); ++s) leaveOutIdle(comparison, suspects[s], result[s]);
   const int weakenings = adapt ? 3 : 0;
   for (int i = 0; i < weakenings; ++i) look(weakerProbes(comparison, suspects, result, residual), 1);
@@ -258,6 +378,7 @@ std::vector<Signature> screen(const Comparison& comparison, std::vector<Suspect>
     explain(comparison, suspects[s], residual, lately[s]);
     if (lately[s].log_misfit < result[s].log_misfit) result[s] = std::move(lately[s]);
   }
+  adaptOnlyStrengths([](std::size_t) { return true; }, [](OnlyStrength& it) { it.lookFarther(); });
   return result;
 }
 

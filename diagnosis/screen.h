@@ -15,8 +15,9 @@ namespace musclesim {
 struct Signature {
   /// Change of the prediction by each strength alone, at z = 1; empty columns where the model diverged.
   std::vector<Eigen::VectorXd> per_strength;
-  Eigen::VectorXd amount;  ///< multiple of each that removes most
-  double log_misfit = 0;   ///< of what is left
+  Eigen::VectorXd amount;       ///< multiple of each that removes most
+  bool from_threshold = false;  ///< the typical strength was looked for from where the effect begins to show: below, there may be nothing
+  double log_misfit = 0;        ///< of what is left
   /// Largest RMS of a typical strength's change in any cell, over that cell's floor; nothing where not all of them could be simulated.
   std::optional<double> excitation_ratio;
 };
@@ -29,8 +30,9 @@ enum class Strengths { adapted, kept };
 
 /// One or a few simulations per suspect on the comparison's stretches; sensor effects of one id on different signals share theirs.
 /// `nominal` is the prediction of `base`, the model beside which the suspects are tried. Unless strengths are to be kept, those that hardly
-/// act beside another one of their suspect are left out (a force across the plane in which an elbow moves), and those that change a signal
-/// by much more than what is to be explained are weakened, since what they do need not be proportional to them.
+/// act beside another one of their suspect are left out (a force across the plane in which an elbow moves), those that change a signal by
+/// much more than what is to be explained are weakened, since what they do need not be proportional to them, and a suspect's only strength
+/// is made stronger where it shows nothing (a dead band below all commands), or where more of it than a straight line tells is called for.
 std::vector<Signature> screen(const Comparison& comparison, std::vector<Suspect>& suspects, const Eigen::VectorXd& nominal,
                               const Model& base, Strengths strengths, int job_count, const OnSimulation& on_simulation);
 

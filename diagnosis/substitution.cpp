@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "musclesim/random.h"
+
 namespace musclesim {
 
 namespace {
@@ -173,6 +175,41 @@ std::optional<double> contradiction(const Motion& of, const Motion& by) {
   return ratio.largestRms();
 }
 
+constexpr int noise_draws = 4;
+constexpr double out_of_floor = 1.15;  ///< RMS over floor from which on a cell has a gap
+
+/// The number before in place of one that is missing, and the first one at the beginning; empty if there is none at all.
+std::vector<double> withoutHoles(std::vector<double> values) {
+  const auto first = std::ranges::find_if(values, [](double value) { return std::isfinite(value); });
+  if (first == values.end()) return {};
+  double last = *first;
+  for (double& value : values) last = value = std::isfinite(value) ? value : last;
+  return values;
+}
+
+/// With the measured pressures as commands of the model, and as much noise again added to them if a stream is given; empty if the model
+/// cannot follow or a pressure is missing.
+Eigen::VectorXd predictedUnderMeasuredPressures(const Comparison& comparison, RandomStream* noise) {
+  const Plant& plant = comparison.plant();
+  std::vector<Prediction> predictions;
+  for (const Stretch& stretch : comparison.stretches()) {
+    const std::size_t rows = plant.recordings()[static_cast<std::size_t>(stretch.recording)].time_s.size();
+    std::vector<std::vector<double>> commands(rows, std::vector<double>(static_cast<std::size_t>(plant.muscleCount())));
+    for (int muscle = 0; muscle < plant.muscleCount(); ++muscle) {
+      const int signal = signalNumber(plant, fmt::format("pressure_{}", muscle));
+      std::vector<double> p = plant.measured(stretch.recording, signal);
+      if (noise)
+        for (double& value : p) value += floorOf(plant, signal) * noise->normal();
+      p = withoutHoles(std::move(p));
+      if (p.size() != rows) return {};
+      for (std::size_t row = 0; row < rows; ++row)
+        commands[row][static_cast<std::size_t>(muscle)] = std::clamp((p[row] + p[std::min(row + 1, rows - 1)]) / 2, 0.0, 1.0);
+    }
+    predictions.push_back(plant.predict(stretch.recording, Model{}, commands, stretch.end_row, Fidelity::fine));
+  }
+  return comparison.predicted(predictions, Fidelity::fine);
+}
+
 }  // namespace
 
 int signalNumber(const Plant& plant, const std::string& name) {
@@ -218,28 +255,42 @@ bool allPressuresMeasured(const Plant& plant) {
   return true;
 }
 
-Eigen::VectorXd residualUnderMeasuredPressures(const Comparison& comparison) {
-  const Plant& plant = comparison.plant();
-  std::vector<Prediction> predictions;
-  for (const Stretch& stretch : comparison.stretches()) {
-    const std::size_t rows = plant.recordings()[static_cast<std::size_t>(stretch.recording)].time_s.size();
-    std::vector<std::vector<double>> commands(rows, std::vector<double>(static_cast<std::size_t>(plant.muscleCount())));
-    for (int muscle = 0; muscle < plant.muscleCount(); ++muscle) {
-      const std::vector<double>& p = plant.measured(stretch.recording, signalNumber(plant, fmt::format("pressure_{}", muscle)));
-      if (p.size() != rows) return {};
-      const auto first = std::ranges::find_if(p, [](double value) { return std::isfinite(value); });
-      if (first == p.end()) return {};
-      double last = std::clamp(*first, 0.0, 1.0);
-      for (std::size_t row = 0; row < rows; ++row) {
-        if (std::isfinite(p[row])) last = std::clamp(p[row], 0.0, 1.0);
-        commands[row][static_cast<std::size_t>(muscle)] = last;
-      }
-    }
-    predictions.push_back(plant.predict(stretch.recording, Model{}, commands, stretch.end_row, Fidelity::fine));
+std::optional<PressureTest> testPressures(const Comparison& comparison, const Eigen::VectorXd& residual) {
+  const Eigen::VectorXd followed = predictedUnderMeasuredPressures(comparison, nullptr);
+  if (!followed.size()) return std::nullopt;
+  std::vector<Eigen::VectorXd> noises;
+  RandomStream random(1, "diagnosis.substitution");
+  for (int draw = 0; draw < noise_draws; ++draw) {
+    const Eigen::VectorXd noisier = predictedUnderMeasuredPressures(comparison, &random);
+    if (!noisier.size()) return std::nullopt;
+    noises.push_back(noisier - followed);
   }
-  const Eigen::VectorXd predicted = comparison.predicted(predictions, Fidelity::fine);
-  if (!predicted.size()) return {};
-  return comparison.measured() - predicted;
+  const Eigen::VectorXd left = comparison.measured() - followed, change = residual - left;
+  PressureTest test;
+  double gap = 0, with_change = 0, cell_count = 0;
+  Eigen::VectorXd with_noise = Eigen::VectorXd::Zero(noise_draws);
+  for (const Comparison::Cell& cell : comparison.cells()) {
+    if (nameOf(comparison, cell).starts_with("pressure_")) continue;
+    auto meanProduct = [&](const Eigen::VectorXd& one, const Eigen::VectorXd& other) {
+      return one.segment(cell.first, cell.count()).dot(other.segment(cell.first, cell.count())) / static_cast<double>(cell.count());
+    };
+    auto logMisfit = [](double square, double floor_square) { return 0.5 * std::log(std::max(1.0, square / floor_square)); };
+    double noise_square = 0;
+    for (const Eigen::VectorXd& noise : noises) noise_square += meanProduct(noise, noise) / noise_draws;
+    const double square = meanProduct(residual, residual), floor_square = cell.floor * cell.floor;
+    const double noisy_square = floor_square + noise_square;
+    test.misfit += logMisfit(square, floor_square);
+    test.misfit_increase += logMisfit(meanProduct(left, left), noisy_square) - logMisfit(square, noisy_square);
+    ++cell_count;
+    if (square < out_of_floor * out_of_floor * floor_square) continue;
+    gap += (square - floor_square) / noisy_square;
+    with_change += meanProduct(residual, change) / noisy_square;
+    for (int draw = 0; draw < noise_draws; ++draw)
+      with_noise[draw] += meanProduct(residual, noises[static_cast<std::size_t>(draw)]) / noisy_square;
+  }
+  if (cell_count > 0) test.misfit /= cell_count, test.misfit_increase /= cell_count;
+  if (gap > 0) test.share = with_change / gap, test.share_deviation = std::sqrt(with_noise.squaredNorm() / noise_draws) / gap;
+  return test;
 }
 
 std::optional<TensionTest> testTension(const Comparison& comparison, const Eigen::VectorXd& residual) {

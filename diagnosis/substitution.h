@@ -24,8 +24,23 @@ double largestMotionRatio(const Comparison& comparison, const Eigen::VectorXd& r
 std::string mostAffected(const Comparison& comparison, const Eigen::VectorXd& residual, const std::string& beginning);
 
 bool allPressuresMeasured(const Plant& plant);
-/// The residual when the measured pressures are the commands; empty if the model cannot follow.
-Eigen::VectorXd residualUnderMeasuredPressures(const Comparison& comparison);
+
+/// What the clean model does with the measured pressures as its commands; of motion and tension.
+struct PressureTest {
+  double share = 0;            ///< of their gap that goes with the pressures: 1 if all of it arose before or in these, 0 if none did
+  double share_deviation = 0;  ///< its standard deviation by the noise of the pressures
+  double misfit = 0;           ///< mean ln(RMS / floor) of their gap
+  double misfit_increase = 0;  ///< by which it grows under the measured pressures; noise of these counts as part of the floors
+};
+/// Measured pressures are noisy, and the model moves with their noise: often more than the motion's own floor, and sometimes more than its
+/// gap. Of r, measured minus predicted, s, what the measured pressures change, and n, what a further draw of white noise of the pressures'
+/// floors changes beside that, with w = 1 / (floor^2 + mean n^2) in each cell,
+///   share = sum w r s / sum w (r^2 - floor^2)    over the cells in which r stands out of the floor
+/// which noise in s makes uncertain (as much as r n in place of r s varies) but not larger or smaller, since r knows nothing of it: the
+/// regression of the variable with errors on that without (Fuller, Measurement Error Models, 1987). Where pressures touch 0 or 1, a
+/// further draw is cut off as the noise that is in them already was, and n is an approximation. Between rows pressures are taken to move
+/// evenly: each command is the mean of a row's pressure and the next one's. Nothing if the model cannot follow or pressures are missing.
+std::optional<PressureTest> testPressures(const Comparison& comparison, const Eigen::VectorXd& residual);
 
 /// Of measured tension minus that of the law at measured pressure and length, over what noise of all three gives; of the muscle in which it
 /// is largest.

@@ -25,10 +25,7 @@ class OddsOnARig : public testing::Test {
     return result;
   }
 
-  double ofSingle(std::size_t member, double floors) const {
-    const Explanation single = explanation({member}, floors);
-    return odds_.ofExplanation(single, single);
-  }
+  double ofSingle(std::size_t member, double floors) const { return odds_.ofExplanation(explanation({member}, floors)); }
 
   DiagnosisOptions options_;
   Plant plant_{planted::plant({}), options_};
@@ -43,8 +40,9 @@ class OddsOnARig : public testing::Test {
 };
 
 TEST_F(OddsOnARig, FollowWhatIsLeft) {
-  EXPECT_NEAR(ofSingle(payload, 2) - ofSingle(payload, 4), weighing_.per_misfit * std::log(2), 0.1);
+  EXPECT_NEAR(ofSingle(payload, 5) - ofSingle(payload, 10), weighing_.per_misfit * std::log(2), 1e-9);
   EXPECT_NEAR(ofSingle(payload, 0.5), ofSingle(payload, 0.9), 1e-9) << "below the floor all are as good";
+  EXPECT_NEAR(ofSingle(payload, 0.5), ofSingle(payload, 2), 1e-9) << "and below a tenth of the gap";
 }
 
 TEST_F(OddsOnARig, CountParameters) {
@@ -53,26 +51,28 @@ TEST_F(OddsOnARig, CountParameters) {
 }
 
 TEST_F(OddsOnARig, NoneOfTheseBeatsWhatHardlyExplainsAndLosesToWhatDoes) {
-  EXPECT_GT(odds_.ofNoneOfThese(), odds_.ofNoEffect());
-  EXPECT_GT(odds_.ofNoneOfThese(), ofSingle(payload, 15));
-  EXPECT_LT(odds_.ofNoneOfThese(), ofSingle(payload, 2));
+  auto against = [&](double floors) {
+    return odds_.ofNoneOfThese({explanation({payload}, floors), explanation({gain}, 16)}) - ofSingle(payload, floors);
+  };
+  EXPECT_GT(against(15), 2);
+  EXPECT_LT(against(2.5), -2);
+  EXPECT_NEAR(against(1), -weighing_.per_share_left * weighing_.share_of_unknown, 1e-9) << "what looks like the cause may be another";
+  EXPECT_GT(odds_.ofNoneOfThese({}), odds_.ofNoEffect());
 }
 
 TEST_F(OddsOnARig, AreOfWhatWasNotSeenWhereThatIsKnown) {
   Explanation flexible = explanation({payload}, 1);
   flexible.unseen = leaving(4);
-  EXPECT_NEAR(odds_.ofExplanation(flexible, flexible), ofSingle(payload, 4), 1e-9);
+  EXPECT_NEAR(odds_.ofExplanation(flexible), ofSingle(payload, 4), 1e-9);
 }
 
 TEST_F(OddsOnARig, AFurtherEffectThatGainsNothingCosts) {
   const Explanation alone = explanation({payload}, 2), pair = explanation({payload, bias}, 2);
-  EXPECT_NEAR(odds_.ofExplanation(alone, alone) - odds_.ofExplanation(pair, alone), weighing_.per_effect + weighing_.per_parameter, 1e-9);
+  EXPECT_NEAR(odds_.ofExplanation(alone) - odds_.ofExplanation(pair), weighing_.per_effect + weighing_.per_parameter, 1e-9);
 }
 
 TEST_F(OddsOnARig, AFurtherEffectInTheSamePlaceCostsMore) {
-  const Explanation alone = explanation({gain}, 4);
-  const double same = odds_.ofExplanation(explanation({gain, threshold}, 1), alone),
-               elsewhere = odds_.ofExplanation(explanation({gain, bias}, 1), alone);
+  const double same = odds_.ofExplanation(explanation({gain, threshold}, 1)), elsewhere = odds_.ofExplanation(explanation({gain, bias}, 1));
   EXPECT_NEAR(elsewhere - same, weighing_.per_same_place + weighing_.per_parameter, 1e-9);
 }
 
@@ -93,10 +93,9 @@ TEST_F(OddsOnARig, PlacesOverlapThroughAllAndThroughPairsOfMuscles) {
       result.z = Eigen::VectorXd::Zero(count);
       return result;
     };
-    const Explanation alone = of({one});
     const double parameters = static_cast<double>(on_two[other].coordinateCount()) * weighing_.per_parameter;
     const double shared = other == 6 ? weighing_.shared_sensor : 0;
-    return odds.ofExplanation(alone, alone) - odds.ofExplanation(of({one, other}), alone) - parameters - shared - weighing_.per_effect;
+    return odds.ofExplanation(of({one})) - odds.ofExplanation(of({one, other})) - parameters - shared - weighing_.per_effect;
   };
   EXPECT_NEAR(costs(0, 1), weighing_.per_same_place, 1e-9) << "a muscle and all";
   EXPECT_NEAR(costs(0, 2), weighing_.per_same_place, 1e-9) << "a muscle and a pair with it";
@@ -106,21 +105,9 @@ TEST_F(OddsOnARig, PlacesOverlapThroughAllAndThroughPairsOfMuscles) {
   EXPECT_NEAR(costs(1, 6), 0, 1e-9) << "all sensors are no muscle";
 }
 
-TEST_F(OddsOnARig, WhatTheBestEffectAloneCouldLeaveByItsLawGainsNothingOfItsOwn) {
-  // 4 floors are left of 20 alone: less than half of what the effect changes.
-  const Explanation alone = explanation({payload}, 4), pair = explanation({payload, bias}, 1);
-  EXPECT_NEAR(odds_.ofExplanation(pair, alone) - odds_.ofExplanation(alone, alone),
-              weighing_.per_misfit * std::log(4) - weighing_.per_effect - weighing_.per_parameter, 0.2);
-  // 15 floors are more than that.
-  const Explanation poor = explanation({payload}, 15);
-  EXPECT_GT(odds_.ofExplanation(pair, poor) - odds_.ofExplanation(poor, poor),
-            weighing_.per_misfit * std::log(15) - weighing_.per_effect + 1);
-}
-
 TEST_F(OddsOnARig, HopeIsWhatAPerfectFurtherEffectWouldGain) {
-  const Explanation alone = explanation({gain}, 4), nothing_left = explanation({gain}, 1);
-  EXPECT_GT(odds_.hopeBeyond(alone, alone), 0);
-  EXPECT_NEAR(odds_.hopeBeyond(nothing_left, nothing_left), -weighing_.per_effect - weighing_.per_parameter, 1e-9);
+  EXPECT_GT(odds_.hopeBeyond(explanation({gain}, 4)), 0);
+  EXPECT_NEAR(odds_.hopeBeyond(explanation({gain}, 1)), -weighing_.per_effect - weighing_.per_parameter, 1e-9);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <functional>
 #include <numbers>
 
+#include "diagnosis/locate.h"
 #include "musclesim/random.h"
 #include "musclesim/simulation/replay.h"
 
@@ -156,11 +157,42 @@ TEST(Pressures, ThatReadWrongWouldMoveWhatDoesNotMove) {
   EXPECT_GT(*ratioOf(wrong.comparison, wrong.residual, "pressure_"), disagrees);
   EXPECT_LT(largestMotionRatio(wrong.comparison, wrong.residual), disagrees);
   EXPECT_EQ(mostAffected(wrong.comparison, wrong.residual, "pressure_"), "pressure_0");
-  EXPECT_GT(largestMotionRatio(wrong.comparison, residualUnderMeasuredPressures(wrong.comparison)), disagrees);
+  const auto by_wrong = testPressures(wrong.comparison, wrong.residual);
+  ASSERT_TRUE(by_wrong);
+  EXPECT_LT(by_wrong->misfit, 0.1);
+  EXPECT_GT(by_wrong->misfit_increase, 0.2);
   const Compared lag("rig", signals, {{"valve_lag", "muscle_0", {{"fill_time_constant_s", 0.1}, {"vent_time_constant_s", 0.1}}}});
-  EXPECT_GT(largestMotionRatio(lag.comparison, lag.residual), disagrees);
-  EXPECT_LT(largestMotionRatio(lag.comparison, residualUnderMeasuredPressures(lag.comparison)),
-            0.3 * largestMotionRatio(lag.comparison, lag.residual));
+  const auto by_lag = testPressures(lag.comparison, lag.residual);
+  ASSERT_TRUE(by_lag);
+  EXPECT_NEAR(by_lag->share, 1, 0.1);
+  EXPECT_LT(by_lag->misfit_increase, -0.5 * by_lag->misfit);
+}
+
+bool isRuledOut(const Location& location, const std::string& stage) {
+  return std::ranges::any_of(location.places, [&](const Place& place) { return place.stage == stage && place.is_ruled_out; });
+}
+
+/// The noise of measured pressures moves the model about as much as this short lag of the valve does.
+TEST(Pressures, ThatAreNoisyStillTellWhereAWeakGapArises) {
+  const Compared lag("rig", {"pressure_0", "length_0_mm"},
+                     {{"valve_lag", "muscle_0", {{"fill_time_constant_s", 0.02}, {"vent_time_constant_s", 0.02}}}});
+  const auto test = testPressures(lag.comparison, lag.residual);
+  ASSERT_TRUE(test);
+  EXPECT_NEAR(test->share, 1, 0.25);
+  EXPECT_GT(test->share_deviation, 0.02);
+  const Location location = locate(lag.comparison, {}, {}, lag.residual);
+  for (const char* stage : {"force", "body", "sensor"}) EXPECT_TRUE(isRuledOut(location, stage)) << location.method;
+  for (const char* stage : {"command", "pressure"}) EXPECT_FALSE(isRuledOut(location, stage)) << location.method;
+}
+
+/// A weak muscle is no matter of pressures, even where these are not as predicted.
+TEST(Pressures, MakeNothingOfAGapBehindThem) {
+  const Compared weak("rig", {"pressure_0", "length_0_mm"}, {{"force_gain", "muscle_0", {{"gain", 0.95}}}}, hum("pressure_0", 0.01));
+  EXPECT_GT(*ratioOf(weak.comparison, weak.residual, "pressure_"), agrees);
+  const auto test = testPressures(weak.comparison, weak.residual);
+  ASSERT_TRUE(test);
+  EXPECT_NEAR(test->share, 0, 0.1);
+  EXPECT_FALSE(isRuledOut(locate(weak.comparison, {}, {}, weak.residual), "force"));
 }
 
 }  // namespace

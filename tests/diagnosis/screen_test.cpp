@@ -1,0 +1,72 @@
+// The first look where a typical strength is far from the right one.
+#include "diagnosis/screen.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "diagnosis/refit.h"
+#include "planted.h"
+
+namespace musclesim {
+namespace {
+
+/// A rig with one effect, looked at for it alone.
+struct Looked {
+  Looked(const ActiveEffect& effect, Strengths strengths)
+      : options(planted::few({effect.id})), plant(planted::plant({effect}), options), suspect(suspects(plant, options).front()) {
+    std::vector<Suspect> all = {suspect};
+    look = screen(comparison, all, nominal, Model{}, strengths, 2, [] {}).front();
+    suspect = all.front();
+  }
+  /// From the typical strength.
+  FitResult fitted() const {
+    FitProblem problem;
+    problem.start = suspect.typical();
+    problem.clamped = [&](const Eigen::VectorXd& z) { return suspect.clamped(z); };
+    problem.predicted = [&](const Eigen::VectorXd& z) { return comparison.predicted(Model{{suspect.at(z)}, {}}); };
+    return fit(comparison, problem, 8);
+  }
+  double before() const { return comparison.logMisfit(comparison.measured() - nominal); }
+  double valueAt(double strength) const {
+    Eigen::VectorXd z = Eigen::VectorXd::Zero(suspect.coordinateCount());
+    z[suspect.strengths().front()] = strength;
+    return suspect.valuesAt(z).front().second;
+  }
+  DiagnosisOptions options;
+  Plant plant;
+  Comparison comparison{plant, {{0, 0, 400}, {1, 0, 400}}, Comparison::Averages::with};
+  Eigen::VectorXd nominal = comparison.predicted(Model{});
+  Suspect suspect;
+  Signature look;
+};
+
+/// Usual thresholds, 0.02 to 0.1, are below all commands.
+const ActiveEffect wide_dead_band = {"command_dead_band", "muscle_0", {{"threshold", 0.32}}};
+
+TEST(FirstLookAtAThreshold, BeginsWhereTheEffectShows) {
+  const Looked adapted(wide_dead_band, Strengths::adapted);
+  EXPECT_TRUE(adapted.look.from_threshold);
+  EXPECT_NEAR(adapted.valueAt(1), 0.32, 0.005);
+  EXPECT_LT(adapted.fitted().log_misfit, 0.2 * adapted.before());
+  ASSERT_TRUE(adapted.look.excitation_ratio.has_value());
+  EXPECT_LT(*adapted.look.excitation_ratio, 0.01) << "as strong as usual it shows nothing";
+}
+
+TEST(FirstLookAtAThreshold, LeavesStrengthsThatAreToBeKept) {
+  const Looked kept(wide_dead_band, Strengths::kept);
+  EXPECT_FALSE(kept.look.from_threshold);
+  EXPECT_GT(kept.fitted().log_misfit, 0.9 * kept.before()) << "where nothing shows no fit finds the way";
+  EXPECT_LT(kept.valueAt(1), 0.1);
+}
+
+TEST(FirstLookFarther, FollowsAnEffectThatIsManyTimesAsStrongAsTypical) {
+  const ActiveEffect tiring = {"force_drift", "muscle_0", {{"rate_per_min", -1.0}}};
+  const Looked adapted(tiring, Strengths::adapted), kept(tiring, Strengths::kept);
+  EXPECT_GE(std::abs(adapted.valueAt(1)), 5 * kept.valueAt(1));
+  EXPECT_NEAR(adapted.valueAt(adapted.look.amount[0]), -1.0, 0.2);
+  EXPECT_LT(adapted.look.log_misfit, kept.look.log_misfit - 5);
+}
+
+}  // namespace
+}  // namespace musclesim
