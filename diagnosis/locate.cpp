@@ -157,8 +157,8 @@ class Evidence {
     constexpr double most = 0.5, sure = 2;  // of the gap; standard deviations
     const double reach = sure * test.share_deviation;
     if (test.share > most && test.share > reach && test.misfit_increase < 2 * small_misfit)
-      say(fmt::format("the measured pressures in place of the simulated ones make {:.0f} ± {:.0f} % of the gap of the motion", 100 * test.share,
-                      100 * reach),
+      say(fmt::format("the measured pressures in place of the simulated ones make {:.0f} % of the motion's gap, give or take {:.0f}",
+                      100 * test.share, 100 * reach),
           {Stage::force, Stage::body, Stage::sensor});
     else if (test.share + reach < most)
       say("pressures differ from the predicted ones, but most of the motion's gap stays when they are put in their place: there is more "

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -44,10 +45,10 @@ void putRate(json& totals, const std::string& name, const std::vector<FollowUp>&
 void putLeftOut(json& totals, const std::vector<FollowUp>& follow_ups) {
   for (const auto& [name, what] :
        {std::pair("left_out_failed", WithoutTruth::failed), std::pair("left_out_confidently_wrong", WithoutTruth::confidently_wrong),
-        std::pair("left_out_look_alike", WithoutTruth::look_alike), std::pair("left_out_unexplained", WithoutTruth::unexplained),
-        std::pair("left_out_unsure", WithoutTruth::unsure)})
+        std::pair("left_out_look_alike", WithoutTruth::look_alike), std::pair("left_out_named_before", WithoutTruth::named_before),
+        std::pair("left_out_unexplained", WithoutTruth::unexplained), std::pair("left_out_unsure", WithoutTruth::unsure)})
     putRate(totals, name, follow_ups, [what = what](const FollowUp& one) {
-      return one.left_out ? std::optional(withoutTruth(*one.left_out) == what) : std::nullopt;
+      return one.left_out ? std::optional(withoutTruth(*one.left_out, one.answer) == what) : std::nullopt;
     });
 }
 
@@ -87,12 +88,14 @@ void putFresh(json& totals, const std::vector<FollowUp>& follow_ups) {
 
 }  // namespace
 
-WithoutTruth withoutTruth(const Judgement& answer) {
+WithoutTruth withoutTruth(const Judgement& answer, const Judgement& with_truth) {
   if (answer.verdict == "failed") return WithoutTruth::failed;
   const bool look_alike = answer.acceptable.value_or(false);
-  if (answer.verdict == "effects_found" && answer.top_probability > confident && !look_alike) return WithoutTruth::confidently_wrong;
+  const bool named_before = std::ranges::find(with_truth.ambiguity_set, answer.top) != with_truth.ambiguity_set.end();
+  const bool confident_effect = answer.verdict == "effects_found" && answer.top_probability > confident;
+  if (confident_effect && !look_alike && !named_before) return WithoutTruth::confidently_wrong;
   if (answer.verdict != "effects_found" || !answer.namesEffect()) return WithoutTruth::unexplained;
-  return look_alike ? WithoutTruth::look_alike : WithoutTruth::unsure;
+  return look_alike ? WithoutTruth::look_alike : named_before ? WithoutTruth::named_before : WithoutTruth::unsure;
 }
 
 bool namesTruth(const Judgement& answer) {
@@ -127,7 +130,7 @@ std::vector<std::string> missesOf(const FollowUp& follow_up) {
                                                        : fmt::format("{}, {} {:.2f}", j.verdict, j.top, j.top_probability);
   };
   if (follow_up.left_out)
-    if (const WithoutTruth without = withoutTruth(*follow_up.left_out);
+    if (const WithoutTruth without = withoutTruth(*follow_up.left_out, follow_up.answer);
         without == WithoutTruth::failed || without == WithoutTruth::confidently_wrong)
       misses.push_back("without the true effect: " + said(*follow_up.left_out));
   if (follow_up.experiment && !namesTruth(*follow_up.experiment))

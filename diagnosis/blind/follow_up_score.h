@@ -30,12 +30,13 @@ struct FollowUp {
 /// What the answer turns to without the true effect, the first that applies.
 enum class WithoutTruth {
   failed,
-  confidently_wrong,  ///< an effect with more than 0.9 that is no look-alike
+  confidently_wrong,  ///< an effect with more than 0.9 that is neither of the next two
   look_alike,         ///< one that the measured signals cannot separate comes first
+  named_before,       ///< one that the answer with the true effect had in its ambiguity set does
   unexplained,        ///< or no effect is likelier than none of these and no gap
   unsure              ///< another effect comes first, with 0.9 or less
 };
-WithoutTruth withoutTruth(const Judgement& answer);
+WithoutTruth withoutTruth(const Judgement& answer, const Judgement& with_truth);
 
 /// Whether the truth is the single best of an answer.
 bool namesTruth(const Judgement& answer);

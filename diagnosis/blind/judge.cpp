@@ -87,7 +87,7 @@ double probabilityOfAll(const json& answer, const Patterns& truths) {
 }
 
 void judgeSets(Judgement& j, const json& answer, const Patterns& acceptable, const Patterns& truths) {
-  std::vector<std::string> set = answer.value("ambiguity_set", std::vector<std::string>());
+  std::vector<std::string> set = j.ambiguity_set = answer.value("ambiguity_set", std::vector<std::string>());
   const std::vector<std::string> chosen = answer.value("chosen", std::vector<std::string>());
   j.set_size = std::max<double>(1, static_cast<double>(set.size()));
   if (j.kind == "double") {

@@ -27,6 +27,7 @@ struct Judgement {
   std::optional<bool> named;                   ///< single: first, the true cause, likelier than none of these and no gap
   std::optional<bool> component;               ///< of the first entry, if its id is right
   std::optional<bool> stage;                   ///< the first entry of "where" is a true stage
+  std::vector<std::string> ambiguity_set;      ///< as answered
   std::optional<bool> covered;                 ///< the truth is in the ambiguity set or chosen; of doubles both
   std::optional<bool> pair;                    ///< doubles: both causes, or acceptable ones, are chosen
   std::optional<bool> spurious;                ///< single, double: a cause was chosen that is neither a true one nor a look-alike of one

@@ -11,12 +11,17 @@ using namespace answers;
 
 TEST(BlindFollowUp, TellsWhatAnAnswerTurnsToWithoutTheTruth) {
   const json key = keyOf("single", {lag}, {{"valve_lag@*", "viscous_loss@*"}});
+  const Judgement with_truth =
+      judge("m", key,
+            answerOf("effects_found", {candidate("valve_lag", "all", 0.8)}, 0, {{"ambiguity_set", Labels{"valve_lag@all", "leak@all"}}}));
   auto turns = [&](const std::string& verdict, const std::vector<json>& effects, double none) {
-    return withoutTruth(judge("m", key, answerOf(verdict, effects, none)));
+    return withoutTruth(judge("m", key, answerOf(verdict, effects, none)), with_truth);
   };
   EXPECT_EQ(turns("failed", {}, 0), WithoutTruth::failed);
   EXPECT_EQ(turns("effects_found", {candidate("creep", "all", 0.91)}, 0), WithoutTruth::confidently_wrong);
   EXPECT_EQ(turns("effects_found", {candidate("viscous_loss", "all", 0.95)}, 0), WithoutTruth::look_alike);
+  EXPECT_EQ(turns("effects_found", {candidate("leak", "all", 0.95)}, 0), WithoutTruth::named_before);
+  EXPECT_EQ(turns("effects_found", {candidate("leak", "muscle_0", 0.95)}, 0), WithoutTruth::confidently_wrong);
   EXPECT_EQ(turns("effects_found", {candidate("creep", "all", 0.6)}, 0.4), WithoutTruth::unsure);
   EXPECT_EQ(turns("effects_found", {candidate("creep", "all", 0.4)}, 0.5), WithoutTruth::unexplained);
   EXPECT_EQ(turns("unexplained", {candidate("creep", "all", 0.95)}, 0), WithoutTruth::unexplained);
