@@ -249,7 +249,7 @@ bool Attributor::gainsOnLook(const Candidate& candidate) const {
 
 /// Nor will one whose explanation is far behind the likeliest so far.
 bool Attributor::mayBeBelieved(const Explanation& explanation) const {
-  constexpr double far_behind = 4;  // ln of the odds; what a fit in fine steps may still gain
+  constexpr double far_behind = 9;  // ln of the odds; what a fit in fine steps may still gain
   if (explanation.suspects.size() == 1) return true;
   double best = -std::numeric_limits<double>::infinity();
   for (const Explanation& other : result_.explanations) best = std::max(best, odds().ofExplanation(other));
@@ -384,6 +384,7 @@ std::vector<Attributor::Candidate> Attributor::candidatesBeside(const Explanatio
   if (options_.max_effects > few_effects) {
     std::vector<Suspect> suspects = result_.suspects;
     signatures = screen(look_, suspects, predicted, modelOf(base), Strengths::kept, options_.job_count, on_simulation_);
+    for (std::size_t s = 0; s < signatures.size(); ++s) signatures[s].from_threshold = result_.signatures[s].from_threshold;
   }
   std::vector<double> log_misfit;
   for (std::size_t s = 0; s < signatures.size(); ++s) {

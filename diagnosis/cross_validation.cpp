@@ -155,8 +155,10 @@ void Attributor::crossCheck() {
       Explanation& explanation = *open[static_cast<std::size_t>(i)];
       if (!explanation.fitted_to_all) refit(explanation, fit_, more_rounds, Fidelity::coarse);
       fitToAll(explanation);
-      if (some_unlike) predictFromOthers(explanation);
+      if (some_unlike && explanation.residual.size() == fit_.size()) predictFromOthers(explanation);
     });
+    // Fine steps may diverge where coarse ones go on.
+    std::erase_if(result_.explanations, [&](const Explanation& explanation) { return explanation.residual.size() != fit_.size(); });
     if (!plant_.interrupted()) weigh();
   }
 }

@@ -156,7 +156,8 @@ class Evidence {
   void askWhatPressuresMake(const PressureTest& test) {
     constexpr double most = 0.5, sure = 2;  // of the gap; standard deviations
     const double reach = sure * test.share_deviation;
-    if (test.share > most && test.share > reach && test.misfit_increase < 2 * small_misfit)
+    const bool moves_otherwise = test.misfit_increase >= 2 * small_misfit;
+    if (test.share > most && test.share > reach && !moves_otherwise)
       say(fmt::format("the measured pressures in place of the simulated ones make {:.0f} % of the motion's gap, give or take {:.0f}",
                       100 * test.share, 100 * reach),
           {Stage::force, Stage::body, Stage::sensor});
@@ -165,8 +166,9 @@ class Evidence {
           "than one cause, and shares say how much typical disturbances of each stage resemble the whole gap",
           {});
     else
-      say("pressures differ from the predicted ones, but how much of the motion's gap they make is uncertain: shares say how much "
-          "typical disturbances of each stage resemble the gap",
+      say(fmt::format("pressures differ from the predicted ones, but {}: shares say how much typical disturbances of each stage resemble "
+                      "the gap",
+                      moves_otherwise ? "the motion would be another under them" : "how much of the motion's gap they make is uncertain"),
           {});
   }
 

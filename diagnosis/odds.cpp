@@ -77,7 +77,8 @@ double Odds::ofNoneOfThese(const std::vector<Explanation>& explanations) const {
       best = odds;
       share_left = gap > 0 ? misfitLeftBy(explanation.judged()) / gap : 1;
     }
-  return best + weighing_.per_share_left * (share_left - weighing_.share_of_unknown);
+  const double of_unknown = best + weighing_.per_share_left * (share_left - weighing_.share_of_unknown);
+  return std::min(of_unknown, -weighing_.per_parameter);
 }
 
 double Odds::hopeBeyond(const Explanation& explanation) const {

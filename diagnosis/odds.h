@@ -49,7 +49,8 @@ class Odds {
   /// The same of no effect at all.
   double ofNoEffect() const;
   /// The same of a cause that the catalogue does not hold, beside the likeliest of some explanations and no effect: a cause that the
-  /// catalogue holds leaves a small share of the log misfit, what only resembles the cause a larger one.
+  /// catalogue holds leaves a small share of the log misfit, what only resembles the cause a larger one. No more than the odds of a cause
+  /// with one parameter that leaves nothing.
   double ofNoneOfThese(const std::vector<Explanation>& explanations) const;
   /// ln of the odds of one more effect that would leave nothing against the explanation without it.
   double hopeBeyond(const Explanation& explanation) const;

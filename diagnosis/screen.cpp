@@ -183,7 +183,7 @@ std::vector<Probe> weakerProbes(const Comparison& comparison, std::vector<Suspec
       const double size = change.size() ? sizeOver(comparison, residual, change) : 1 / after_divergence;
       if (size < too_much) continue;
       const int coordinate = suspects[s].strengths()[k];
-      suspects[s].weaken(coordinate, 1 / size);
+      suspects[s].rescale(coordinate, 1 / size);
       Eigen::VectorXd z = Eigen::VectorXd::Zero(suspects[s].coordinateCount());
       z[coordinate] = 1;
       result.push_back({{{suspects[s].at(z)}, {}}, {{s, k, -1}}});
@@ -207,70 +207,70 @@ class OnlyStrength {
     for (const double side : {1.0, -1.0}) {
       if (side < 0 && !suspect_.isSigned(coordinate())) continue;
       double hidden = side, visible = side * growth;
-      while (!showsClearlyAt(visible)) {
-        if (isBound(visible) || comparison_.plant().interrupted()) break;
-        hidden = visible;
-        visible *= growth;
-      }
-      if (!showsClearlyAt(visible)) continue;
+      for (; showing(visible) == Showing::none && !isBound(visible); visible *= growth) hidden = visible;
+      if (showing(visible) == Showing::none) continue;
       keepIfNearer(visible);
       for (int i = 0; i < halvings; ++i) {
         const double between = side * std::sqrt(hidden * visible);
-        const bool is_visible = showsClearlyAt(between);
-        (is_visible ? visible : hidden) = between;
-        if (is_visible) keepIfNearer(between);
+        (showing(between) == Showing::none ? hidden : visible) = between;
+        keepIfNearer(between);
       }
     }
-    if (best_.strength != 0 && best_.look.log_misfit < worth_refining * comparison_.logMisfit(comparison_.measured() - nominal_)) refine();
-    take(true);
+    if (best_.strength != 0 && best_.log_misfit < worth_refining * comparison_.logMisfit(residual())) refine();
+    if (best_.strength == 0) return;
+    look_.per_strength = {changeAt(best_.strength)};
+    look_.from_threshold = true;
+    suspect_.rescale(coordinate(), best_.strength);
   }
 
   /// Where as much as a straight line may tell is called for: from there on again, while that leaves less.
   void lookFarther() {
     while (std::abs(look_.amount[0]) >= largest_amount && !isBound(look_.amount[0])) {
-      const double strength = look_.amount[0];
-      best_ = {};
-      keepIfNearer(strength);
-      if (!(best_.look.log_misfit < look_.log_misfit)) return;
-      take(look_.from_threshold);
+      Signature farther = look_;
+      farther.per_strength = {changeAt(look_.amount[0])};
+      if (!farther.per_strength.front().size()) return;
+      explain(comparison_, suspect_, residual(), farther);
+      if (!(farther.log_misfit < look_.log_misfit)) return;
+      suspect_.rescale(coordinate(), look_.amount[0]);
+      look_ = std::move(farther);
     }
   }
 
  private:
   struct Found {
-    double strength = 0;
-    Signature look;
+    double strength = 0, log_misfit = 0;
   };
+  enum class Showing { none, some, diverged };
   static constexpr double worth_refining = 0.97;  ///< of the misfit without the effect
   int coordinate() const { return suspect_.strengths().front(); }
+  Eigen::VectorXd residual() const { return comparison_.measured() - nominal_; }
   Eigen::VectorXd at(double strength) const {
     Eigen::VectorXd z = Eigen::VectorXd::Zero(suspect_.coordinateCount());
     z[coordinate()] = strength;
     return z;
   }
-  bool isBound(double strength) const { return suspect_.clamped(at(strength))[coordinate()] != strength; }
-  /// Empty where the model diverges.
+  double possible(double strength) const { return suspect_.clamped(at(strength))[coordinate()]; }
+  bool isBound(double strength) const { return possible(strength) != strength; }
+  /// Empty where the model diverges, and once interrupted.
   Eigen::VectorXd changeAt(double strength) const {
     if (comparison_.plant().interrupted()) return {};
     Model model = base_;
-    model.effects.push_back(suspect_.at(suspect_.clamped(at(strength))));
+    model.effects.push_back(suspect_.at(at(possible(strength))));
     const Eigen::VectorXd predicted = comparison_.predicted(model);
     on_simulation_();
     if (predicted.size() != nominal_.size() || !predicted.allFinite()) return {};
     return predicted - nominal_;
   }
-  /// Of the change's RMS a floor or more in some cell.
-  bool showsClearlyAt(double strength) const {
+  /// Some: a floor or more in a cell.
+  Showing showing(double strength) const {
     const Eigen::VectorXd change = changeAt(strength);
-    return change.size() && excitationOf(comparison_, {change}) >= 1;
+    if (!change.size()) return Showing::diverged;
+    return excitationOf(comparison_, {change}) >= 1 ? Showing::some : Showing::none;
   }
   void keepIfNearer(double strength) {
-    Signature look = look_;
-    look.per_strength = {changeAt(strength)};
-    if (!look.per_strength.front().size()) return;
-    explain(comparison_, suspect_, comparison_.measured() - nominal_, look);
-    if (best_.strength == 0 || look.log_misfit < best_.look.log_misfit)
-      best_ = {suspect_.clamped(at(strength))[coordinate()], std::move(look)};
+    if (showing(strength) != Showing::some) return;
+    const double log_misfit = comparison_.logMisfit(residual() - changeAt(strength));
+    if (best_.strength == 0 || log_misfit < best_.log_misfit) best_ = {possible(strength), log_misfit};
   }
   void refine() {
     for (const double factor : {1.2, 1.1, 1.05, 1.025, 1.0125}) {
@@ -278,12 +278,6 @@ class OnlyStrength {
       keepIfNearer(middle * factor);
       keepIfNearer(middle / factor);
     }
-  }
-  void take(bool from_threshold) {
-    if (best_.strength == 0) return;
-    suspect_.weaken(coordinate(), best_.strength);
-    look_ = std::move(best_.look);
-    look_.from_threshold = from_threshold;
   }
 
   const Comparison& comparison_;

@@ -89,9 +89,9 @@ bool Suspect::isSigned(int coordinate) const {
   return info_.id == "force_law" || (c.scale == Scale::linear && p.minimum < p.neutral);
 }
 
-void Suspect::weaken(int coordinate, double share) {
+void Suspect::rescale(int coordinate, double z) {
   Coordinate& c = coordinates_[static_cast<std::size_t>(coordinate)];
-  c.typical = valueOf(c, share);
+  c.typical = valueOf(c, z);
 }
 
 void Suspect::leaveOut(int coordinate) {

@@ -16,7 +16,7 @@ namespace musclesim {
 ///   neutral value infinite    value = typical / z
 ///   shape parameters          value = typical * exp(z), or typical + z * half the usual range where that has both signs
 /// z = 0 is neutral for the first two and usual for the third; z = 1 is a typical strength, or what the first look took in its place (see
-/// weaken). Values are clamped to their range.
+/// rescale). Values are clamped to their range.
 class Suspect {
  public:
   Suspect(EffectInfo info, std::string component, const Plant& plant);
@@ -29,8 +29,8 @@ class Suspect {
   const std::vector<int>& strengths() const { return strengths_; }
   /// Whether a strength may have either sign.
   bool isSigned(int coordinate) const;
-  /// From here on z = 1 is that share of the strength that it was.
-  void weaken(int coordinate, double share);
+  /// From here on z = 1 is the strength that `z` stood for; of the other sign where that is negative.
+  void rescale(int coordinate, double z);
   /// From here on a strength stays neutral and is no coordinate; those after it count one less.
   void leaveOut(int coordinate);
   /// Whether it is a time.

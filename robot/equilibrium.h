@@ -17,12 +17,13 @@ double rootBetween(const Function& f, double low, double high) {
   }
 }
 
-/// Where something comes to rest that starts between low and high and is pushed up where f < 0, down where f > 0: the first root on the way,
-/// found in steps of a 64th of it, or the end that it is pushed to.
+/// Where something comes to rest that starts between low and high and is pushed up where f < 0, down where f > 0: the first root on the
+/// way, found in steps of a 64th of it, or the end that it is pushed to.
 template <class Function>
 double restFrom(const Function& f, double start, double low, double high) {
   constexpr int step_count = 64;
   start = std::clamp(start, low, high);
+  if (f(start) == 0) return start;
   const bool up = f(start) < 0;
   const double end = up ? high : low;
   double last = start;

@@ -91,7 +91,8 @@ void putFresh(json& totals, const std::vector<FollowUp>& follow_ups) {
 WithoutTruth withoutTruth(const Judgement& answer, const Judgement& with_truth) {
   if (answer.verdict == "failed") return WithoutTruth::failed;
   const bool look_alike = answer.acceptable.value_or(false);
-  const bool named_before = std::ranges::find(with_truth.ambiguity_set, answer.top) != with_truth.ambiguity_set.end();
+  const bool named_before =
+      with_truth.covered.value_or(false) && std::ranges::find(with_truth.ambiguity_set, answer.top) != with_truth.ambiguity_set.end();
   const bool confident_effect = answer.verdict == "effects_found" && answer.top_probability > confident;
   if (confident_effect && !look_alike && !named_before) return WithoutTruth::confidently_wrong;
   if (answer.verdict != "effects_found" || !answer.namesEffect()) return WithoutTruth::unexplained;

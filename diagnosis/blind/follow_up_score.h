@@ -32,7 +32,7 @@ enum class WithoutTruth {
   failed,
   confidently_wrong,  ///< an effect with more than 0.9 that is neither of the next two
   look_alike,         ///< one that the measured signals cannot separate comes first
-  named_before,       ///< one that the answer with the true effect had in its ambiguity set does
+  named_before,       ///< one that the answer with the true effect had beside it in its ambiguity set does
   unexplained,        ///< or no effect is likelier than none of these and no gap
   unsure              ///< another effect comes first, with 0.9 or less
 };

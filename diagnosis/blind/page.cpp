@@ -139,9 +139,11 @@ std::string followed(const Score& score) {
   auto row = [&](const char* what, const char* aim, const char* name) {
     text += fmt::format("| {} | {} | {} |\n", what, aim, longRate(totals, name));
   };
-  row("true effect not among the candidates: a wrong cause with more than 0.9", "<= 5 %", "left_out_confidently_wrong");
-  row("... an acceptable look-alike", "", "left_out_look_alike");
-  row("... an effect that the answer with it among them had in its ambiguity set", "", "left_out_named_before");
+  row("true effect not among the candidates: a wrong cause with more than 0.9 that is no look-alike", "<= 5 %",
+      "left_out_confidently_wrong");
+  row("... an acceptable look-alike, with whatever probability", "", "left_out_look_alike");
+  row("... an effect that the answer with all candidates had beside it in its ambiguity set, with whatever probability", "",
+      "left_out_named_before");
   row("... unexplained", "", "left_out_unexplained");
   row("... a wrong cause with 0.9 or less", "", "left_out_unsure");
   row("... no answer", "", "left_out_failed");

@@ -11,10 +11,12 @@
 namespace musclesim {
 namespace {
 
-/// A rig with one effect, looked at for it alone.
+/// A rig with one effect, looked at for one alone: the same or another one.
 struct Looked {
-  Looked(const ActiveEffect& effect, Strengths strengths)
-      : options(planted::few({effect.id})), plant(planted::plant({effect}), options), suspect(suspects(plant, options).front()) {
+  Looked(const ActiveEffect& effect, Strengths strengths, const std::string& for_effect = "")
+      : options(planted::few({for_effect.empty() ? effect.id : for_effect})),
+        plant(planted::plant({effect}), options),
+        suspect(suspects(plant, options).front()) {
     std::vector<Suspect> all = {suspect};
     look = screen(comparison, all, nominal, Model{}, strengths, 2, [] {}).front();
     suspect = all.front();
@@ -66,6 +68,13 @@ TEST(FirstLookFarther, FollowsAnEffectThatIsManyTimesAsStrongAsTypical) {
   EXPECT_GE(std::abs(adapted.valueAt(1)), 5 * kept.valueAt(1));
   EXPECT_NEAR(adapted.valueAt(adapted.look.amount[0]), -1.0, 0.2);
   EXPECT_LT(adapted.look.log_misfit, kept.look.log_misfit - 5);
+}
+
+TEST(FirstLookFarther, EndsWhereTheEffectIsImpossible) {
+  // Lifted by 40 N, the load of 2 kg would have to weigh less than nothing.
+  const Looked adapted({"external_force", "hand", {{"force_y_N", 40.0}}}, Strengths::adapted, "payload");
+  EXPECT_LT(adapted.look.log_misfit, adapted.before());
+  EXPECT_DOUBLE_EQ(adapted.look.amount[0], -5) << "more is asked for";
 }
 
 }  // namespace

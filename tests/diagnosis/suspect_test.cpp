@@ -42,8 +42,8 @@ TEST_F(PlantedRig, BoundsAreThoseOfTheUsualRange) {
     Suspect leak = suspect("leak", "muscle_0"), spring = suspect("series_elasticity", "muscle_0");
     const double usual_per_s = effectInfo("leak").parameters.front().usual_high,
                  soft = effectInfo("series_elasticity").parameters.front().usual_low;
-    leak.weaken(leak.strengths().front(), share);
-    spring.weaken(spring.strengths().front(), share);
+    leak.rescale(leak.strengths().front(), share);
+    spring.rescale(spring.strengths().front(), share);
     const Eigen::VectorXd far = Eigen::VectorXd::Constant(leak.coordinateCount(), 1e9);
     EXPECT_NEAR(leak.valuesAt(leak.clamped(far)).front().second, 25 * usual_per_s, 1e-9);
     EXPECT_NEAR(spring.valuesAt(spring.clamped(Eigen::VectorXd::Constant(spring.coordinateCount(), 1e9))).front().second, soft / 25, 1e-9);
@@ -58,10 +58,10 @@ TEST_F(PlantedRig, WhatHasNoUsualRangeHasNoExcess) {
 TEST_F(PlantedRig, WeakenedStrengthsAreAShareOfWhatTheyWere) {
   Suspect payload = suspect("payload", "hand"), limit = suspect("flow_limit", "muscle_0");
   const double typical_kg = payload.valuesAt(payload.typical()).front().second;
-  payload.weaken(0, 0.1);
+  payload.rescale(0, 0.1);
   EXPECT_NEAR(payload.valuesAt(payload.typical()).front().second, 0.1 * typical_kg, 1e-12);
   const double typical_per_s = limit.valuesAt(limit.typical()).front().second;
-  limit.weaken(limit.strengths().front(), 0.1);
+  limit.rescale(limit.strengths().front(), 0.1);
   EXPECT_NEAR(limit.valuesAt(limit.typical()).front().second, 10 * typical_per_s, 1e-9) << "a weaker limit lets more through";
 }
 
