@@ -71,8 +71,8 @@ TEST(FirstLookFarther, FollowsAnEffectThatIsManyTimesAsStrongAsTypical) {
 }
 
 TEST(FirstLookFarther, EndsWhereTheEffectIsImpossible) {
-  // Lifted by 40 N, the load of 2 kg would have to weigh less than nothing.
-  const Looked adapted({"external_force", "hand", {{"force_y_N", 40.0}}}, Strengths::adapted, "payload");
+  // To be 120 mm higher, the load of 2 kg would have to weigh less than nothing.
+  const Looked adapted({"sensor_bias", "signal_length_0", {{"offset", -120.0}}}, Strengths::adapted, "payload");
   EXPECT_LT(adapted.look.log_misfit, adapted.before());
   EXPECT_DOUBLE_EQ(adapted.look.amount[0], -5) << "more is asked for";
 }
