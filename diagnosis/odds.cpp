@@ -6,14 +6,21 @@
 
 namespace musclesim {
 
-double Odds::misfitLeftBy(const Eigen::VectorXd& residual) const {
+/// Mean over affected cells of ln(RMS / floor), no less than 0 each, floor^2 = noise floor^2 + (mismatch gap)^2.
+double Odds::misfitBeyond(double mismatch, const Eigen::VectorXd& residual) const {
   double sum = 0;
   for (const Comparison::Cell& cell : comparison_.cells()) {
-    const double share = weighing_.law_mismatch, gap_square = comparison_.meanSquare(cell, nominal_residual_);
-    const double floor_square = cell.floor * cell.floor + share * share * gap_square;
+    const double gap_square = comparison_.meanSquare(cell, nominal_residual_);
+    const double floor_square = cell.floor * cell.floor + mismatch * mismatch * gap_square;
     sum += 0.5 * std::log(std::max(1.0, comparison_.meanSquare(cell, residual) / floor_square));
   }
   return sum / comparison_.affectedCells(nominal_residual_);
+}
+
+/// ln of the odds by what is left.
+double Odds::ofMisfit(const Eigen::VectorXd& residual) const {
+  return -weighing_.per_misfit * misfitBeyond(weighing_.law_mismatch, residual) -
+         weighing_.per_closer_misfit * misfitBeyond(weighing_.close_law_mismatch, residual);
 }
 
 /// Whether an effect acts where one before it does: on the same muscle, on the same signal, both on the body.
@@ -62,27 +69,27 @@ double Odds::beforehand(const Explanation& explanation) const {
 }
 
 double Odds::ofExplanation(const Explanation& explanation) const {
-  return beforehand(explanation) - weighing_.per_misfit * misfitLeftBy(explanation.judged());
+  return beforehand(explanation) + ofMisfit(explanation.judged());
 }
 
 double Odds::ofNoEffect() const {
-  return -weighing_.per_misfit * misfitLeftBy(nominal_residual_);
+  return ofMisfit(nominal_residual_);
 }
 
 double Odds::ofNoneOfThese(const std::vector<Explanation>& explanations) const {
   double best = ofNoEffect(), share_left = 1;
-  const double gap = misfitLeftBy(nominal_residual_);
+  const double gap = misfitBeyond(weighing_.law_mismatch, nominal_residual_);
   for (const Explanation& explanation : explanations)
     if (const double odds = ofExplanation(explanation); odds > best) {
       best = odds;
-      share_left = gap > 0 ? misfitLeftBy(explanation.judged()) / gap : 1;
+      share_left = gap > 0 ? misfitBeyond(weighing_.law_mismatch, explanation.judged()) / gap : 1;
     }
   const double of_unknown = best + weighing_.per_share_left * (share_left - weighing_.share_of_unknown);
   return std::min(of_unknown, -weighing_.per_parameter);
 }
 
 double Odds::hopeBeyond(const Explanation& explanation) const {
-  return weighing_.per_misfit * misfitLeftBy(explanation.judged()) - weighing_.per_effect - weighing_.per_parameter;
+  return -ofMisfit(explanation.judged()) - weighing_.per_effect - weighing_.per_parameter;
 }
 
 }  // namespace musclesim

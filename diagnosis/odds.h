@@ -27,15 +27,17 @@ struct Explanation {
 
 /// How answers are weighed; docs/diagnosing.md says on which cases the numbers were found.
 struct Weighing {
-  double per_misfit = 18;         ///< ln of the odds per unit of log misfit per affected cell
-  double per_parameter = 1.25;    ///< ln of the odds that a further parameter costs
-  double per_effect = 6;          ///< ln of the odds that a further effect costs
-  double per_same_place = 3;      ///< the same besides, where it acts on a component of an effect before it and may only mend its law
-  double per_excess = 1.5;        ///< ln of the odds per e-fold by which a parameter is beyond its usual range
-  double shared_sensor = 3;       ///< ln of the odds of one sensor's fault against one that all sensors share
-  double law_mismatch = 0.1;      ///< share of the gap that the right cause may leave since its law is not quite ours
-  double per_share_left = 12;     ///< ln of the odds of "none of these" per share of the log misfit that the best explanation leaves
-  double share_of_unknown = 0.3;  ///< share left with which "none of these" is as likely as the best explanation
+  double per_misfit = 16;            ///< ln of the odds per unit of log misfit per affected cell, beyond what a law not quite ours leaves
+  double per_closer_misfit = 2;      ///< the same beyond what a law close to ours leaves
+  double per_parameter = 1.25;       ///< ln of the odds that a further parameter costs
+  double per_effect = 6;             ///< ln of the odds that a further effect costs
+  double per_same_place = 3;         ///< the same besides, where it acts on a component of an effect before it and may only mend its law
+  double per_excess = 1.5;           ///< ln of the odds per e-fold by which a parameter is beyond its usual range
+  double shared_sensor = 3;          ///< ln of the odds of one sensor's fault against one that all sensors share
+  double law_mismatch = 0.1;         ///< share of the gap that the right cause may leave since its law is not quite ours
+  double close_law_mismatch = 0.01;  ///< and where the law is close to ours
+  double per_share_left = 12;        ///< ln of the odds of "none of these" per share of the log misfit that the best explanation leaves
+  double share_of_unknown = 0.3;     ///< share left with which "none of these" is as likely as the best explanation
 };
 
 class Odds {
@@ -54,10 +56,10 @@ class Odds {
   double ofNoneOfThese(const std::vector<Explanation>& explanations) const;
   /// ln of the odds of one more effect that would leave nothing against the explanation without it.
   double hopeBeyond(const Explanation& explanation) const;
-  /// Mean over affected cells of ln(RMS / floor), floor^2 = noise floor^2 + (law_mismatch gap)^2: the right cause's law is not quite ours.
-  double misfitLeftBy(const Eigen::VectorXd& residual) const;
 
  private:
+  double misfitBeyond(double mismatch, const Eigen::VectorXd& residual) const;
+  double ofMisfit(const Eigen::VectorXd& residual) const;
   bool actsWhereOthersDo(const Explanation& explanation, std::size_t member) const;
   double beforehand(const Explanation& explanation) const;
 

@@ -40,9 +40,11 @@ class OddsOnARig : public testing::Test {
 };
 
 TEST_F(OddsOnARig, FollowWhatIsLeft) {
-  EXPECT_NEAR(ofSingle(payload, 5) - ofSingle(payload, 10), weighing_.per_misfit * std::log(2), 1e-9);
+  const double per_misfit = weighing_.per_misfit + weighing_.per_closer_misfit;
+  EXPECT_NEAR(ofSingle(payload, 5) - ofSingle(payload, 10), per_misfit * std::log(2), 1e-9);
   EXPECT_NEAR(ofSingle(payload, 0.5), ofSingle(payload, 0.9), 1e-9) << "below the floor all are as good";
-  EXPECT_NEAR(ofSingle(payload, 0.5), ofSingle(payload, 2), 1e-9) << "and below a tenth of the gap";
+  EXPECT_NEAR(ofSingle(payload, 1.1) - ofSingle(payload, 2.2), weighing_.per_closer_misfit * std::log(2), 1e-9)
+      << "below a tenth of the gap nearly";
 }
 
 TEST_F(OddsOnARig, CountParameters) {
