@@ -30,7 +30,7 @@ struct Weighing {
   double per_misfit = 16;            ///< ln of the odds per unit of log misfit per affected cell, beyond what a law not quite ours leaves
   double per_closer_misfit = 2;      ///< the same beyond what a law close to ours leaves
   double per_parameter = 1.25;       ///< ln of the odds that a further parameter costs
-  double per_effect = 6;             ///< ln of the odds that a further effect costs
+  double per_effect = 7;             ///< ln of the odds that a further effect costs
   double per_same_place = 3;         ///< the same besides, where it acts on a component of an effect before it and may only mend its law
   double per_excess = 1.5;           ///< ln of the odds per e-fold by which a parameter is beyond its usual range
   double shared_sensor = 3;          ///< ln of the odds of one sensor's fault against one that all sensors share

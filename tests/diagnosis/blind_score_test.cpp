@@ -180,7 +180,9 @@ TEST(BlindPage, ShowsEveryFailure) {
   score.follow_ups = {one};
   score.totals["follow_up"] = followUpTotals(score.follow_ups);
   const std::string followed = pageText(score);
-  EXPECT_TRUE(contains(followed, "| true effect not among the candidates: a wrong cause with more than 0.9 | <= 5 % | 100 %, 1 of 1,"));
+  EXPECT_TRUE(
+      contains(followed,
+               "| true effect not among the candidates: a wrong cause with more than 0.9 that is no look-alike | <= 5 % | 100 %, 1 of 1,"));
   EXPECT_TRUE(contains(followed, "| b | rig | 10.0 | valve_lag@muscle_0 | without the true effect: effects_found, creep@all 0.95 |"));
 }
 
