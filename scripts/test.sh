@@ -27,7 +27,7 @@ case "${1-}" in
 esac
 cd "$root"
 jobs=2
-last_commits=50  # whose sources --ci looks through
+last_commits=25  # whose sources --ci looks through
 build=build/release  # what users run is what is tested
 test_log=$build/test_summary.txt
 summary=()
