@@ -189,7 +189,9 @@ class Run {
     const Attempt attempt{labelsOf(model), model.effects, gap_after, shrinkOf(after), interval.low, interval.high};
     const bool found =
         !none && clearlyBeats(attempt.shrink_percent, diagnosis_.nominal_refit_shrink_percent, diagnosis_.sham_shrink_percent);
-    if (!found && attempt.shrink_percent <= 0) return;  // it does not hold beyond what it was fitted to
+    // Nothing to build on: it does not hold beyond what it was fitted to, or gains no more than what means nothing.
+    if (!found && attempt.shrink_percent <= std::max({0.0, diagnosis_.nominal_refit_shrink_percent, diagnosis_.sham_shrink_percent}))
+      return;
     diagnosis_.tuned = tunedParameters(plant_, best.tuning, best.tuning_half_width);
     after_residual_ = after;
     if (found)

@@ -133,9 +133,9 @@ std::string diagnosisSummary(const Diagnosis& d) {
         fmt::format("{:<9} {:>11}  {}\n", i == 0 ? "which" : "", probabilityWords(d.effects[i].probability), effectSentence(d.effects[i]));
   if (d.none_of_these > 0) text += fmt::format("{:<9} {:>11}  none of these\n", "", probabilityWords(d.none_of_these));
   if (!d.chosen.empty())
-    text += fmt::format("how far   {} of the gap on {}; nominal refit {:.1f} %, sham {:.1f} %\n",
-                        shrinkElsewhereWords({d.shrink_percent, d.shrink_low_percent, d.shrink_high_percent}), d.held_out,
-                        d.nominal_refit_shrink_percent, d.sham_shrink_percent);
+    text += fmt::format("how far   {} of the gap on {}; nominal refit {:.1f} %, sham {:.1f} %\n          {}\n",
+                        percentWords(d.shrink_percent), d.held_out, d.nominal_refit_shrink_percent, d.sham_shrink_percent,
+                        elsewhereSentence({d.shrink_percent, d.shrink_low_percent, d.shrink_high_percent}));
   if (!d.next_experiment.commands.empty()) text += fmt::format("next      record next.csv, {}\n", d.next_experiment.why);
   return text;
 }

@@ -40,7 +40,7 @@ RobotDrawing drawingOf(Simulation& simulation) {
     for (const DrawnFrame& frame : snapshot.frames)
       if (frame.name == angle.name) drawing.points.push_back({"joint_" + angle.name, frame.pose.block<2, 1>(0, 3).cast<double>()});
   }
-  if (const Primitive* hand = simulation.robot().hand()) drawing.points.push_back({"hand", hand->getPosition().head<2>()});
+  if (simulation.robot().hand()) drawing.points.push_back({"hand", simulation.robot().handMm().head<2>()});
   return drawing;
 }
 

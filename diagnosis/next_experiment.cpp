@@ -19,7 +19,7 @@ constexpr double duration_s = 12, step_s = 0.01;
 
 /// A schedule: -1..1 for each muscle at a time, of the range that its command has in the recordings.
 struct Excitation {
-  std::string name, why;
+  std::string name, words;
   std::function<double(double time_s, int muscle)> shape;
 };
 
@@ -35,20 +35,19 @@ double sign(int muscle) {
 /// Muscles with even and odd numbers move against each other unless the schedule is a co-contraction.
 const std::vector<Excitation>& bank() {
   static const std::vector<Excitation> excitations = {
-      {"slow reversals", "loops that do not depend on speed stay, those that do vanish",
-       [](double t, int m) { return sign(m) * triangle(t, 6); }},
-      {"three speeds", "the same path at three speeds separates what depends on speed",
+      {"slow reversals", "triangles of six seconds", [](double t, int m) { return sign(m) * triangle(t, 6); }},
+      {"three speeds", "the same path in 6, 1.5 and 0.5 s",
        [](double t, int m) {
          return sign(m) * triangle(t, t < 6 ? 6 : t < 9 ? 1.5 : 0.5);
        }},
-      {"steps of two sizes", "a rate limit shows at large steps only, a lag at all",
+      {"steps of two sizes", "small ones, then large ones",
        [](double t, int m) { return sign(m) * (t < 6 ? 0.25 : 1) * (std::fmod(t, 3) < 1.5 ? 1 : -1); }},
-      {"co-contraction", "pressure changes while the pose hardly does", [](double t, int) { return triangle(t, 6); }},
-      {"vent and hold", "what creeps or leaks goes on while the command rests",
+      {"co-contraction", "all muscles filled and emptied together, slowly", [](double t, int) { return triangle(t, 6); }},
+      {"vent and hold", "one side emptied for five seconds, then the other",
        [](double t, int m) { return t < 1   ? 0.0
                                     : t < 6 ? (m % 2 == 0 ? -1.0 : 1.0)
                                             : (m % 2 == 0 ? 1.0 : -1.0); }},
-      {"one muscle at a time", "what one muscle's command does to the others' signals",
+      {"one muscle at a time", "every second muscle for two seconds, then the others",
        [](double t, int m) { return static_cast<int>(t / 2) % 2 == m % 2 ? std::sin(std::numbers::pi * t) : 0.0; }},
   };
   return excitations;
@@ -84,21 +83,37 @@ Recording scheduled(const std::vector<Recording>& recordings, const Excitation& 
   return recording;
 }
 
-/// RMS difference over all signals and rows in units of the floor; 0 if one diverges.
-double difference(const Plant& plant, const Prediction& a, const Prediction& b) {
-  if (a.diverged || b.diverged) return 0;
+/// How far two predictions differ.
+struct Difference {
+  double overall = 0;  ///< RMS over all signals and rows in units of the floor; 0 if one diverges
+  std::string signal;  ///< that differs most
+  double in_signal = 0;
+};
+
+Difference difference(const Plant& plant, const Prediction& a, const Prediction& b) {
+  Difference result;
+  if (a.diverged || b.diverged) return result;
   double sum = 0;
   long count = 0;
   for (std::size_t s = 0; s < plant.signals().size(); ++s) {
     const double floor = plant.signals()[s].floor.value;
+    double own_sum = 0;
+    long own_count = 0;
     for (std::size_t row = 0; row < a.values[s].size(); ++row) {
       const double d = (a.values[s][row] - b.values[s][row]) / floor;
       if (!std::isfinite(d)) continue;
-      sum += d * d;
-      ++count;
+      own_sum += d * d;
+      ++own_count;
+    }
+    sum += own_sum;
+    count += own_count;
+    if (const double own = own_count ? std::sqrt(own_sum / static_cast<double>(own_count)) : 0; own > result.in_signal) {
+      result.in_signal = own;
+      result.signal = plant.signals()[s].name;
     }
   }
-  return count ? std::sqrt(sum / static_cast<double>(count)) : 0;
+  result.overall = count ? std::sqrt(sum / static_cast<double>(count)) : 0;
+  return result;
 }
 
 /// Whether a predicted signal stays where the plant has been, give or take a quarter of the range that it had there: beyond may be a stop.
@@ -150,17 +165,19 @@ Experiment nextExperiment(const Plant& plant, const std::vector<std::string>& la
     on_simulation();
   });
   for (std::size_t e = 0; e < excitations.size(); ++e) {
-    double smallest = std::numeric_limits<double>::infinity();
+    Difference smallest;
+    smallest.overall = std::numeric_limits<double>::infinity();
     for (std::size_t a = 0; a < models.size(); ++a)
       for (std::size_t b = a + 1; b < models.size(); ++b)
-        smallest = std::min(smallest, difference(plant, predictions[e * models.size() + a], predictions[e * models.size() + b]));
-    if (smallest <= best.difference) continue;
-    best.difference = smallest;
+        smallest = std::ranges::min(smallest, difference(plant, predictions[e * models.size() + a], predictions[e * models.size() + b]), {},
+                                    &Difference::overall);
+    if (smallest.overall <= best.difference) continue;
+    best.difference = smallest.overall;
     best.schedule = excitations[e].name;
     best.amplitude = amplitudes[e];
     best.separates = labels;
-    best.why = fmt::format("{}: {}; the predictions that are most alike differ by {:.1f} times the noise", excitations[e].name,
-                           excitations[e].why, smallest);
+    best.why = fmt::format("{} ({}); the predictions that are most alike differ by {:.1f} times the noise there, most in {} ({:.1f})",
+                           excitations[e].name, excitations[e].words, smallest.overall, smallest.signal, smallest.in_signal);
     best.time_s = recordings[e].time_s;
     best.commands.assign(best.time_s.size(), {});
     for (const Signal& signal : recordings[e].signals)

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <functional>
+#include <variant>
 
 #include "../log/svg.h"
 #include "musclesim/diagnosis/diagnosis.h"
@@ -18,12 +21,14 @@ namespace {
 
 constexpr const char* style = R"(body{font:16px/1.5 system-ui,sans-serif;color:#222;max-width:60rem;margin:1rem auto;padding:0 1rem}
 h1{font-size:1.5rem}h2{font-size:1.15rem;border-bottom:1px solid #ccc;margin-top:2rem}
-.verdict{font-size:1.25rem;padding:.8rem 1rem;border-left:.4rem solid #333;background:#f3f3f3}
+.verdict{padding:.4rem 1rem;border-left:.4rem solid #333;background:#f3f3f3}.verdict p{font-size:1.15rem;margin:.4rem 0}.verdict p.small,.small{font-size:.9rem;color:#555}
 body{overflow-wrap:break-word}table{border-collapse:collapse;width:100%}td,th{text-align:left;padding:.2rem .6rem;border-bottom:1px solid #ddd;vertical-align:top}
 @media(max-width:36rem){td,th{padding:.2rem .3rem;font-size:.85rem}}
 td.number,th.number{text-align:right;font-variant-numeric:tabular-nums}
 svg{max-width:100%;height:auto;display:block;margin:.5rem 0}code{font-size:.9em}
-.scroll,.trace{overflow-x:auto}.trace svg{min-width:36rem}@media print{.screen{display:none}.scroll,.trace{overflow:visible}.trace svg{min-width:0}body{max-width:none}h2{break-after:avoid}svg,table{break-inside:avoid}})";
+.scroll,.trace{overflow-x:auto}.scroll svg{min-width:32rem}.trace svg{min-width:36rem}.trace h3{font-size:1rem;margin:.8rem 0 0;position:sticky;left:0}.lead{break-after:avoid}
+.place{display:flex;gap:1.5rem}.place>:first-child{flex:1}.robot{flex:0 0 17rem}@media screen and (max-width:44rem){.place{display:block}}
+@media print{.screen{display:none}.scroll,.trace{overflow:visible}.scroll svg,.trace svg{min-width:0}body{max-width:none;font-size:14px}h2,h3{break-after:avoid}svg,tr,.trace{break-inside:avoid}})";
 
 std::string heading(const std::string& words) {
   return "<h2>" + words + "</h2>\n";
@@ -44,45 +49,102 @@ std::string paragraph(const std::string& words) {
   return "<p>" + escapedXml(words) + "</p>\n";
 }
 
-/// What the robot's drawing shows in colour: the place that the signals show, or else where the best explanation acts.
+/// What introduces the figure or table behind it.
+std::string lead(const std::string& words) {
+  return "<p class=lead>" + escapedXml(words) + "</p>\n";
+}
+
+std::string small(const std::string& words) {
+  return "<p class=small>" + escapedXml(words) + "</p>\n";
+}
+
+/// Slides sideways where the page is narrow.
+std::string sliding(const std::string& content) {
+  return "<div class=scroll>" + content + "</div>\n";
+}
+
+/// The robot with the place that the signals show in colour, or else the one where the best explanation acts.
 std::string drawing(const Diagnosis& d) {
-  if (isLocated(d.where)) return robotFigure(d.drawing, d.where.front());
+  if (d.drawing.lines.empty()) return "";
+  Place place;
+  std::string words = "The robot from the front.";
   const auto best =
       std::ranges::find_if(d.effects, [&](const FoundEffect& effect) { return !d.chosen.empty() && effect.label() == d.chosen.front(); });
-  if (best == d.effects.end()) return robotFigure(d.drawing, {});
-  return robotFigure(d.drawing, {nameOf(effectInfo(best->id).stage), best->component, {}}) +
-         paragraph(fmt::format("In colour, where it can be drawn: {}, where the best explanation acts.", componentWords(best->component)));
+  if (isLocated(d.where)) {
+    place = d.where.front();
+    words += fmt::format(" In colour, where it can be drawn: {}, where the gap arises.", componentWords(place.component));
+  } else if (best != d.effects.end()) {
+    place = {nameOf(effectInfo(best->id).stage), best->component, {}};
+    words += fmt::format(
+        " In colour, where it can be drawn: {}, where the best explanation acts; that is told from the search for causes below, not from "
+        "the boxes.",
+        componentWords(place.component));
+  }
+  return "<div class=robot>" + robotFigure(d.drawing, place) + small(words) + "</div>\n";
 }
 
 std::string where(const Diagnosis& d) {
   if (d.where.empty()) return "";
-  return heading("Where") + paragraph("A sample goes from command to pressure, force, body and sensor. " + whereSentence(d) + ".") +
-         stagesFigure(d.where) + drawing(d) + paragraph("How this was told: " + d.where_method + ".");
+  return heading("Where") + "<div class=place><div>" +
+         lead("A sample goes from command to pressure, force, body and sensor: the darker a box, the likelier the gap arises there.") +
+         stagesFigure(d.where) + paragraph("How this was told: " + d.where_method + ".") + "</div>" + drawing(d) + "</div>\n";
 }
 
 bool triedAlone(const Diagnosis& d, const FoundEffect& effect) {
   return std::ranges::any_of(d.trials, [&](const Trial& trial) { return trial.effects.size() == 1 && trial.effects[0] == effect.label(); });
 }
 
-std::string which(const Diagnosis& d) {
-  if (d.effects.empty()) return "";
+/// What a reader should know of a fitted number: that it could not go on, or that no plant is known to be like that.
+std::string remarkOn(const EffectParameter& parameter, double value) {
+  if (!parameter.choices.empty() || value == parameter.neutral) return "";
+  if (value == parameter.minimum || value == parameter.maximum) return ", at its bound";
+  if (value >= parameter.usual_low && value <= parameter.usual_high) return "";
+  return fmt::format(", usual are {:.4g} to {:.4g}", parameter.usual_low, parameter.usual_high);
+}
+
+std::string parameterRows(const FoundEffect& effect) {
   std::string rows;
-  for (const FoundEffect& effect : d.effects) {
-    std::string parameters;
-    for (const auto& [name, estimate] : effect.parameters)
-      if (estimate.value != 0 || estimate.low != 0 || estimate.high != 0)
-        parameters += fmt::format("{}{} = {:.4g} ({:.4g} to {:.4g})", parameters.empty() ? "" : "<br>", breakable(name), estimate.value,
-                                  estimate.low, estimate.high);
-    rows += fmt::format("<tr><td>{}</td><td class=number>{}</td><td>{}</td><td class=number>{}</td></tr>\n", breakableCode(effect.label()),
-                        probabilityWords(effect.probability), parameters,
-                        triedAlone(d, effect) ? percentWords(effect.shrink_percent) : "not tried alone");
+  const EffectInfo info = effectInfo(effect.id);
+  for (const auto& [name, estimate] : effect.parameters) {
+    if (isLeftOut(estimate)) continue;
+    const auto parameter = std::ranges::find(info.parameters, name, &EffectParameter::name);
+    rows += fmt::format("{}{} = {}{}", rows.empty() ? "" : "<br>", breakable(name), estimateWords(estimate),
+                        parameter == info.parameters.end() ? "" : remarkOn(*parameter, estimate.value));
   }
+  return rows;
+}
+
+/// Where effects act together, what is likely is a set of them.
+std::string togetherWords(const Diagnosis& d) {
+  if (std::ranges::none_of(d.explanations, [](const auto& explanation) { return explanation.effects.size() > 1; })) return "";
+  std::vector<std::string> words;
+  for (const ExplanationProbability& explanation : d.explanations)
+    if (!explanation.effects.empty())
+      words.push_back(fmt::format("{} {}", fmt::join(explanation.effects, " + "), probabilityWords(explanation.probability)));
+  return fmt::format(" By explanation: {}.", fmt::join(words, ", "));
+}
+
+std::string which(const Diagnosis& d) {
+  if (d.verdict == Verdict::no_gap || d.verdict == Verdict::not_excited || (d.effects.empty() && d.none_of_these == 0)) return "";
+  std::string rows;
+  for (const FoundEffect& effect : d.effects)
+    rows += fmt::format("<tr><td>{}</td><td class=number>{}</td><td>{}</td><td class=number>{}</td></tr>\n", breakableCode(effect.label()),
+                        probabilityWords(effect.probability), parameterRows(effect),
+                        triedAlone(d, effect) ? percentWords(effect.shrink_percent) : "not tried alone");
   rows += fmt::format("<tr><td>none of these</td><td class=number>{}</td><td></td><td></td></tr>\n", probabilityWords(d.none_of_these));
-  std::string text = heading("Which") +
-                     "<div class=scroll><table><tr><th>effect</th><th class=number>probability</th><th>parameters (95 % interval)</th>"
-                     "<th class=number>removes alone</th></tr>\n" +
-                     rows + "</table></div>\n";
-  if (!d.alternatives.empty()) text += paragraph(fmt::format("These recordings cannot tell apart: {}.", fmt::join(d.alternatives, ", ")));
+  std::string text = heading("Which") + sliding(
+                                            "<table><tr><th>effect</th><th class=number>probability</th><th>parameters (95 % interval)</th>"
+                                            "<th class=number>removes alone</th></tr>\n" +
+                                            rows + "</table>");
+  if (!d.effects.empty())
+    text += small(
+        "Probabilities are of each effect by itself, summed over all explanations that hold it: effects that act together are "
+        "likely together." +
+        togetherWords(d) +
+        " Intervals hold for our law of the effect; the machine's may be another one: believe the place and the kind before the "
+        "last digit.");
+  if (!d.effects.empty() && !d.alternatives.empty())
+    text += paragraph(fmt::format("These recordings cannot tell apart: {}.", fmt::join(d.alternatives, ", ")));
   return text;
 }
 
@@ -93,18 +155,20 @@ bool hasAfter(const Diagnosis& d) {
 
 std::string signalTable(const Diagnosis& d) {
   const auto cell = [](double value) { return fmt::format("<td class=number>{:.3g}</td>", value); };
+  const auto pair = [&](const SignalGap& gap) { return cell(gap.rmse) + fmt::format("<td class=number>{:.2f}</td>", overFloor(gap)); };
   std::string rows;
   const Gap& gap_after = d.attempt.effects.empty() ? d.after : d.attempt.after;
   for (const auto& [name, before] : d.before.per_signal) {
     const auto after = gap_after.per_signal.find(name);
-    rows += "<tr><td><code>" + name + "</code></td>" + cell(before.rmse);
-    if (hasAfter(d)) rows += cell(after == gap_after.per_signal.end() ? before.rmse : after->second.rmse);
-    rows += cell(before.noise_floor) + "</tr>\n";
+    rows += "<tr><td>" + breakableCode(name) + "</td>" + cell(before.noise_floor) + pair(before);
+    if (hasAfter(d)) rows += pair(after == gap_after.per_signal.end() ? before : after->second);
+    rows += "</tr>\n";
   }
-  const std::string residuals =
-      hasAfter(d) ? "<th class=number>RMSE before</th><th class=number>RMSE after</th>" : "<th class=number>RMSE</th>";
-  return "<div class=scroll><table><tr><th>signal</th>" + residuals + "<th class=number>noise floor</th></tr>\n" + rows +
-         "</table></div>\n";
+  const auto heads = [](const std::string& when) {
+    return "<th class=number>RMSE" + when + "</th><th class=number>over floor" + when + "</th>";
+  };
+  return sliding("<table><tr><th>signal</th><th class=number>noise floor</th>" +
+                 (hasAfter(d) ? heads(" before") + heads(" after") : heads("")) + "</tr>\n" + rows + "</table>");
 }
 
 /// What an explanation gains beside what gains nothing in understanding.
@@ -120,7 +184,11 @@ std::string shrinkFigure(const Diagnosis& d) {
     add("after adding what was found", d.unexplained_percent, true);
   else
     add("after adding what comes nearest", 100 - d.attempt.shrink_percent, true);
-  return barsFigure("What is left of the gap", all, std::max({100.0, 100 - d.nominal_refit_shrink_percent, 100 - d.sham_shrink_percent}));
+  return sliding(barsFigure("What is left of the gap", all,
+                            std::max({100.0, 100 - d.nominal_refit_shrink_percent, 100 - d.sham_shrink_percent}))) +
+         small(fmt::format("The nominal refit re-tunes numbers of the model without any effect ({}); the sham is a disturbance without "
+                           "physical meaning with as many parameters.",
+                           fmt::join(d.refitted, ", ")));
 }
 
 std::string regimeFigure(const Diagnosis& d) {
@@ -132,31 +200,62 @@ std::string regimeFigure(const Diagnosis& d) {
     if (hasAfter(d) && regime.after > 0) all.push_back({"after", regime.after, fmt::format("{:.3g}", regime.after), true});
   }
   if (all.empty()) return "";
-  return paragraph("Residual in units of the noise floor (1 is as good as it gets):") + barsFigure("Residual by regime", all, full);
+  return lead(
+             "Residual in units of the noise floor (1 is as good as it gets), while the commands rise (filling), fall (venting) and rest "
+             "(holding):") +
+         sliding(barsFigure("Residual by regime", all, full));
+}
+
+/// Of what comes nearest; the table of effects may not list it.
+std::string attemptWords(const Attempt& attempt) {
+  std::vector<std::string> words;
+  for (const ActiveEffect& effect : attempt.active_effects) {
+    std::vector<std::string> values;
+    for (const auto& [name, value] : effect.parameters)
+      if (const auto* number = std::get_if<double>(&value)) values.push_back(fmt::format("{} = {:.3g}", name, *number));
+    words.push_back(fmt::format("{}@{} ({})", effect.id, effect.component, fmt::join(values, ", ")));
+  }
+  return fmt::format("{}", fmt::join(words, " together with "));
+}
+
+/// Signals that stand farthest out of their floors first.
+std::vector<const Trace*> tracesByGap(const Diagnosis& d) {
+  std::vector<const Trace*> traces;
+  for (const Trace& trace : d.traces) traces.push_back(&trace);
+  std::ranges::stable_sort(traces, std::greater{}, [&](const Trace* trace) {
+    const auto gap = d.before.per_signal.find(trace->signal);
+    return gap == d.before.per_signal.end() ? 0 : overFloor(gap->second);
+  });
+  return traces;
 }
 
 std::string howFar(const Diagnosis& d) {
-  std::string text = heading(hasAfter(d) ? "How far" : "How close the model comes") + paragraph("Measured on " + d.held_out + ".");
+  const bool searched = d.verdict == Verdict::effects_found || d.verdict == Verdict::unexplained;
+  std::string text = heading(hasAfter(d) ? "How far" : "How close the model comes");
+  text += paragraph(searched ? "Measured on " + d.held_out + "."
+                             : fmt::format("Looked at: all {} recordings; what follows is of {}.", d.recordings.size(),
+                                           std::filesystem::path(d.recordings.back()).filename().string()));
   if (!d.chosen.empty())
-    text += shrinkFigure(d) +
-            paragraph(fmt::format(
-                "Normalised gap before {:.3g}, after {:.3g}: {} removed. Elsewhere means on another recording of this plant. The "
-                "nominal refit re-tunes numbers of the model without any effect ({}); the sham is a disturbance without physical "
-                "meaning with as many parameters.",
-                d.before.normalised, d.after.normalised,
-                shrinkElsewhereWords({d.shrink_percent, d.shrink_low_percent, d.shrink_high_percent}), fmt::join(d.refitted, ", ")));
+    text += shrinkFigure(d) + paragraph(fmt::format("Normalised gap (0 is the noise floor) before {:.3g}, after {:.3g}: {} removed. {}",
+                                                    d.before.normalised, d.after.normalised, percentWords(d.shrink_percent),
+                                                    elsewhereSentence({d.shrink_percent, d.shrink_low_percent, d.shrink_high_percent})));
   if (!d.attempt.effects.empty())
     text += shrinkFigure(d) +
-            paragraph(
-                fmt::format("Nothing was found that deserves belief. What comes nearest: {}. Normalised gap before {:.3g}, with it {:.3g}: "
-                            "{} removed. Elsewhere means on another recording of this plant. \"After\" below means: with this.",
-                            fmt::join(d.attempt.effects, ", "), d.before.normalised, d.attempt.after.normalised,
-                            shrinkElsewhereWords({d.attempt.shrink_percent, d.attempt.shrink_low_percent, d.attempt.shrink_high_percent})));
+            paragraph(fmt::format(
+                "Nothing was found that deserves belief. What comes nearest: {}. Normalised gap (0 is the noise floor) before {:.3g}, with "
+                "it {:.3g}: {} removed. {} \"After\" below means: with this.",
+                attemptWords(d.attempt), d.before.normalised, d.attempt.after.normalised, percentWords(d.attempt.shrink_percent),
+                elsewhereSentence({d.attempt.shrink_percent, d.attempt.shrink_low_percent, d.attempt.shrink_high_percent})));
   text += regimeFigure(d) + signalTable(d);
-  if (d.verdict == Verdict::no_gap)
-    text += paragraph("What is smaller than the noise floor stays unseen, and so does what these commands did not bring out.");
-  if (!d.traces.empty()) text += "<p class=screen>Drag over a plot to zoom all of them in time, double click to see everything.</p>\n";
-  for (const Trace& trace : d.traces) text += traceFigure(trace, hasAfter(d));
+  if (!searched)
+    text += paragraph(
+        "A signal agrees up to 1.15 times its floor, 1.3 times where the floor was estimated from quiet rows. What is smaller "
+        "stays unseen, and so does what these commands did not bring out: no effect was tried.");
+  if (!d.traces.empty())
+    text +=
+        "<p class=screen>Drag over a plot to zoom all of them in time; double click, or <button type=button id=whole>show "
+        "all</button>, to see everything.</p>\n";
+  for (const Trace* trace : tracesByGap(d)) text += traceFigure(*trace, hasAfter(d));
   return text;
 }
 
@@ -166,10 +265,9 @@ std::string tuned(const Diagnosis& d) {
   std::string rows;
   const bool together = hasAfter(d);
   for (const TunedParameter& p : d.tuned) {
-    rows += fmt::format("<tr><td>{}</td><td class=number>{:.4g} {}</td><td class=number>{:.4g} ({:.4g} to {:.4g})</td>",
-                        breakableCode(p.name), p.start, p.unit, p.fitted.value, p.fitted.low, p.fitted.high);
-    if (together)
-      rows += fmt::format("<td class=number>{:.4g} ({:.4g} to {:.4g})</td>", p.with_effects.value, p.with_effects.low, p.with_effects.high);
+    rows += fmt::format("<tr><td>{}</td><td class=number>{:.4g} {}</td><td class=number>{}</td>", breakableCode(p.name), p.start, p.unit,
+                        estimateWords(p.fitted));
+    if (together) rows += fmt::format("<td class=number>{}</td>", estimateWords(p.with_effects));
     rows += "</tr>\n";
   }
   return heading("The model") +
@@ -177,25 +275,34 @@ std::string tuned(const Diagnosis& d) {
              "Nobody measured these numbers of the model. They were fitted first, without any effect and without the held-out data; every "
              "gap \"before\" on this page is that of the model with these numbers. They were fitted again together with every effect that "
              "was tried, since either could stand in for the other. nominal.toml holds the last column, for --config.") +
-         "<div class=scroll><table><tr><th>number</th><th class=number>given</th><th class=number>fitted (95 % interval)</th>" +
-         (together ? "<th class=number>fitted with the effects</th>" : "") + "</tr>\n" + rows + "</table></div>\n";
+         sliding("<table><tr><th>number</th><th class=number>given</th><th class=number>fitted (95 % interval)</th>" +
+                 std::string(together ? "<th class=number>fitted with the effects</th>" : "") + "</tr>\n" + rows + "</table>");
 }
 
-/// What each effect alone could remove by the first look.
+/// What each effect alone could remove by the first look: the strongest, and what was chosen wherever it stood.
 std::string looks(const Diagnosis& d) {
   constexpr std::size_t shown = 12;
-  if (d.looks.empty()) return "";
+  std::vector<std::pair<FirstLook, std::size_t>> places;  // the best variant of each label, with its rank
+  for (const FirstLook& look : d.looks)
+    if (std::ranges::none_of(places, [&](const auto& place) { return place.first.effect == look.effect; }))
+      places.emplace_back(look, places.size() + 1);
+  if (places.empty()) return "";
   std::vector<Bar> all;
-  for (std::size_t i = 0; i < std::min(shown, d.looks.size()); ++i) {
+  bool some_not_fitted = false;
+  for (const auto& [look, rank] : places) {
+    const bool chosen = std::ranges::find(d.chosen, look.effect) != d.chosen.end();
+    if (rank > shown && !chosen) continue;
     const bool fitted = std::ranges::any_of(
-        d.trials, [&](const Trial& trial) { return std::ranges::find(trial.effects, d.looks[i].effect) != trial.effects.end(); });
-    all.push_back({d.looks[i].effect, d.looks[i].removed, fmt::format("{:.0f} %", 100 * d.looks[i].removed), fitted});
+        d.trials, [&](const Trial& trial) { return std::ranges::find(trial.effects, look.effect) != trial.effects.end(); });
+    some_not_fitted |= !fitted;
+    all.push_back({fmt::format("{}. {}", rank, look.effect), look.removed, fmt::format("{:.0f} %", 100 * look.removed), fitted});
   }
-  return paragraph(fmt::format(
-             "{} effects on components were looked at. How much of the logarithm of the gap each would remove if its response were "
-             "proportional to its strength; the dark ones were fitted:",
-             d.looks.size())) +
-         barsFigure("First look", all, 1);
+  const std::string which = places.size() <= shown ? "" : fmt::format("; these are the first {} and what was chosen", shown);
+  return lead(fmt::format(
+             "{} effects on components were looked at{}. How much of the logarithm of the gap each would remove if its response "
+             "were proportional to its strength; a fit, which follows the response, may remove more{}:",
+             places.size(), which, some_not_fitted ? "; the dark ones were fitted" : "")) +
+         sliding(barsFigure("First look", all, 1));
 }
 
 /// "leak (all components, muscle 0), creep (muscle 0)" from labels in this order.
@@ -218,8 +325,12 @@ std::string groupedWords(const std::vector<std::string>& labels) {
 std::string whatElse(const Diagnosis& d) {
   std::string text;
   if (!d.next_experiment.commands.empty())
-    text += heading("Next experiment") + paragraph(fmt::format("To tell {} apart, play the commands in next.csv: {}.",
-                                                               fmt::join(d.next_experiment.separates, ", "), d.next_experiment.why));
+    text += heading("Next experiment") +
+            paragraph(fmt::format(
+                "{} {} apart, play the {:.0f} s of commands in next.csv, {}. Give what you record to diagnose as the first "
+                "file, together with the recordings of this page.",
+                d.verdict == Verdict::unexplained ? "Should one of the known effects be the cause after all: to tell" : "To tell",
+                fmt::join(d.next_experiment.separates, ", "), d.next_experiment.time_s.back(), d.next_experiment.why));
   if (!d.not_excited.empty())
     text += heading("Not excited") +
             paragraph("These recordings could not have shown: " + groupedWords(d.not_excited) + ". They may be present.");
@@ -228,7 +339,9 @@ std::string whatElse(const Diagnosis& d) {
         std::string(d.tuned.empty() ? "" : "--config nominal.toml ") + "--effects " + (d.chosen.empty() ? "attempt.json" : "effects.json");
     text += heading("Use it") + "<p><code>musclesim replay NEW.csv " + options + "</code> and <code>musclesim " +
             escapedXml(d.model_options) + " " + options + "</code> run the model with what " +
-            (d.chosen.empty() ? "comes nearest" : "was found") + ".</p>\n";
+            (d.chosen.empty() ? "comes nearest" : "was found") +
+            (d.model_options.find("--set") == std::string::npos ? "" : "; replay takes the robot's numbers from the recording's sidecar") +
+            ".</p>\n";
   }
   text += heading("How it was computed") +
           paragraph(fmt::format("musclesim {}; robot {}; recordings {}; {} simulations of {:.0f} s in all, {:.0f} s on the clock.",
@@ -241,16 +354,29 @@ std::string whatElse(const Diagnosis& d) {
   return text;
 }
 
+std::string verdict(const Diagnosis& d) {
+  std::string text = "<div class=verdict>";
+  for (const std::string& sentence : verdictSentences(d)) text += paragraph(sentence);
+  if (d.verdict == Verdict::effects_found) text += small("In brackets: 95 % intervals.");
+  return text + "</div>\n";
+}
+
+/// "Robot elbow; recordings r1.csv, r2.csv, r3.csv."
+std::string subject(const Diagnosis& d) {
+  std::vector<std::string> names;
+  for (const std::string& file : d.recordings) names.push_back(std::filesystem::path(file).filename().string());
+  return fmt::format("Robot {}; recordings {}.", d.robot, fmt::join(names, ", "));
+}
+
 }  // namespace
 
 std::string diagnosisReport(const Diagnosis& d) {
   return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
          "content=\"width=device-width,initial-scale=1\">"
          "<title>Diagnosis of the sim-to-real gap</title><style>" +
-         std::string(style) + "</style></head><body>\n<h1>Diagnosis of the sim-to-real gap</h1>\n" +
-         (d.partial ? paragraph("Interrupted: this page holds only what was known by then.") : "") + "<p class=verdict>" +
-         escapedXml(verdictSentence(d)) + "</p>\n" + where(d) + which(d) + howFar(d) + tuned(d) + whatElse(d) + zoomScript() +
-         "</body></html>\n";
+         std::string(style) + "</style></head><body>\n<h1>Diagnosis of the sim-to-real gap</h1>\n" + small(subject(d)) +
+         (d.partial ? paragraph("Interrupted: this page holds only what was known by then.") : "") + verdict(d) + where(d) + which(d) +
+         howFar(d) + tuned(d) + whatElse(d) + zoomScript() + "</body></html>\n";
 }
 
 }  // namespace musclesim

@@ -50,7 +50,7 @@ std::string barsFigure(const std::string& title, const std::vector<Bar>& bars, d
 
 std::string stagesFigure(const std::vector<Place>& where) {
   constexpr std::array<const char*, 5> stages = {"command", "pressure", "force", "body", "sensor"};
-  constexpr double box = 118, gap = 26, height = 58, top = 6;
+  constexpr double box = 94, gap = 20, height = 58, top = 6;
   const double width = static_cast<double>(stages.size()) * (box + gap) - gap + 4;
   Svg svg(width, height + 34, "The way of a sample and the shares of the gap");
   std::string markup;
@@ -58,13 +58,13 @@ std::string stagesFigure(const std::vector<Place>& where) {
     const double x = 2 + static_cast<double>(i) * (box + gap);
     const auto place = std::ranges::find(where, std::string(stages[i]), &Place::stage);
     const double share = place == where.end() ? 0 : place->share;
-    const bool first = isLocated(where) && place == where.begin();
+    const bool marked = mayBeAt(where, stages[i]);
     const int grey = static_cast<int>(std::lround(245 - 190 * share));
     const std::string ink = share > 0.5 ? "#ffffff" : "#222222";
     markup += fmt::format(
         "<rect x=\"{:.0f}\" y=\"{:.0f}\" width=\"{:.0f}\" height=\"{:.0f}\" rx=\"8\" fill=\"rgb({},{},{})\" stroke=\"{}\" "
         "stroke-width=\"{}\"/>",
-        x, top, box, height, grey, grey, grey, first ? guilty_color : "#888888", first ? 4 : 1);
+        x, top, box, height, grey, grey, grey, marked ? guilty_color : "#888888", marked ? 4 : 1);
     auto words = [&](double y, const std::string& text, int size, const std::string& color) {
       markup += fmt::format(
           "<text x=\"{:.0f}\" y=\"{:.0f}\" font-family=\"sans-serif\" font-size=\"{}\" text-anchor=\"middle\" fill=\"{}\">{}</text>",
@@ -165,15 +165,14 @@ std::string traceFigure(const Trace& trace, bool has_after) {
   }
   svg.text({0.5 * (box.left + box.right()), height - 8}, "time, s", {12, SvgAnchor::middle});
   svg.frame(box, "#999999");
-  svg.text({box.right(), 18}, trace.signal, {13, SvgAnchor::end, "#222222", true});
   struct Kind {
     const std::vector<double>& y;
     const char *words, *color, *dash;
     double line_width;
   };
-  const std::array<Kind, 3> kinds = {Kind{trace.measured, "measured", "#1a1a1a", "", 2.4},
+  const std::array<Kind, 3> kinds = {Kind{trace.measured, "measured", "#a0a0a0", "", 3.5},
                                      Kind{trace.before, has_after ? "simulated before" : "simulated", "#d95f0e", "7 4", 1.5},
-                                     Kind{trace.after, "simulated after", "#1f78d0", "", 1.3}};
+                                     Kind{trace.after, "simulated after", "#0b4f9e", "", 1.3}};
   std::string markup, curves;
   double x = box.left;
   for (const Kind& kind : kinds) {
@@ -197,7 +196,7 @@ std::string traceFigure(const Trace& trace, bool has_after) {
                   box.bottom() + 16);
   for (const double tick : time_axis.ticks())
     markup += fmt::format("<text x=\"{:.1f}\" y=\"{}\">{}</text>", time_axis.pixel(tick), box.bottom() + 16, time_axis.label(tick));
-  return "<div class=\"trace\">" + with(svg, markup + "</g>") + "</div>\n";
+  return "<div class=\"trace\"><h3><code>" + escapedXml(trace.signal) + "</code></h3>" + with(svg, markup + "</g>") + "</div>\n";
 }
 
 std::string zoomScript() {
@@ -244,8 +243,10 @@ std::string zoomScript() {
       from = null;
       if (range[1] - range[0] > 0.01 * (v.end - v.start)) show(range);
     });
+    window.addEventListener('pointercancel', () => { from = null; });
     outer.addEventListener('dblclick', () => show(whole));
   });
+  document.getElementById('whole').addEventListener('click', () => show(whole));
 })();
 </script>
 )js";

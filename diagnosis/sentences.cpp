@@ -15,20 +15,34 @@ namespace {
 
 constexpr double nearly_all = 99.95;  ///< percent; what is above must not read as 100.0
 
-/// "a = 1 (0.9 to 1.1), b = 2 (1 to 3)", without what the data left out.
-std::string parameterWords(const FoundEffect& effect, int digits) {
+/// "a = 1.0 (0.9 to 1.1), b = 2 (1 to 3)", without what the data left out.
+std::string parameterWords(const FoundEffect& effect) {
   std::vector<std::string> words;
   for (const auto& [name, estimate] : effect.parameters)
-    if (estimate.value != 0 || estimate.low != 0 || estimate.high != 0)
-      words.push_back(
-          fmt::format("{} = {:.{}g} ({:.{}g} to {:.{}g})", name, estimate.value, digits, estimate.low, digits, estimate.high, digits));
+    if (!isLeftOut(estimate)) words.push_back(fmt::format("{} = {}", name, estimateWords(estimate)));
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
 }  // namespace
 
+bool isLeftOut(const Estimate& estimate) {
+  return estimate.value == 0 && estimate.low == 0 && estimate.high == 0;
+}
+
+std::string estimateWords(const Estimate& estimate) {
+  constexpr int most_decimals = 8;
+  const double half = (estimate.high - estimate.low) / 2;
+  if (!(half > 0)) return fmt::format("{:.4g}", estimate.value);
+  const int power = static_cast<int>(std::floor(std::log10(half)));
+  const bool begins_with_one = half < 2 * std::pow(10, power);
+  const int decimals = (begins_with_one ? 1 : 0) - power;
+  if (decimals > most_decimals) return fmt::format("{:.4g} ({:.4g} to {:.4g})", estimate.value, estimate.low, estimate.high);
+  const int shown = std::max(0, decimals);
+  return fmt::format("{:.{}f} ({:.{}f} to {:.{}f})", estimate.value, shown, estimate.low, shown, estimate.high, shown);
+}
+
 std::string effectSentence(const FoundEffect& effect) {
-  const std::string parameters = parameterWords(effect, 4);
+  const std::string parameters = parameterWords(effect);
   return effect.label() + (parameters.empty() ? "" : ": " + parameters);
 }
 
@@ -46,18 +60,11 @@ std::string probabilityWords(double probability) {
   return probability < 1 - nearly_certain ? "under 1 %" : fmt::format("{:.0f} %", 100 * probability);
 }
 
-namespace {
-
-/// An interval that reaches below 0 tells of the recordings, not of the effect.
-const char* const no_interval = "the recordings are too few or differ too much to say how much elsewhere";
-
-}  // namespace
-
-std::string shrinkElsewhereWords(const Estimate& shrink_percent) {
-  const std::string words = percentWords(shrink_percent.value);
-  if (shrink_percent.low > nearly_all) return words + ", as is expected elsewhere,";
-  if (shrink_percent.low < 0) return fmt::format("{} ({})", words, no_interval);
-  return fmt::format("{} ({:.1f} to {:.1f} expected elsewhere, 95 %)", words, shrink_percent.low, shrink_percent.high);
+std::string elsewhereSentence(const Estimate& shrink_percent) {
+  if (shrink_percent.low > nearly_all) return "On another recording of this plant as much is expected.";
+  // An interval that reaches below 0 tells of the recordings, not of the effect.
+  if (shrink_percent.low < 0) return "The recordings are too few or differ too much to say how much it would be on another one.";
+  return fmt::format("On another recording of this plant {:.1f} to {:.1f} % are expected (95 %).", shrink_percent.low, shrink_percent.high);
 }
 
 std::string componentWords(const std::string& component) {
@@ -65,6 +72,10 @@ std::string componentWords(const std::string& component) {
   std::string words = component;
   std::ranges::replace(words, '_', ' ');
   return words;
+}
+
+double overFloor(const SignalGap& gap) {
+  return gap.noise_floor > 0 ? gap.rmse / gap.noise_floor : 0;
 }
 
 bool isTold(const std::vector<Place>& where) {
@@ -95,18 +106,38 @@ bool isLocated(const std::vector<Place>& where) {
   return isBeforeTheForce(where.front().stage) ? std::ranges::all_of(others, isBeforeTheForce) : others.empty();
 }
 
+bool mayBeAt(const std::vector<Place>& where, const std::string& stage) {
+  const auto place = std::ranges::find(where, stage, &Place::stage);
+  return isLocated(where) && (place == where.begin() || (place != where.end() && !place->is_ruled_out));
+}
+
+namespace {
+
+/// ", mostly while venting" where the data held back, of which the page shows bars, say so as well.
+std::string regimeWords(const Diagnosis& d) {
+  const std::string& regime = d.where.front().regime;
+  const auto largest = std::ranges::max_element(d.regimes, {}, &RegimeGap::before);
+  if (regime.empty() || (largest != d.regimes.end() && largest->regime != regime)) return "";
+  return ", mostly while " + regime;
+}
+
+}  // namespace
+
 std::string whereSentence(const Diagnosis& d) {
   const Place& place = d.where.front();
-  const std::string regime = place.regime.empty() ? "" : ", mostly while " + place.regime;
-  const std::string component = componentWords(place.component);
+  const std::string regime = regimeWords(d), component = componentWords(place.component);
   const double percent = 100 * place.share;
   if (!isTold(d.where) && d.where.size() > 1) {
     const Place& next = d.where[1];
     return fmt::format("These signals do not tell at which stage the gap arises: {} ({}, {:.0f} %) or {} ({}, {:.0f} %) come nearest{}",
                        place.stage, component, percent, next.stage, componentWords(next.component), 100 * next.share, regime);
   }
-  if (isLocated(d.where)) return fmt::format("{:.0f} % of the gap is in the {} stage ({}){}", percent, place.stage, component, regime);
   const std::vector<std::string> others = othersPossible(d.where);
+  if (isLocated(d.where) && others.empty())
+    return fmt::format("The gap arises in the {} stage ({}, {} likely){}", place.stage, component, probabilityWords(place.share), regime);
+  if (isLocated(d.where))
+    return fmt::format("The gap arises before the force, in command or pressure ({}; by its shape rather {}, {} likely){}", component,
+                       place.stage, probabilityWords(place.share), regime);
   constexpr std::size_t all_others = 4;
   return fmt::format("By its shape the gap is of the {} stage ({}, {:.0f} %){}; these signals do not rule out {}", place.stage, component,
                      percent, regime, others.size() == all_others ? "any other" : fmt::format("{}", fmt::join(others, " or ")));
@@ -114,11 +145,10 @@ std::string whereSentence(const Diagnosis& d) {
 
 namespace {
 
-std::string shrinkWords(const Diagnosis& d) {
-  const std::string words = percentWords(d.shrink_percent);
-  if (d.shrink_low_percent > nearly_all) return words;
-  if (d.shrink_low_percent < 0) return fmt::format("{} ({})", words, no_interval);
-  return fmt::format("{} ({:.1f} to {:.1f})", words, d.shrink_low_percent, d.shrink_high_percent);
+/// " (94.0 to 97.5)", where the recordings tell how much is to be expected elsewhere.
+std::string intervalWords(const Diagnosis& d) {
+  if (d.shrink_low_percent > nearly_all || d.shrink_low_percent < 0) return "";
+  return fmt::format(" ({:.1f} to {:.1f})", d.shrink_low_percent, d.shrink_high_percent);
 }
 
 constexpr double likely = 0.5;  ///< probability from which a candidate must have failed on data held back
@@ -133,8 +163,8 @@ std::string labelWords(const std::string& label) {
 std::string effectWords(const Diagnosis& d, const std::string& label) {
   const auto found = std::ranges::find_if(d.effects, [&](const FoundEffect& effect) { return effect.label() == label; });
   std::string words = labelWords(label);
-  if (found == d.effects.end() || d.chosen.size() != 1) return words;
-  const std::string parameters = parameterWords(*found, 3);
+  if (found == d.effects.end()) return words;
+  const std::string parameters = parameterWords(*found);
   return parameters.empty() ? words : words + " with " + parameters;
 }
 
@@ -145,11 +175,14 @@ std::string listWords(const Diagnosis& d, const std::vector<std::string>& labels
 }
 
 /// What no explanation should hide: a rest that stands far out of the noise. RMS / floor = sqrt(1 + normalised gap).
-std::string remainder(const Diagnosis& d) {
+std::string remainder(const Gap& after) {
   constexpr double stands_out = 2;
-  const double over_floor = std::sqrt(1 + d.after.normalised);
+  const double over_floor = std::sqrt(1 + after.normalised);
   if (over_floor < stands_out) return "";
-  return fmt::format(" What is left is still {:.1f} times the noise: something else acts too, or acts by another law.", over_floor);
+  const auto most = std::ranges::max_element(after.per_signal, {}, [](const auto& entry) { return overFloor(entry.second); });
+  const std::string where =
+      most == after.per_signal.end() ? "" : fmt::format(" ({:.1f} times in {})", overFloor(most->second), most->first);
+  return fmt::format("What is left is still {:.1f} times the noise{}: something else acts too, or acts by another law.", over_floor, where);
 }
 
 /// "valve lag on muscle 1 together with payload on hand" of "valve_lag@muscle_1 + payload@hand".
@@ -176,19 +209,19 @@ std::string otherwise(const Diagnosis& d) {
   if (!d.next_experiment.commands.empty()) experiment = fmt::format("; record the schedule in next.csv to tell {} apart", which);
   if (!experiment.empty() && d.next_experiment.difference < 1)
     experiment += fmt::format(", though even there they differ by no more than {:.1f} times the noise", d.next_experiment.difference);
-  return fmt::format(" {} would explain it as well{}{}.", fmt::join(others, pairs ? "; or " : " or "), place, experiment);
+  return fmt::format("{} would explain it as well{}{}.", fmt::join(others, pairs ? "; or " : " or "), place, experiment);
 }
 
 /// Where that the catalogue holds the cause is not taken for granted.
 std::string noneWords(const Diagnosis& d) {
   constexpr double worth_saying = 0.1;
   if (d.none_of_these < worth_saying) return "";
-  return fmt::format(" That none of the known effects is the cause is {} likely.", probabilityWords(d.none_of_these));
+  return fmt::format("That none of the known effects is the cause is {} likely.", probabilityWords(d.none_of_these));
 }
 
 std::string mostProbable(const Diagnosis& d) {
   const FoundEffect& first = d.effects.front();
-  return fmt::format(": the best candidate, {}, has a probability of {:.0f} %", labelWords(first.label()), 100 * first.probability);
+  return fmt::format(": the best candidate, {}, has a probability of {}", labelWords(first.label()), probabilityWords(first.probability));
 }
 
 /// The likeliest effect explains what it was fitted to and nothing else.
@@ -206,36 +239,53 @@ std::string notConfirmed(const Diagnosis& d) {
 
 }  // namespace
 
-std::string verdictSentence(const Diagnosis& d) {
+namespace {
+
+std::vector<std::string> unexplainedSentences(const Diagnosis& d) {
+  if (d.partial) return {"There is a gap; the search for its cause was interrupted."};
+  std::string text = "There is a gap that I cannot explain";
+  if (!d.effects.empty()) text += d.effects.front().probability > likely ? notConfirmed(d) : mostProbable(d);
+  std::vector<std::string> sentences = {text + ".", noneWords(d), d.where.empty() ? "" : whereSentence(d) + "."};
+  if (d.attempt.effects.empty()) return sentences;
+  sentences.push_back(fmt::format(
+      "What comes nearest, {}, removes {} of the gap on data that neither fitting nor choosing had seen; attempt.json holds it, to build "
+      "on, not to believe.",
+      listWords(d, d.attempt.effects, " together with "), percentWords(d.attempt.shrink_percent)));
+  sentences.push_back(remainder(d.attempt.after));
+  return sentences;
+}
+
+std::vector<std::string> foundSentences(const Diagnosis& d) {
+  const auto best = std::ranges::find(d.explanations, d.chosen, &ExplanationProbability::effects);
+  return {d.where.empty() ? "" : whereSentence(d) + ".",
+          fmt::format("The best explanation ({} likely) is {}; adding {} removes {}{} of the gap on data that neither fitting nor choosing "
+                      "had seen.",
+                      probabilityWords(best == d.explanations.end() ? 0 : best->probability), listWords(d, d.chosen, " together with "),
+                      d.chosen.size() > 1 ? "them" : "it", percentWords(d.shrink_percent), intervalWords(d)),
+          remainder(d.after), noneWords(d), otherwise(d)};
+}
+
+}  // namespace
+
+std::vector<std::string> verdictSentences(const Diagnosis& d) {
+  std::vector<std::string> sentences;
   switch (d.verdict) {
     case Verdict::no_gap:
-      return "No gap: the recordings agree with the model up to the noise.";
+      return {"No gap: the recordings agree with the model up to the noise."};
     case Verdict::not_excited:
-      return "I cannot tell: the commands rest, so the recordings do not show what the plant does.";
-    case Verdict::unexplained: {
-      if (d.partial) return "There is a gap; the search for its cause was interrupted.";
-      std::string text = "There is a gap that I cannot explain";
-      if (!d.effects.empty()) text += d.effects.front().probability > likely ? notConfirmed(d) : mostProbable(d);
-      text += ".";
-      if (!d.attempt.effects.empty())
-        text += fmt::format(
-            " What comes nearest, {}, removes {} of the gap on data that neither fitting nor choosing had seen; attempt.json holds it, to "
-            "build on, not to believe.",
-            listWords(d, d.attempt.effects, " together with "), percentWords(d.attempt.shrink_percent));
-      return text;
-    }
-    case Verdict::effects_found: {
-      std::string text = d.where.empty() ? "" : whereSentence(d) + ". ";
-      const auto best = std::ranges::find(d.explanations, d.chosen, &ExplanationProbability::effects);
-      text += fmt::format(
-          "The best explanation ({} likely) is {}; adding {} removes {} of the gap on data that neither "
-          "fitting nor choosing had seen.",
-          probabilityWords(best == d.explanations.end() ? 0 : best->probability), listWords(d, d.chosen, " together with "),
-          d.chosen.size() > 1 ? "them" : "it", shrinkWords(d));
-      return text + remainder(d) + noneWords(d) + otherwise(d);
-    }
+      return {"I cannot tell: the commands rest, so the recordings do not show what the plant does."};
+    case Verdict::unexplained:
+      sentences = unexplainedSentences(d);
+      break;
+    case Verdict::effects_found:
+      sentences = foundSentences(d);
   }
-  return "";
+  std::erase(sentences, "");
+  return sentences;
+}
+
+std::string verdictSentence(const Diagnosis& d) {
+  return fmt::format("{}", fmt::join(verdictSentences(d), " "));
 }
 
 }  // namespace musclesim

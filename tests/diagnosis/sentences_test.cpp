@@ -36,7 +36,7 @@ Diagnosis lagFound() {
 
 TEST(VerdictSentence, SaysWhereWhichHowFarAndWhatElse) {
   const std::string text = verdictSentence(lagFound());
-  for (const char* part : {"81 % of the gap is in the pressure stage (muscle 1), mostly while venting", "93 % likely",
+  for (const char* part : {"The gap arises in the pressure stage (muscle 1, 81 % likely), mostly while venting", "93 % likely",
                            "valve lag on muscle 1 with vent_time_constant_s = 0.081 (0.077 to 0.085)", "96.2 % (94.0 to 97.5)",
                            "Flow limit on muscle 1 would explain it as well"})
     EXPECT_TRUE(contains(text, part)) << part << "\n" << text;
@@ -55,13 +55,37 @@ TEST(VerdictSentence, TellsWhatSignalsShowFromWhatTheGapLooksLike) {
   d.where = {{"force", "muscle_0", "", 0.95}, {"body", "hand", "", 0.04}, {"sensor", "all", "", 0.01}, {"pressure", "all", "", 0, true}};
   EXPECT_EQ(whereSentence(d), "By its shape the gap is of the force stage (muscle 0, 95 %); these signals do not rule out body or sensor");
   for (std::size_t i = 1; i < d.where.size(); ++i) d.where[i].is_ruled_out = true;
-  EXPECT_EQ(whereSentence(d), "95 % of the gap is in the force stage (muscle 0)");
+  EXPECT_EQ(whereSentence(d), "The gap arises in the force stage (muscle 0, 95 % likely)");
+  EXPECT_TRUE(mayBeAt(d.where, "force"));
+  EXPECT_FALSE(mayBeAt(d.where, "body"));
   d.where = {
       {"sensor", "all", "", 0.6}, {"force", "all", "", 0.2}, {"body", "all", "", 0.2}, {"command", "all", ""}, {"pressure", "all", ""}};
   EXPECT_EQ(whereSentence(d),
             "By its shape the gap is of the sensor stage (all components, 60 %); these signals do not rule out any other");
   d.where = {{"pressure", "muscle_1", "venting", 0.81}, {"command", "all", "", 0.15}, {"force", "all", "", 0.04, true}};
-  EXPECT_EQ(whereSentence(d), "81 % of the gap is in the pressure stage (muscle 1), mostly while venting");
+  EXPECT_EQ(whereSentence(d),
+            "The gap arises before the force, in command or pressure (muscle 1; by its shape rather pressure, 81 % likely), mostly while "
+            "venting");
+  EXPECT_TRUE(mayBeAt(d.where, "pressure"));
+  EXPECT_TRUE(mayBeAt(d.where, "command"));
+  EXPECT_FALSE(mayBeAt(d.where, "force"));
+}
+
+TEST(VerdictSentence, NamesARegimeOnlyWhereTheDataHeldBackSaySoToo) {
+  Diagnosis d = lagFound();
+  d.regimes = {{"filling", 5, 1}, {"venting", 9, 1}};
+  EXPECT_TRUE(contains(whereSentence(d), "mostly while venting"));
+  d.regimes[0].before = 10;
+  EXPECT_FALSE(contains(whereSentence(d), "mostly while"));
+}
+
+TEST(Words, AnEstimateHasTheDecimalsThatItsIntervalBears) {
+  EXPECT_EQ(estimateWords({1.0452, 1.045, 1.0454}), "1.0452 (1.0450 to 1.0454)");
+  EXPECT_EQ(estimateWords({0.060037, 0.059866, 0.060207}), "0.06004 (0.05987 to 0.06021)");
+  EXPECT_EQ(estimateWords({-12.92, -13.1, -12.74}), "-12.92 (-13.10 to -12.74)");
+  EXPECT_EQ(estimateWords({5400, 5000, 5800}), "5400 (5000 to 5800)");
+  EXPECT_EQ(estimateWords({8, 8, 8}), "8");
+  EXPECT_EQ(estimateWords({1e-12, 0, 2e-12}), "1e-12 (0 to 2e-12)");
 }
 
 TEST(VerdictSentence, LeavesOutWhatSaysNothing) {
@@ -73,8 +97,8 @@ TEST(VerdictSentence, LeavesOutWhatSaysNothing) {
   const std::string text = verdictSentence(d);
   EXPECT_FALSE(contains(text, "fill_time_constant_s")) << text;
   EXPECT_TRUE(contains(text, "more than 99.9 % of the gap")) << text;
-  EXPECT_EQ(shrinkElsewhereWords({99.99, 99.97, 100}), "more than 99.9 %, as is expected elsewhere,");
-  EXPECT_EQ(shrinkElsewhereWords({96.2, 94, 97.5}), "96.2 % (94.0 to 97.5 expected elsewhere, 95 %)");
+  EXPECT_EQ(elsewhereSentence({99.99, 99.97, 100}), "On another recording of this plant as much is expected.");
+  EXPECT_EQ(elsewhereSentence({96.2, 94, 97.5}), "On another recording of this plant 94.0 to 97.5 % are expected (95 %).");
   EXPECT_EQ(effectSentence(d.effects.front()), "valve_lag@muscle_1: vent_time_constant_s = 0.081 (0.077 to 0.085)");
 }
 
@@ -82,8 +106,9 @@ TEST(VerdictSentence, GivesNoIntervalThatTellsNothing) {
   Diagnosis d = lagFound();
   d.shrink_low_percent = -1093;
   EXPECT_FALSE(contains(verdictSentence(d), "-1093"));
-  EXPECT_TRUE(contains(verdictSentence(d), "96.2 % (the recordings are too few or differ too much to say how much elsewhere) of the gap"));
-  EXPECT_FALSE(contains(shrinkElsewhereWords({96.2, -1093, 100}), "-1093"));
+  EXPECT_TRUE(contains(verdictSentence(d), "removes 96.2 % of the gap"));
+  EXPECT_EQ(elsewhereSentence({96.2, -1093, 100}),
+            "The recordings are too few or differ too much to say how much it would be on another one.");
 }
 
 TEST(VerdictSentence, SaysWhatIsLeftWhereItStandsOut) {
@@ -91,7 +116,9 @@ TEST(VerdictSentence, SaysWhatIsLeftWhereItStandsOut) {
   d.after.normalised = 2;
   EXPECT_FALSE(contains(verdictSentence(d), "What is left"));
   d.after.normalised = 24;
-  EXPECT_TRUE(contains(verdictSentence(d), "What is left is still 5.0 times the noise"));
+  EXPECT_TRUE(contains(verdictSentence(d), "What is left is still 5.0 times the noise:"));
+  d.after.per_signal = {{"length_0_mm", {0.2, 0.1}}, {"pressure_0", {0.018, 0.002}}};
+  EXPECT_TRUE(contains(verdictSentence(d), "What is left is still 5.0 times the noise (9.0 times in pressure_0):"));
 }
 
 TEST(VerdictSentence, GivesAPairTheProbabilityOfThePair) {
@@ -99,7 +126,10 @@ TEST(VerdictSentence, GivesAPairTheProbabilityOfThePair) {
   d.effects.push_back({"payload", "hand", 0.55, {{"mass_kg", {0.3, 0.2, 0.4}}}, 10});
   d.chosen = {"valve_lag@muscle_1", "payload@hand"};
   d.explanations = {{d.chosen, 0.55}, {{"valve_lag@muscle_1"}, 0.38}};
-  EXPECT_TRUE(contains(verdictSentence(d), "(55 % likely) is valve lag on muscle 1 together with payload on hand"));
+  EXPECT_TRUE(contains(
+      verdictSentence(d),
+      "(55 % likely) is valve lag on muscle 1 with vent_time_constant_s = 0.081 (0.077 to 0.085) together with payload on hand with "
+      "mass_kg = 0.30 (0.20 to 0.40); adding them removes"));
 }
 
 TEST(VerdictSentence, SaysWhetherTheExperimentTellsAllApart) {
@@ -150,6 +180,8 @@ TEST(VerdictSentence, AdmitsWhatItCannotTell) {
   EXPECT_TRUE(contains(verdictSentence(d), "cannot tell"));
   d.verdict = Verdict::unexplained;
   EXPECT_TRUE(contains(verdictSentence(d), "cannot explain"));
+  d.none_of_these = 0.79;
+  EXPECT_TRUE(contains(verdictSentence(d), "That none of the known effects is the cause is 79 % likely."));
   d.effects = lagFound().effects;
   d.effects.front().probability = 0.21;
   EXPECT_TRUE(contains(verdictSentence(d), "valve lag on muscle 1, has a probability of 21 %"));
