@@ -289,7 +289,9 @@ std::string looks(const Diagnosis& d) {
   if (places.empty()) return "";
   std::vector<Bar> all;
   bool some_not_fitted = false;
-  for (const auto& [look, rank] : places) {
+  for (const auto& place : places) {
+    const FirstLook& look = place.first;
+    const std::size_t rank = place.second;
     const bool chosen = std::ranges::find(d.chosen, look.effect) != d.chosen.end();
     if (rank > shown && !chosen) continue;
     const bool fitted = std::ranges::any_of(
