@@ -29,8 +29,8 @@ int makeCases(MakeArguments& arguments) {
   arguments.make.interrupted = [] { return interruptSignal() != 0; };
   arguments.make.progress = [&](int done, int count) { progress.show(done, count); };
   const auto key = blind::make(arguments.folder, arguments.keys, arguments.make);
-  if (interruptSignal() != 0) {
-    fmt::print(stderr, "musclesim: interrupted; the cases made so far have no key and were removed\n");
+  if (key.empty()) {
+    fmt::print(stderr, "musclesim: interrupted; the cases made so far have no key yet; the same call goes on\n");
     return interrupted_base + interruptSignal();
   }
   fmt::print("cases   {}\nkey     {}\nseal    {}/seal.json\n", arguments.make.count + arguments.make.arm_count, key.string(),

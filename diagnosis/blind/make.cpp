@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "../parallel.h"
 #include "cause.h"
@@ -19,6 +21,7 @@
 #include "musclesim/simulation/simulation.h"
 #include "seal.h"
 #include "sha256.h"
+#include "unsealed.h"
 
 namespace musclesim::blind {
 
@@ -106,16 +109,17 @@ Plan drawPlan(const std::string& name, const std::string& robot_name, const Robo
   return plan;
 }
 
-/// Draws laws until one reaches its band; `redrawn` takes the names of those that do not.
-Cause drawCause(const Plan& plan, const std::vector<Cause>& others, const Robot& robot, const Truth& truth, RandomStream& random,
-                json& redrawn) {
+/// Draws laws until one reaches its band; `redrawn` takes the names of those that do not. None if interrupted.
+std::optional<Cause> drawCause(const Plan& plan, const std::vector<Cause>& others, const Robot& robot, const Truth& truth,
+                               const std::function<bool()>& interrupted, RandomStream& random, json& redrawn) {
   constexpr int most_draws = 60;
   const std::vector<ForeignEffect> laws = lawsFor(robot, plan.signals, plan.kind == "open");
   for (int draw = 0; draw < most_draws; ++draw) {
     const ForeignEffect& law = oneOf(random, laws);
     if (std::ranges::any_of(others, [&](const Cause& other) { return other.stage == law.info.stage; })) continue;
     const std::string component = oneOf(random, componentsOf(law, robot, plan.signals));
-    if (auto cause = causeOfSize(law, component, plan.size, truth, random)) return *cause;
+    if (interrupted()) return {};
+    if (auto cause = causeOfSize(law, component, plan.size, truth, random)) return cause;
     redrawn.push_back(law.info.id + "@" + component);
   }
   throw BadParameter(plan.name + ": size of the gap", plan.size,
@@ -193,8 +197,8 @@ Plant drawPlant(const std::string& name, const std::string& robot_name, const Ro
                      "include some in which the model agrees with itself at half its step; take another seed");
 }
 
-/// Draws, simulates and writes one case. Returns its key.
-json makeCase(const std::string& name, const std::string& robot_name, const fs::path& folder, const MakeOptions& options) {
+/// Draws, simulates and writes one case. Returns its key; none if it was interrupted.
+std::optional<json> makeCase(const std::string& name, const std::string& robot_name, const fs::path& folder, const MakeOptions& options) {
   RandomStream random(options.seed, "blind." + name);
   Simulation probe;
   const Robot& robot = probe.build(robot_name);
@@ -202,7 +206,11 @@ json makeCase(const std::string& name, const std::string& robot_name, const fs::
   std::vector<Cause> causes;
   json redrawn = json::array();
   const std::size_t cause_count = plan.kind == "null" ? 0 : plan.kind == "double" ? 2 : 1;
-  while (causes.size() < cause_count) causes.push_back(drawCause(plan, causes, robot, truth, random, redrawn));
+  while (causes.size() < cause_count) {
+    auto cause = drawCause(plan, causes, robot, truth, options.interrupted, random, redrawn);
+    if (!cause) return {};
+    causes.push_back(std::move(*cause));
+  }
   std::vector<ActiveEffect> laws;
   for (const Cause& cause : causes) laws.push_back(cause.law);
   const std::vector<Recording> recordings = truth.measured(laws);
@@ -222,7 +230,6 @@ std::string randomKeyName() {
 }
 
 void requireApart(const fs::path& folder, const fs::path& key_folder, const MakeOptions& options) {
-  if (fs::exists(folder) && !fs::is_empty(folder)) throw BadParameter("folder", folder.string(), "be new or empty");
   if (isInReach(key_folder, folder))
     throw BadParameter("--keys", key_folder.string(),
                        "lie where `blind run` does not look: not inside " + folder.string() +
@@ -235,35 +242,35 @@ void requireApart(const fs::path& folder, const fs::path& key_folder, const Make
   if (!(options.duration_s >= 1)) throw BadParameter("--duration-s", fmt::format("{}", options.duration_s), "be at least 1");
 }
 
+/// What was asked for, and of which program.
+json callOf(const MakeOptions& options) {
+  json call = programMembers(options.commit);
+  call["seed"] = options.seed;
+  call["count"] = options.count;
+  call["arm_count"] = options.arm_count;
+  call["duration_s"] = options.duration_s;
+  return call;
+}
+
 json sealOf(const std::string& key_name, const std::string& key_text, const fs::path& folder, const MakeOptions& options) {
-  json seal = programMembers(options.commit);
+  json seal = callOf(options);
   seal["format"] = "musclesim-blind-1";
   seal["key_file"] = key_name;
   seal["key_sha256"] = sha256(key_text);
   seal["recordings_sha256"] = sha256OfFiles(folder, recordingFiles(folder));
-  seal["seed"] = options.seed;
-  seal["count"] = options.count;
-  seal["arm_count"] = options.arm_count;
-  seal["duration_s"] = options.duration_s;
   return seal;
 }
 
-/// Removes the cases unless they were sealed: without a key nobody can score them.
-class UnsealedCases {
- public:
-  UnsealedCases(fs::path folder, int count) : folder_(std::move(folder)), count_(count) {}
-  ~UnsealedCases() {
-    std::error_code ignored;
-    for (int i = 0; i < count_; ++i) fs::remove_all(folder_ / caseName(i), ignored);
-  }
-  UnsealedCases(const UnsealedCases&) = delete;
-  UnsealedCases& operator=(const UnsealedCases&) = delete;
-  void keep() { count_ = 0; }
-
- private:
-  fs::path folder_;
-  int count_;
-};
+/// Those that an earlier call has made, or a new one. None if that was interrupted.
+std::optional<json> keptOrMade(int index, const fs::path& folder, const UnsealedCases& unsealed, const MakeOptions& options) {
+  const std::string name = caseName(index);
+  if (auto kept = unsealed.keyOf(name)) return kept;
+  const std::string robot = index >= options.count ? "arm" : index % 2 == 0 ? "rig" : "elbow";
+  fs::remove_all(folder / name);
+  auto key = makeCase(name, robot, folder, options);
+  if (key) unsealed.keep(name, *key);
+  return key;
+}
 
 }  // namespace
 
@@ -271,25 +278,30 @@ fs::path make(const fs::path& folder, const fs::path& key_folder, const MakeOpti
   requireApart(folder, key_folder, options);
   fs::create_directories(folder);
   fs::create_directories(key_folder);
+  json call = callOf(options);
+  call["folder"] = fs::weakly_canonical(folder).string();
+  call["kinds"] = options.kinds;
+  const UnsealedCases unsealed(key_folder, call);
+  if (!fs::is_empty(folder) && !unsealed.exist())
+    throw BadParameter("folder", folder.string(), "be new or empty, or hold what the same call had made when it was stopped");
+  unsealed.begin();
   const int case_count = options.count + options.arm_count;
-  UnsealedCases unsealed(folder, case_count);
-  std::vector<json> keys(static_cast<std::size_t>(case_count));
+  std::vector<std::optional<json>> keys(static_cast<std::size_t>(case_count));
   std::mutex one_at_a_time;
   int done = 0;
   parallelFor(case_count, options.job_count, [&](int i) {
     if (options.interrupted()) return;
-    const std::string robot = i >= options.count ? "arm" : i % 2 == 0 ? "rig" : "elbow";
-    keys[static_cast<std::size_t>(i)] = makeCase(caseName(i), robot, folder, options);
+    keys[static_cast<std::size_t>(i)] = keptOrMade(i, folder, unsealed, options);
     const std::lock_guard lock(one_at_a_time);
     options.progress(++done, case_count);
   });
-  if (options.interrupted()) return {};
+  if (std::ranges::any_of(keys, [](const auto& key) { return !key; })) return {};
   json key = {{"format", "musclesim-blind-key-1"}, {"seed", options.seed}, {"cases", json::object()}};
-  for (int i = 0; i < case_count; ++i) key["cases"][caseName(i)] = keys[static_cast<std::size_t>(i)];
+  for (int i = 0; i < case_count; ++i) key["cases"][caseName(i)] = *keys[static_cast<std::size_t>(i)];
   const fs::path file = key_folder / randomKeyName();
   writeObject(key, file);
   writeObject(sealOf(file.filename().string(), key.dump(2) + "\n", folder, options), folder / "seal.json");
-  unsealed.keep();
+  unsealed.remove();
   return file;
 }
 

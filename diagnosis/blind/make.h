@@ -23,8 +23,8 @@ struct MakeOptions {
 
 /// Writes DIR/caseNNN/r1..r4.csv and .json, DIR/seal.json, and the key to `key_folder` under a random name.
 /// The seal holds the key's name and SHA-256, the SHA-256 of all recordings, seed, program. Same seed, same options: the same bits, but for
-/// the key's name. Returns the key's path. Throws BadParameter for a DIR that exists and is not empty, and for a key folder inside DIR or
-/// so near that `blind run` would find the key.
+/// the key's name. Returns the key's path; none if interrupted: the same call goes on then, with what it had made. Throws BadParameter for
+/// a DIR that holds anything else, and for a key folder inside DIR or so near that `blind run` would find the key.
 std::filesystem::path make(const std::filesystem::path& folder, const std::filesystem::path& key_folder, const MakeOptions& options);
 
 }  // namespace musclesim::blind

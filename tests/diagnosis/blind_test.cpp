@@ -17,6 +17,7 @@
 #include "diagnosis/blind/seal.h"
 #include "diagnosis/blind/sha256.h"
 #include "musclesim/error.h"
+#include "musclesim/log/file.h"
 #include "musclesim/simulation/simulation.h"
 #include "support/support.h"
 
@@ -124,15 +125,46 @@ TEST_F(Blind, DoesNotRunWhileTheKeyCanBeRead) {
   EXPECT_FALSE(fs::exists(cases() / "answers"));
 }
 
-TEST_F(Blind, LeavesNoCasesWithoutAKey) {
+TEST_F(Blind, GoesOnMakingWhereItWasStopped) {
+  MakeOptions three = tiny({"null"});
+  three.count = 3;
+  three.job_count = 1;
+  int asked = 0;
+  MakeOptions stopped = three;
+  stopped.interrupted = [&] { return ++asked > 2; };
+  EXPECT_TRUE(make(cases(), keys(), stopped).empty());
+  EXPECT_FALSE(fs::exists(cases() / "seal.json"));
+  const auto first = fs::last_write_time(cases() / "case001" / "r1.csv");
+  fs::create_directories(cases() / "case003");  // a case whose key was not kept is made anew
+  append(cases() / "case003" / "r1.csv", "half a recording");
+  int made = 0;
+  three.progress = [&](int done, int) { made = done; };
+  const fs::path key = make(cases(), keys(), three), at_once = make(cases("once"), keys("c"), three);
+  EXPECT_EQ(made, 3);
+  EXPECT_EQ(fs::last_write_time(cases() / "case001" / "r1.csv"), first);
+  EXPECT_EQ(readTextFile(key.string(), 1 << 20), readTextFile(at_once.string(), 1 << 20));
+  EXPECT_EQ(readSeal(cases()).at("recordings_sha256"), readSeal(cases("once")).at("recordings_sha256"));
+  EXPECT_FALSE(fs::exists(keys() / "unsealed"));
+}
+
+TEST_F(Blind, DoesNotGoOnWithTheCasesOfAnotherCall) {
   MakeOptions two = tiny({"null"});
   two.count = 2;
   two.job_count = 1;
   int asked = 0;
   two.interrupted = [&] { return ++asked > 1; };
   EXPECT_TRUE(make(cases(), keys(), two).empty());
-  EXPECT_TRUE(fs::is_empty(cases()));
-  EXPECT_FALSE(make(cases(), keys(), tiny({"null"})).empty());
+  EXPECT_TRUE(contains(messageOf<BadParameter>([&] { make(cases(), keys(), tiny({"null"})); }), "another program or call"));
+  EXPECT_TRUE(contains(messageOf<BadParameter>([&] { make(cases(), keys("b"), tiny({"null"})); }), "new or empty"));
+  EXPECT_FALSE(fs::exists(keys("b") / "unsealed"));
+}
+
+TEST_F(Blind, StopsInTheMiddleOfACase) {
+  MakeOptions one = tiny({"single"});
+  int asked = 0;
+  one.interrupted = [&] { return ++asked > 1; };  // not yet when the case begins, but when its cause is drawn
+  EXPECT_TRUE(make(cases(), keys(), one).empty());
+  EXPECT_FALSE(fs::exists(cases() / "case001"));
 }
 
 TEST_F(Blind, RunsResumesAndScores) {
