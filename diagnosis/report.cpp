@@ -159,16 +159,16 @@ std::string signalTable(const Diagnosis& d) {
   std::string rows;
   const Gap& gap_after = d.attempt.effects.empty() ? d.after : d.attempt.after;
   for (const auto& [name, before] : d.before.per_signal) {
-    const auto after = gap_after.per_signal.find(name);
-    rows += "<tr><td>" + breakableCode(name) + "</td>" + cell(before.noise_floor) + pair(before);
-    if (hasAfter(d)) rows += pair(after == gap_after.per_signal.end() ? before : after->second);
-    rows += "</tr>\n";
+    const auto found = gap_after.per_signal.find(name);
+    const SignalGap& after = hasAfter(d) && found != gap_after.per_signal.end() ? found->second : before;
+    rows += "<tr><td>" + breakableCode(name) + "</td>" + cell(before.noise_floor) + pair(before) + (hasAfter(d) ? pair(after) : "") +
+            "<td>" + shapeOfRest(d, name) + "</td></tr>\n";
   }
   const auto heads = [](const std::string& when) {
     return "<th class=number>RMSE" + when + "</th><th class=number>over floor" + when + "</th>";
   };
   return sliding("<table><tr><th>signal</th><th class=number>noise floor</th>" +
-                 (hasAfter(d) ? heads(" before") + heads(" after") : heads("")) + "</tr>\n" + rows + "</table>");
+                 (hasAfter(d) ? heads(" before") + heads(" after") : heads("")) + "<th>what is left</th></tr>\n" + rows + "</table>");
 }
 
 /// What an explanation gains beside what gains nothing in understanding.

@@ -8,11 +8,13 @@
 #include <cmath>
 
 #include "musclesim/effect/catalogue.h"
+#include "residual_shape.h"
 
 namespace musclesim {
 
 namespace {
 
+constexpr double stands_out = 2;      ///< floors
 constexpr double nearly_all = 99.95;  ///< percent; what is above must not read as 100.0
 
 /// "a = 1.0 (0.9 to 1.1), b = 2 (1 to 3)", without what the data left out.
@@ -76,6 +78,14 @@ std::string componentWords(const std::string& component) {
 
 double overFloor(const SignalGap& gap) {
   return gap.noise_floor > 0 ? gap.rmse / gap.noise_floor : 0;
+}
+
+std::string shapeOfRest(const Diagnosis& d, const std::string& signal) {
+  const Gap& rest = d.attempt.effects.empty() ? d.after : d.attempt.after;
+  const auto gap = rest.per_signal.find(signal);
+  const auto trace = std::ranges::find(d.traces, signal, &Trace::signal);
+  if (gap == rest.per_signal.end() || trace == d.traces.end() || overFloor(gap->second) < stands_out) return "";
+  return wordsFor(lookOf(trace->time_s, trace->measured, trace->after.empty() ? trace->before : trace->after));
 }
 
 bool isTold(const std::vector<Place>& where) {
@@ -176,7 +186,6 @@ std::string listWords(const Diagnosis& d, const std::vector<std::string>& labels
 
 /// What no explanation should hide: a rest that stands far out of the noise. RMS / floor = sqrt(1 + normalised gap).
 std::string remainder(const Gap& after) {
-  constexpr double stands_out = 2;
   const double over_floor = std::sqrt(1 + after.normalised);
   if (over_floor < stands_out) return "";
   const auto most = std::ranges::max_element(after.per_signal, {}, [](const auto& entry) { return overFloor(entry.second); });
@@ -241,11 +250,23 @@ std::string notConfirmed(const Diagnosis& d) {
 
 namespace {
 
+/// What somebody who looks for a cause that is not in the catalogue should see: the largest gap that has a simple shape.
+std::string shape(const Diagnosis& d) {
+  std::string words;
+  double most = 0;
+  for (const auto& [signal, gap] : d.before.per_signal)
+    if (const std::string shape = shapeOfRest(d, signal); !shape.empty() && overFloor(gap) > most) {
+      most = overFloor(gap);
+      words = fmt::format("In {} it is {}.", signal, shape);
+    }
+  return words;
+}
+
 std::vector<std::string> unexplainedSentences(const Diagnosis& d) {
   if (d.partial) return {"There is a gap; the search for its cause was interrupted."};
   std::string text = "There is a gap that I cannot explain";
   if (!d.effects.empty()) text += d.effects.front().probability > likely ? notConfirmed(d) : mostProbable(d);
-  std::vector<std::string> sentences = {text + ".", noneWords(d), d.where.empty() ? "" : whereSentence(d) + "."};
+  std::vector<std::string> sentences = {text + ".", noneWords(d), d.where.empty() ? "" : whereSentence(d) + ".", shape(d)};
   if (d.attempt.effects.empty()) return sentences;
   sentences.push_back(fmt::format(
       "What comes nearest, {}, removes {} of the gap on data that neither fitting nor choosing had seen; attempt.json holds it, to build "

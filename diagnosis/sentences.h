@@ -28,6 +28,8 @@ std::string effectSentence(const FoundEffect& effect);
 std::string estimateWords(const Estimate& estimate);
 /// Whether a parameter was not fitted since nothing in the data depends on it.
 bool isLeftOut(const Estimate& estimate);
+/// "mostly a ripple of 4.6 Hz": what a signal's residual looks like on the data held back, where it stands out; empty otherwise.
+std::string shapeOfRest(const Diagnosis& diagnosis, const std::string& signal);
 /// RMS residual over the noise floor; 0 without a floor.
 double overFloor(const SignalGap& gap);
 

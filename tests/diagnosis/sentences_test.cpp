@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "support/support.h"
 
 namespace musclesim {
@@ -163,6 +165,22 @@ TEST(VerdictSentence, SaysHowLikelyNoneOfTheKnownEffectsIs) {
   EXPECT_FALSE(contains(verdictSentence(d), "none of the known effects"));
   d.none_of_these = 0.48;
   EXPECT_TRUE(contains(verdictSentence(d), "That none of the known effects is the cause is 48 % likely."));
+}
+
+TEST(VerdictSentence, SaysWhatAnUnexplainedGapLooksLike) {
+  Diagnosis d;
+  d.verdict = Verdict::unexplained;
+  Trace trace{"r4.csv", "pressure_0", {}, {}, {}, {}};
+  for (int row = 0; row < 200; ++row) {
+    trace.time_s.push_back(0.01 * row);
+    trace.measured.push_back(0.5 + 0.02 * std::sin(2 * 3.14159 * 5 * 0.01 * row));
+    trace.before.push_back(0.5);
+  }
+  d.traces = {trace};
+  d.before.per_signal = d.after.per_signal = {{"pressure_0", {0.014, 0.002}}, {"length_0_mm", {1, 0.1}}};
+  EXPECT_TRUE(contains(verdictSentence(d), "In pressure_0 it is mostly a ripple of 5 Hz."));
+  d.after.per_signal["pressure_0"].rmse = 0.003;
+  EXPECT_FALSE(contains(verdictSentence(d), "ripple"));
 }
 
 TEST(VerdictSentence, SaysThatASearchWasInterrupted) {

@@ -1,0 +1,95 @@
+#include "residual_shape.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+namespace musclesim {
+
+namespace {
+
+constexpr Eigen::Index fewest_rows = 64;
+constexpr double enough = 0.5;  ///< share of the power that names the shape
+
+bool evenlySpaced(const Eigen::VectorXd& time_s) {
+  const Eigen::Index last = time_s.size() - 1;
+  const double step_s = (time_s[last] - time_s[0]) / static_cast<double>(last);
+  for (Eigen::Index i = 0; i <= last; ++i)
+    if (std::abs(time_s[i] - time_s[0] - static_cast<double>(i) * step_s) > 0.1 * step_s) return false;
+  return step_s > 0;
+}
+
+/// Power at the frequencies 1 / T, 2 / T, ... of evenly spaced rows; those from `first_hz` on, 0 below. They sum up to that of the rows.
+std::vector<double> spectrum(const Eigen::VectorXd& residual, double step_s, double first_hz) {
+  const Eigen::Index count = residual.size();
+  const double duration_s = static_cast<double>(count) * step_s;
+  std::vector<double> power(static_cast<std::size_t>(count / 2), 0);
+  for (auto k = static_cast<std::size_t>(std::ceil(first_hz * duration_s)); k < power.size(); ++k) {
+    const std::complex<double> turn = std::polar(1.0, -2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(count));
+    std::complex<double> sum = 0, phase = 1;
+    for (const double r : residual) {
+      sum += r * phase;
+      phase *= turn;
+    }
+    power[k] = 2 * std::norm(sum) / static_cast<double>(count);
+  }
+  return power;
+}
+
+ResidualLook rippleIn(const Eigen::VectorXd& residual, double step_s, double all_power) {
+  constexpr double lowest_hz = 2, band = 0.1;
+  const std::vector<double> power = spectrum(residual, step_s, lowest_hz);
+  const auto peak = std::ranges::max_element(power);
+  if (peak == power.end() || *peak == 0) return {};
+  const auto at = static_cast<double>(peak - power.begin());
+  double within = 0, weighted = 0;
+  for (std::size_t k = 0; k < power.size(); ++k) {
+    if (std::abs(static_cast<double>(k) - at) > std::max(1.0, band * at)) continue;
+    within += power[k];
+    weighted += power[k] * static_cast<double>(k);
+  }
+  if (within < enough * all_power) return {};
+  return {ResidualShape::ripple, weighted / within / (static_cast<double>(residual.size()) * step_s)};
+}
+
+}  // namespace
+
+ResidualLook lookOf(const std::vector<double>& time_s, const std::vector<double>& measured, const std::vector<double>& simulated) {
+  std::vector<double> times, values;
+  for (std::size_t i = 0; i < std::min({time_s.size(), measured.size(), simulated.size()}); ++i)
+    if (const double r = measured[i] - simulated[i]; std::isfinite(r)) {
+      times.push_back(time_s[i]);
+      values.push_back(r);
+    }
+  const auto count = static_cast<Eigen::Index>(values.size());
+  if (count < fewest_rows) return {};
+  const Eigen::VectorXd t = Eigen::Map<const Eigen::VectorXd>(times.data(), count);
+  const Eigen::VectorXd residual = Eigen::Map<const Eigen::VectorXd>(values.data(), count);
+  const double all_power = residual.squaredNorm(), mean = residual.mean();
+  if (!(all_power > 0) || !evenlySpaced(t)) return {};
+  if (mean * mean * static_cast<double>(count) >= enough * all_power) return {ResidualShape::offset, mean};
+  const Eigen::VectorXd centred_time = t.array() - t.mean(), centred = residual.array() - mean;
+  const double slope = centred_time.dot(centred) / centred_time.squaredNorm();
+  if (slope * slope * centred_time.squaredNorm() >= enough * all_power) return {ResidualShape::drift, slope};
+  return rippleIn(centred, (t[count - 1] - t[0]) / static_cast<double>(count - 1), all_power);
+}
+
+std::string wordsFor(const ResidualLook& look) {
+  switch (look.shape) {
+    case ResidualShape::none:
+      return "";
+    case ResidualShape::offset:
+      return fmt::format("mostly an offset of {:.2g}", look.value);
+    case ResidualShape::drift:
+      return fmt::format("mostly a drift of {:.2g} per second", look.value);
+    case ResidualShape::ripple:
+      return fmt::format("mostly a ripple of {:.2g} Hz", look.value);
+  }
+  return "";
+}
+
+}  // namespace musclesim
