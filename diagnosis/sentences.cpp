@@ -38,9 +38,11 @@ std::string estimateWords(const Estimate& estimate) {
   const int power = static_cast<int>(std::floor(std::log10(half)));
   const bool begins_with_one = half < 2 * std::pow(10, power);
   const int decimals = (begins_with_one ? 1 : 0) - power;
-  if (decimals > most_decimals) return fmt::format("{:.4g} ({:.4g} to {:.4g})", estimate.value, estimate.low, estimate.high);
-  const int shown = std::max(0, decimals);
-  return fmt::format("{:.{}f} ({:.{}f} to {:.{}f})", estimate.value, shown, estimate.low, shown, estimate.high, shown);
+  auto words = [&](double value) {
+    if (value == 0) return std::string("0");
+    return decimals > most_decimals ? fmt::format("{:.4g}", value) : fmt::format("{:.{}f}", value, std::max(0, decimals));
+  };
+  return fmt::format("{} ({} to {})", words(estimate.value), words(estimate.low), words(estimate.high));
 }
 
 std::string effectSentence(const FoundEffect& effect) {

@@ -118,7 +118,7 @@ text <<'TEXT'
 
 Read it from the top:
 
-- *where*: the stage. Here measured pressures tell: put in place of the simulated ones, they make the gap vanish.
+- *where*: the stage. Here measured pressures tell: put in place of the simulated ones, they make the gap, so it arises before the force. Whether the command came late or the pressure did, only its shape says.
 - *which*: the effects with their probabilities; "none of these" is one of the answers.
 - *how far*: on `bench3.csv`, which neither fitting nor choosing has seen. The nominal refit is what the simulation's own numbers could have gained without any effect, the sham what a meaningless disturbance gains.
 
