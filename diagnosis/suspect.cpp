@@ -216,8 +216,20 @@ std::vector<Suspect> Suspect::numbersOfBits() const {
   return result;
 }
 
+/// A small leak shows as its regulator's lag, a large one as what the regulator cannot hold: they look different.
+std::vector<Suspect> Suspect::smallAndLarge() const {
+  constexpr double large = 10;  // times the end of the usual range
+  std::vector<Suspect> result = {*this, *this};
+  for (const int strength : strengths_) {
+    Coordinate& c = result.back().coordinates_[static_cast<std::size_t>(strength)];
+    c.typical = large * info_.parameters[c.parameter].usual_high;
+  }
+  return result;
+}
+
 std::vector<Suspect> Suspect::variants(const Plant& plant) const {
   if (info_.id == "command_quantisation") return numbersOfBits();
+  if (info_.id == "leak") return smallAndLarge();
   if (info_.id != "contact") return {*this};
   std::vector<Suspect> result;
   auto add = [&](const std::string& plane, double at, const std::string& side, int axis) {

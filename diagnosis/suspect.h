@@ -62,6 +62,7 @@ class Suspect {
   double coordinateOf(const Coordinate& coordinate, double value) const;
   void useCorrectedLaw(const Plant& plant);
   std::vector<Suspect> numbersOfBits() const;
+  std::vector<Suspect> smallAndLarge() const;
 
   EffectInfo info_;
   std::string component_;

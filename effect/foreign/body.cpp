@@ -51,12 +51,12 @@ class GrowingDamping final : public JointEffect {
   double damping_;
 };
 
-/// torque = -k (x + x^3 / (0.6 rad)^2),  x = q - q_0
+/// torque = -k (x + x^3 / (1 rad)^2),  x = q - q_0
 class HardeningSpring final : public JointEffect {
  public:
   explicit HardeningSpring(const EffectValues& v) : stiffness_(v["stiffness_Nm_per_rad"]), rest_deg_(v["rest_deg"]) {}
   void apply(const Moment&) override {
-    constexpr double doubling_rad = 0.6;
+    constexpr double doubling_rad = 1;
     const double x = (angleDeg() - rest_deg_) * rad_per_deg;
     addTorqueNm(-stiffness_ * x * (1 + x * x / (doubling_rad * doubling_rad)));
   }
@@ -148,7 +148,7 @@ class HuntCrossley final : public JointEffect {
  public:
   explicit HuntCrossley(const EffectValues& v) : stiffness_(v["stiffness_Nm_per_deg15"]), plane_deg_(v["plane_deg"]) {}
   void apply(const Moment&) override {
-    constexpr double loss_s_per_deg = 5e-3;
+    constexpr double loss_s_per_deg = 1e-3;
     const double side = plane_deg_ >= 0 ? 1 : -1;
     const double depth = side * (angleDeg() - plane_deg_);
     if (depth <= 0) return;
@@ -163,9 +163,9 @@ class HuntCrossley final : public JointEffect {
 /// The start beside its place in a direction between the lever arm and the muscle's line.
 EffectInfo turnedAttachment() {
   EffectInfo info =
-      entry("turned_attachment", Stage::body, {ComponentKind::muscle}, "start' = start + d (e cos 8 deg + up sin 8 deg)",
+      entry("turned_attachment", Stage::body, {ComponentKind::muscle}, "start' = start + d (e cos 4 deg + up sin 4 deg)",
             {{"offset_mm", "mm", 0, -200, 200, -8, 8, "d"}}, [](const EffectValues&) { return std::make_unique<AttachmentOffset>(); });
-  info.start_turn_deg = 8;
+  info.start_turn_deg = 4;
   return info;
 }
 
@@ -181,12 +181,12 @@ std::vector<ForeignEffect> bodyLaws() {
              {{"damping_Nms_per_rad", "N m s/rad", 0, 0, 10, 0.01, 0.3, "b"}},
              [](const EffectValues& v) { return std::make_unique<GrowingDamping>(v); }),
        "joint_viscous_friction"},
-      {entry("hardening_spring", Stage::body, joint, "torque = -k (x + x^3 / (0.6 rad)^2)",
+      {entry("hardening_spring", Stage::body, joint, "torque = -k (x + x^3 / (1 rad)^2)",
              {{"stiffness_Nm_per_rad", "N m/rad", 0, 0, 1e3, 0.1, 1.5, "k"}, {"rest_deg", "deg", 0, -180, 180, -20, 20, "of x = 0", true}},
              [](const EffectValues& v) { return std::make_unique<HardeningSpring>(v); }),
        "joint_stiffness"},
       {entry("dragged_payload", Stage::body, hand, "point mass with drag -c m |v| v",
-             {{"mass_kg", "kg", 0, -1e3, 1e3, 0.05, 0.6, "mass"}, {"drag_per_m", "1/m", 1, 0, 1e3, 0.5, 3, "c", true}},
+             {{"mass_kg", "kg", 0, -1e3, 1e3, 0.05, 0.6, "mass"}, {"drag_per_m", "1/m", 0.3, 0, 1e3, 0.1, 0.6, "c", true}},
              [](const EffectValues& v) { return std::make_unique<DraggedPayload>(v); }),
        "payload"},
       {entry("swaying_base", Stage::body, {ComponentKind::base}, "tilt (1 + a sin(2 pi f t))",
@@ -204,7 +204,7 @@ std::vector<ForeignEffect> bodyLaws() {
              {{"force_x_N", "N", 0, -1e4, 1e4, -8, 8, "F_0"},
               {"force_y_N", "N", 0, -1e4, 1e4, -8, 8, "F_0"},
               {"force_z_N", "N", 0, -1e4, 1e4, 0, 0, "F_0"},
-              {"stretch_mm", "mm", 200, 1, 1e6, 100, 500, "L", true}},
+              {"stretch_mm", "mm", 1000, 1, 1e6, 500, 2000, "L", true}},
              [](const EffectValues& v) { return std::make_unique<WeakSpring>(v); }),
        "external_force"},
       {entry("hunt_crossley", Stage::body, joint, "torque = -k x^1.5 (1 + c dx/dt)",

@@ -15,7 +15,7 @@ namespace {
 /// u'(t) = u(t - T - J w(t)),  w wanders between -1 and 1
 class WanderingDelay final : public MuscleRatioEffect {
  public:
-  explicit WanderingDelay(const EffectValues& v) : delay_s_(v["delay_s"]), jitter_s_(v["jitter_s"]) {}
+  explicit WanderingDelay(const EffectValues& v) : delay_s_(v["delay_s"]), jitter_s_(v["jitter_ratio"] * v["delay_s"]) {}
   void attach(const EffectPlace& place) override {
     MuscleRatioEffect::attach(place);
     seed_ = place.simulation.seed() + static_cast<std::uint64_t>(place.muscle);
@@ -62,7 +62,7 @@ class StickingDeadBand final : public MuscleRatioEffect {
 
  private:
   double output(double input, const Moment&) override {
-    constexpr double closing_ratio = 0.6;
+    constexpr double closing_ratio = 0.75;
     open_ = input >= (open_ ? closing_ratio : 1) * threshold_;
     return open_ ? input : 0;
   }
@@ -100,15 +100,15 @@ class MostlySwapped final : public RatioEffect {
 std::vector<ForeignEffect> commandLaws() {
   const std::vector<ComponentKind> muscle = {ComponentKind::muscle};
   return {
-      {entry("wandering_delay", Stage::command, muscle, "u'(t) = u(t - T - J w(t)), w wanders in -1 .. 1",
-             {{"delay_s", "s", 0, 0, 2, 0.01, 0.1, "T"}, {"jitter_s", "s", 0.004, 0, 1, 0.001, 0.01, "J", true}},
+      {entry("wandering_delay", Stage::command, muscle, "u'(t) = u(t - T (1 + J w(t))), w wanders in -1 .. 1",
+             {{"delay_s", "s", 0, 0, 2, 0.01, 0.1, "T"}, {"jitter_ratio", "", 0.1, 0, 1, 0.05, 0.3, "J", true}},
              [](const EffectValues& v) { return std::make_unique<WanderingDelay>(v); }),
        "transport_delay"},
       {entry("unequal_steps", Stage::command, muscle, "u' = (k + c sin(2 pi k / n)) / n, k = floor(n u), n = 2^bits",
-             {{"bits", "bit", INFINITY, 1, INFINITY, 4, 7, "resolution"}, {"bow_levels", "", 0.2, 0, 100, 0.1, 0.4, "c", true}},
+             {{"bits", "bit", INFINITY, 1, INFINITY, 4, 7, "resolution"}, {"bow_levels", "", 0.1, 0, 100, 0.05, 0.2, "c", true}},
              [](const EffectValues& v) { return std::make_unique<UnequalSteps>(v); }),
        "command_quantisation"},
-      {entry("sticking_dead_band", Stage::command, muscle, "0 until u reaches the threshold, then u until it falls below 0.6 of it",
+      {entry("sticking_dead_band", Stage::command, muscle, "0 until u reaches the threshold, then u until it falls below 0.75 of it",
              {{"threshold", "", 0, 0, 1, 0.1, 0.35, "of full scale"}},
              [](const EffectValues& v) { return std::make_unique<StickingDeadBand>(v); }),
        "command_dead_band"},

@@ -201,7 +201,7 @@ std::vector<ForeignEffect> forceLaws() {
              [](const EffectValues& v) { return std::make_unique<WarmUp>(v); }),
        "force_drift"},
       {entry("bent_law", Stage::force, muscle, "F' = F (1 + s x + c x^2), x = r - 1/2",
-             {{"slope", "", 0, -5, 5, -0.4, 0.4, "s"}, {"curvature", "", 0, -20, 20, -1.5, 1.5, "c"}},
+             {{"slope", "", 0, -5, 5, -0.4, 0.4, "s"}, {"curvature", "", 0, -20, 20, -0.7, 0.7, "c"}},
              [](const EffectValues& v) { return std::make_unique<BentForce>(1, v["slope"], v["curvature"]); }),
        "force_law"},
   };

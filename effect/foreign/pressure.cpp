@@ -154,7 +154,7 @@ std::vector<ForeignEffect> pressureLaws() {
              {{"leak_per_s", "1/s", 0, 0, 100, 0.2, 2, "k"}}, [](const EffectValues& v) { return std::make_unique<ChokedLeak>(v); }),
        "leak"},
       {entry("tank", Stage::pressure, {ComponentKind::all_muscles}, "ds/dt = (1 - s) / T - c sum max(0, du/dt), p = min(u, s)",
-             {{"loss_per_fill", "", 0, 0, 10, 0.2, 0.8, "c"}, {"recovery_s", "s", 1, 0.01, 100, 0.3, 3, "T", true}},
+             {{"loss_per_fill", "", 0, 0, 10, 0.2, 0.8, "c"}, {"recovery_s", "s", 0.3, 0.01, 100, 0.1, 0.6, "T", true}},
              [](const EffectValues& v) { return std::make_unique<Tank>(v); }),
        "supply_droop"},
       {entry("braid_volume", Stage::pressure, muscle, "dp/dt = (u - p) / tau - n (p + p_atm) (dV/dt) / V, V ~ l (b^2 - l^2)",

@@ -81,6 +81,18 @@ TEST_F(PlantedRig, BitsAreRoundedAndTruncated) {
   EXPECT_NE(variants[0].at({}), variants[1].at({}));
 }
 
+TEST_F(PlantedRig, ALeakIsLookedAtAsASmallAndAsALargeOne) {
+  const std::vector<Suspect> leaks = suspect("leak", "muscle_0").variants(plant_);
+  ASSERT_EQ(leaks.size(), 2U);
+  auto perSecond = [](const Suspect& leak) {
+    for (const auto& [name, value] : leak.valuesAt(leak.typical()))
+      if (name == "leak_per_s") return value;
+    return 0.0;
+  };
+  EXPECT_LT(perSecond(leaks[0]), 0.05);
+  EXPECT_NEAR(perSecond(leaks[1]), 0.5, 1e-9);
+}
+
 TEST_F(PlantedRig, WhatIsLeftOutStaysNeutral) {
   Suspect force = suspect("external_force", "hand");
   const auto all = force.valuesAt(force.typical());

@@ -259,9 +259,9 @@ TEST(AttachmentOffset, MovesTheStartOfTheMuscle) {
 }
 
 TEST(AttachmentOffset, OfTheForeignLawIsTurnedToTheVertical) {
-  // 8 deg from the lever arm: the muscle runs from (35 + 8 cos, 240 + 8 sin) to (35, -20).
+  // 4 deg from the lever arm: the muscle runs from (35 + 8 cos, 240 + 8 sin) to (35, -20).
   Simulation simulation(optionsWith({{"foreign.turned_attachment", "muscle_0", {{"offset_mm", 8.0}}}}));
-  const double turn_rad = 8 * rad_per_deg;
+  const double turn_rad = 4 * rad_per_deg;
   EXPECT_NEAR(simulation.build("elbow").truth().length_mm[0], std::hypot(260 + 8 * std::sin(turn_rad), 8 * std::cos(turn_rad)), 1e-6);
 }
 
