@@ -17,8 +17,9 @@ namespace musclesim {
 namespace {
 
 constexpr std::size_t stage_count = 5;
-constexpr double per_misfit = 5;  ///< ln of the odds of a stage per unit of log misfit of its best disturbance
-constexpr double hardly = 0.03;   ///< factor for a stage that a substitution speaks against
+constexpr double per_misfit = 5;              ///< ln of the odds of a stage per unit of log misfit of its best disturbance
+constexpr double per_further_strength = 0.3;  ///< and per strength of it beyond the first: what has many resembles much
+constexpr double hardly = 0.03;               ///< factor for a stage that a substitution speaks against
 
 using StageWeights = std::array<double, stage_count>;
 
@@ -41,7 +42,8 @@ StageWeights byLikeness(const Comparison& comparison, const std::vector<Suspect>
   for (std::size_t i = 0; i < suspects.size(); ++i) {
     if (motion_sensors_acquitted && isOneMotionSensor(suspects[i])) continue;
     double& misfit = best[indexOf(suspects[i].info().stage)];
-    misfit = std::min(misfit, signatures[i].log_misfit / comparison.affectedCells(residual));
+    const double further = std::max(0.0, static_cast<double>(suspects[i].strengths().size()) - 1);
+    misfit = std::min(misfit, signatures[i].log_misfit / comparison.affectedCells(residual) + per_further_strength / per_misfit * further);
   }
   const double least = *std::ranges::min_element(best);
   StageWeights weights{};

@@ -196,9 +196,17 @@ TEST(Diagnose, TakesNoSecondCauseThatOnlyMendsTheLawOfTheFirst) {
   EXPECT_EQ(found.chosen, std::vector<std::string>{"valve_lag@muscle_0"}) << diagnosisSummary(found);
 }
 
-TEST(Diagnose, TellsWhatComesNearestWhereNothingDeservesBelief) {
+TEST(Diagnose, OffersNothingThatGainsNoMoreThanWhatHasNoMeaning) {
   const Diagnosis found = diagnose(plant({{"valve_lag", "all", {{"fill_time_constant_s", 0.15}, {"vent_time_constant_s", 0.15}}}}),
                                    few({"sensor_backlash", "force_drift"}));
+  ASSERT_EQ(found.verdict, Verdict::unexplained) << diagnosisSummary(found);
+  EXPECT_TRUE(found.attempt.effects.empty());
+  EXPECT_FALSE(contains(diagnosisJson(found), "\"attempt\""));
+}
+
+TEST(Diagnose, TellsWhatComesNearestWhereNothingDeservesBelief) {
+  const Diagnosis found = diagnose(plant({{"valve_lag", "all", {{"fill_time_constant_s", 0.15}, {"vent_time_constant_s", 0.15}}}}),
+                                   few({"transport_delay"}));
   ASSERT_EQ(found.verdict, Verdict::unexplained) << diagnosisSummary(found);
   EXPECT_TRUE(found.chosen.empty());
   ASSERT_FALSE(found.attempt.effects.empty());
