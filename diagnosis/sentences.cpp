@@ -180,10 +180,18 @@ std::string effectWords(const Diagnosis& d, const std::string& label) {
   return parameters.empty() ? words : words + " with " + parameters;
 }
 
-std::string listWords(const Diagnosis& d, const std::vector<std::string>& labels, const std::string& link) {
+/// "valve lag on muscle 1 together with payload on hand".
+std::string listWords(const std::vector<std::string>& labels) {
   std::vector<std::string> words;
-  for (const std::string& label : labels) words.push_back(effectWords(d, label));
-  return fmt::format("{}", fmt::join(words, link));
+  for (const std::string& label : labels) words.push_back(labelWords(label));
+  return fmt::format("{}", fmt::join(words, " together with "));
+}
+
+/// The same with parameters.
+std::string chosenWords(const Diagnosis& d) {
+  std::vector<std::string> words;
+  for (const std::string& label : d.chosen) words.push_back(effectWords(d, label));
+  return fmt::format("{}", fmt::join(words, " together with "));
 }
 
 /// What no explanation should hide: a rest that stands far out of the noise. RMS / floor = sqrt(1 + normalised gap).
@@ -273,7 +281,7 @@ std::vector<std::string> unexplainedSentences(const Diagnosis& d) {
   sentences.push_back(fmt::format(
       "What comes nearest, {}, removes {} of the gap on data that neither fitting nor choosing had seen; attempt.json holds it, to build "
       "on, not to believe.",
-      listWords(d, d.attempt.effects, " together with "), percentWords(d.attempt.shrink_percent)));
+      listWords(d.attempt.effects), percentWords(d.attempt.shrink_percent)));
   sentences.push_back(remainder(d.attempt.after));
   return sentences;
 }
@@ -283,7 +291,7 @@ std::vector<std::string> foundSentences(const Diagnosis& d) {
   return {d.where.empty() ? "" : whereSentence(d) + ".",
           fmt::format("The best explanation ({} likely) is {}; adding {} removes {}{} of the gap on data that neither fitting nor choosing "
                       "had seen.",
-                      probabilityWords(best == d.explanations.end() ? 0 : best->probability), listWords(d, d.chosen, " together with "),
+                      probabilityWords(best == d.explanations.end() ? 0 : best->probability), chosenWords(d),
                       d.chosen.size() > 1 ? "them" : "it", percentWords(d.shrink_percent), intervalWords(d)),
           remainder(d.after), noneWords(d), otherwise(d)};
 }
