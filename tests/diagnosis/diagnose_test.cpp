@@ -205,8 +205,8 @@ TEST(Diagnose, OffersNothingThatGainsNoMoreThanWhatHasNoMeaning) {
 }
 
 TEST(Diagnose, TellsWhatComesNearestWhereNothingDeservesBelief) {
-  const Diagnosis found = diagnose(plant({{"valve_lag", "all", {{"fill_time_constant_s", 0.15}, {"vent_time_constant_s", 0.15}}}}),
-                                   few({"transport_delay"}));
+  const Diagnosis found =
+      diagnose(plant({{"valve_lag", "all", {{"fill_time_constant_s", 0.15}, {"vent_time_constant_s", 0.15}}}}), few({"transport_delay"}));
   ASSERT_EQ(found.verdict, Verdict::unexplained) << diagnosisSummary(found);
   EXPECT_TRUE(found.chosen.empty());
   ASSERT_FALSE(found.attempt.effects.empty());
