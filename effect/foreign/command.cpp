@@ -12,7 +12,7 @@ namespace musclesim::foreign {
 
 namespace {
 
-/// u'(t) = u(t - T - J w(t)),  w wanders between -1 and 1
+/// u'(t) = u(t - T (1 + J w(t))),  w wanders between -1 and 1
 class WanderingDelay final : public MuscleRatioEffect {
  public:
   explicit WanderingDelay(const EffectValues& v) : delay_s_(v["delay_s"]), jitter_s_(v["jitter_ratio"] * v["delay_s"]) {}
