@@ -223,7 +223,55 @@ void Attributor::refit(Explanation& explanation, const Comparison& comparison, i
 void Attributor::fitToAll(Explanation& explanation) const {
   if (explanation.fitted_to_all) return;
   refit(explanation, fit_, options_.max_effects > few_effects ? many_rounds : last_rounds, Fidelity::fine);
+  takeFromCounterparts(explanation);
+  explanation.is_hollow = isHollow(explanation);
   explanation.fitted_to_all = true;
+}
+
+/// What the recordings do not determine takes the value of the other direction: a valve of which only the venting was recorded fills at the
+/// same rate, for all that is known.
+void Attributor::takeFromCounterparts(Explanation& explanation) const {
+  constexpr double noticeable = 0.01;  // log misfit per affected cell
+  Explanation changed = explanation;
+  Eigen::Index first = 0;
+  for (const std::size_t index : explanation.suspects) {
+    const Suspect& suspect = result_.suspects[index];
+    for (int k = 0; k < suspect.coordinateCount(); ++k) {
+      const int other = suspect.counterpartOf(k);
+      if (other < 0 || std::isfinite(explanation.half_width[first + k]) || !std::isfinite(explanation.half_width[first + other])) continue;
+      changed.z[first + k] = suspect.coordinateLike(k, other, explanation.z[first + other]);
+    }
+    first += suspect.coordinateCount();
+  }
+  changed.z = clampedAll(changed.suspects, changed.z);
+  if (changed.z == explanation.z || plant_.interrupted()) return;
+  refit(changed, fit_, 0, Fidelity::fine);
+  if (changed.residual.size() == fit_.size() && changed.log_misfit < explanation.log_misfit + noticeable) explanation = changed;
+}
+
+/// Whether one of its effects does as well at next to no strength, with its shape as it is: a leak without a leak is its regulator's lag.
+bool Attributor::isHollow(const Explanation& explanation) const {
+  constexpr double next_to_nothing = 1e-3, noticeable = 0.02;  // typical strengths; log misfit per affected cell
+  if (explanation.residual.size() != fit_.size()) return false;
+  const Eigen::VectorXd as_it_is = fit_.predicted(modelOf(explanation));
+  Eigen::Index first = 0;
+  for (const std::size_t index : explanation.suspects) {
+    const Suspect& suspect = result_.suspects[index];
+    const auto strength_count = static_cast<int>(suspect.strengths().size());
+    if (strength_count > 0 && strength_count < suspect.coordinateCount() && as_it_is.size() && !plant_.interrupted()) {
+      Explanation weak = explanation;
+      for (const int strength : suspect.strengths()) weak.z[first + strength] = next_to_nothing;
+      weak.z = clampedAll(weak.suspects, weak.z);
+      const Eigen::VectorXd predicted = fit_.predicted(modelOf(weak));
+      on_simulation_();
+      if (predicted.size() == fit_.size() && predicted.allFinite()) {
+        const double misfit = fit_.logMisfit(explanation.residual + as_it_is - predicted) / fit_.affectedCells(nominal_residual_);
+        if (misfit < explanation.log_misfit + noticeable) return true;
+      }
+    }
+    first += suspect.coordinateCount();
+  }
+  return false;
 }
 
 /// The last suspect's strengths are taken down until the prediction on the look is no worse than without it.
@@ -321,22 +369,36 @@ void Attributor::fitAlone(const std::vector<std::size_t>& chosen) {
   fitTogether(std::move(candidates), single_reach);
 }
 
-/// What looks alike acts on the same component; where there are many, most of it may not have been among the first.
+/// What looks alike acts on the same component, most of all in the same stage; where there are many, most of it may not have been among the
+/// first.
 void Attributor::fitMoreOnTheBestComponent() {
   if (result_.explanations.empty()) return;
-  const std::string component = result_.suspects[result_.explanations.front().suspects.front()].component();
+  const Suspect& best = result_.suspects[result_.explanations.front().suspects.front()];
+  // A plant with one muscle has no other place for what acts on all.
+  const auto placeOf = [this](const Suspect& suspect) {
+    return plant_.muscleCount() == 1 && suspect.component() == "all" ? std::string("muscle_0") : suspect.component();
+  };
+  const std::string component = placeOf(best);
   std::set<std::string> fitted;
   for (const Explanation& explanation : result_.explanations) {
     const Suspect& suspect = result_.suspects[explanation.suspects.front()];
-    if (suspect.component() == component) fitted.insert(suspect.label());
+    if (placeOf(suspect) == component) fitted.insert(suspect.label());
   }
-  if (fitted.size() >= component_count) return;
-  std::vector<double> log_misfit;
-  for (std::size_t s = 0; s < result_.suspects.size(); ++s) {
-    const bool other = result_.suspects[s].component() != component || fitted.contains(result_.suspects[s].label());
-    log_misfit.push_back(other ? std::numeric_limits<double>::infinity() : result_.signatures[s].log_misfit);
-  }
-  fitAlone(survivors(log_misfit, component_count - fitted.size(), false));
+  const auto chosenAmong = [&](std::size_t count, const std::function<bool(const Suspect&)>& fits) {
+    std::vector<double> log_misfit;
+    for (std::size_t s = 0; s < result_.suspects.size(); ++s) {
+      const bool wanted = fits(result_.suspects[s]) && !fitted.contains(result_.suspects[s].label());
+      log_misfit.push_back(wanted ? result_.signatures[s].log_misfit : std::numeric_limits<double>::infinity());
+    }
+    return survivors(log_misfit, count, false);
+  };
+  const auto is_there = [&](const Suspect& suspect) { return placeOf(suspect) == component; };
+  const auto is_beside = [&](const Suspect& suspect) { return is_there(suspect) && suspect.info().stage == best.info().stage; };
+  std::vector<std::size_t> chosen = chosenAmong(component_count, is_beside);
+  for (const std::size_t index : chosen) fitted.insert(result_.suspects[index].label());
+  if (fitted.size() < component_count)
+    for (const std::size_t index : chosenAmong(component_count - fitted.size(), is_there)) chosen.push_back(index);
+  fitAlone(chosen);
 }
 
 /// A further effect is looked for beside the likeliest explanations of `count` - 1 effects. Returns whether there was anything to look for.
@@ -422,7 +484,8 @@ void Attributor::weigh() {
 const Explanation& Attributor::nearest() const {
   constexpr double worth_an_effect = 0.05;  // log misfit per affected cell
   return *std::ranges::min_element(result_.explanations, {}, [](const Explanation& explanation) {
-    return explanation.log_misfit + worth_an_effect * static_cast<double>(explanation.suspects.size());
+    const double hollow = explanation.is_hollow ? std::numeric_limits<double>::infinity() : 0;
+    return explanation.log_misfit + worth_an_effect * static_cast<double>(explanation.suspects.size()) + hollow;
   });
 }
 

@@ -59,6 +59,8 @@ class Attributor {
   void refit(Explanation& explanation, const Comparison& comparison, int rounds, Fidelity fidelity) const;
   static constexpr int more_rounds = 6;  ///< of a fit that is worth going on with
   void fitToAll(Explanation& explanation) const;
+  void takeFromCounterparts(Explanation& explanation) const;
+  bool isHollow(const Explanation& explanation) const;
   Comparison firstOfLook() const;
   void keepNearestVariants();
   std::vector<std::size_t> worthLookingAt() const;

@@ -28,9 +28,12 @@ constexpr double named = 0.5;     ///< least probability of none_of_these that m
 constexpr double as_good = 0.05;  ///< share of the best explanation's probability from which on one cannot be told from it
 constexpr double excited = 1;     ///< a typical effect must change some signal by that many floors
 
-/// Of the program, for a model of the recordings' robot.
-std::string modelOptions(const RecordingInfo& info) {
+/// Of the program, for a model of the recordings' robot. Without a hand there is no task.
+std::string modelOptions(const RecordingInfo& info, bool has_hand) {
   std::string options = "--robot " + info.robot;
+  if (!has_hand) options += " --controller hold";
+  if (info.physics && *info.physics != nameOf(PhysicsKind::si)) options += " --physics " + *info.physics;
+  if (info.initial_state) options += " --initial-state " + *info.initial_state;
   for (const auto& [name, value] : info.robot_parameters) {
     options += " --set " + (name.find('.') == std::string::npos ? info.robot + "." : "") + name + "=";
     options += std::visit(
@@ -93,6 +96,7 @@ class Run {
     const auto start = std::chrono::steady_clock::now();
     describe();
     measureGap();
+    look();
     if (diagnosis_.verdict != Verdict::no_gap && diagnosis_.verdict != Verdict::not_excited) explain();
     finish();
     diagnosis_.simulation_count = plant_.simulationCount();
@@ -105,7 +109,7 @@ class Run {
  private:
   void describe() {
     diagnosis_.robot = plant_.robot();
-    diagnosis_.model_options = modelOptions(plant_.recordings().front().info);
+    diagnosis_.model_options = modelOptions(plant_.recordings().front().info, plant_.hasHand());
     for (const Recording& recording : plant_.recordings()) {
       diagnosis_.recordings.push_back(recording.file);
       for (const std::string& note : recording.notes) diagnosis_.notes.push_back(note);
@@ -113,8 +117,23 @@ class Run {
     for (const std::string& note : plant_.notes()) diagnosis_.notes.push_back(note);
     for (const auto& [name, value] : plant_.nominalParameters()) diagnosis_.refitted.push_back(name);
     diagnosis_.held_out = plant_.split().held_out_words;
-    if (std::ranges::any_of(plant_.signals(), [](const auto& s) { return s.floor.source == NoiseFloor::Source::quiet_rows; }))
-      diagnosis_.notes.push_back("no repeats and no noise_std: the noise floor was estimated from quiet rows");
+    describeCandidates();
+    std::vector<std::string> estimated;
+    for (const ComparedSignal& signal : plant_.signals())
+      if (signal.floor.source == NoiseFloor::Source::quiet_rows) estimated.push_back(signal.name);
+    if (!estimated.empty())
+      diagnosis_.notes.push_back(fmt::format("no repeats and no noise_std of {}: the noise floor was estimated from quiet rows",
+                                             fmt::join(estimated, ", ")));
+  }
+
+  /// Throws BadParameter if nothing could be an answer.
+  void describeCandidates() {
+    if (options_.candidates.empty() && options_.exclude.empty()) return;
+    for (const Suspect& suspect : suspects(plant_, options_))
+      if (std::ranges::find(diagnosis_.candidates, suspect.info().id) == diagnosis_.candidates.end())
+        diagnosis_.candidates.push_back(suspect.info().id);
+    if (diagnosis_.candidates.empty())
+      throw BadParameter(fmt::format("--candidates and --exclude leave no effect that could show in recordings of {}", plant_.robot()));
   }
 
   void measureGap() {
@@ -131,12 +150,17 @@ class Run {
     diagnosis_.before = diagnosis_.after = held_out_.gap(before_residual_);
     const bool small = withinFloor(plant_, all.gap(all.measured() - predicted));
     diagnosis_.verdict = small ? (commandsMove(plant_.recordings()) ? Verdict::no_gap : Verdict::not_excited) : Verdict::unexplained;
-    if (small) diagnosis_.explanations.push_back({{}, 1});
+    if (diagnosis_.verdict == Verdict::no_gap) diagnosis_.explanations.push_back({{}, 1});
+  }
+
+  /// What the recordings could not have shown is told whatever the verdict: that there is no gap does not mean that there is no effect.
+  void look() {
+    monitor_.phase("looking at every effect once", static_cast<long>(suspects(plant_, DiagnosisOptions{}).size()));
+    attributor_.look();
+    listNotExcited();
   }
 
   void explain() {
-    monitor_.phase("looking at every effect once", static_cast<long>(suspects(plant_, DiagnosisOptions{}).size()));
-    attributor_.look();
     const Attribution& attribution = attributor_.result();
     if (attribution.looked_at_count < attribution.suspects.size())
       diagnosis_.notes.push_back(fmt::format("of {} possible causes the {} nearest on the first recording were looked at on the others too",
@@ -145,7 +169,6 @@ class Run {
         locate(attributor_.lookComparison(), attribution.suspects, attribution.signatures, attributor_.lookResidual());
     diagnosis_.where = location.places;
     diagnosis_.where_method = location.method;
-    listNotExcited();
     monitor_.phase("fitting the likely ones", 600);
     attributor_.decide();
     if (!plant_.interrupted()) choose();
@@ -247,7 +270,11 @@ class Run {
     ambiguity();
     // What was found shows, if not where it is as strong as usual.
     std::erase_if(diagnosis_.not_excited,
-                  [&](const std::string& label) { return found.contains(label) && found[label].probability >= listed; });
+                  [&](const std::string& label) {
+                    const auto& tried = diagnosis_.attempt.effects;
+                    return (found.contains(label) && found[label].probability >= listed) ||
+                           std::ranges::find(tried, label) != tried.end();
+                  });
     for (FoundEffect& effect : diagnosis_.effects) effect.shrink_percent = singleShrink(effect.label());
   }
 
@@ -292,8 +319,11 @@ class Run {
     const auto at = suspect.valuesAt(z), one = suspect.valuesAt(suspect.clamped(z - half)),
                other = suspect.valuesAt(suspect.clamped(z + half));
     std::map<std::string, Estimate> result;
-    for (std::size_t i = 0; i < at.size(); ++i)
-      result[at[i].first] = {at[i].second, std::min(one[i].second, other[i].second), std::max(one[i].second, other[i].second)};
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      const auto coordinate = static_cast<Eigen::Index>(i);  // those that are not fitted come last
+      result[at[i].first] = {at[i].second, std::min(one[i].second, other[i].second), std::max(one[i].second, other[i].second),
+                             coordinate >= count || std::isfinite(half[coordinate])};
+    }
     return result;
   }
 
@@ -302,7 +332,8 @@ class Run {
     std::vector<const Explanation*> result;
     const auto& all = attributor_.result().explanations;
     for (const Explanation& explanation : all)
-      if (explanation.suspects.size() == all.front().suspects.size() && explanation.probability >= as_good * all.front().probability)
+      if (explanation.suspects.size() == all.front().suspects.size() && explanation.probability > 0 &&
+          explanation.probability >= as_good * all.front().probability)
         result.push_back(&explanation);
     return result;
   }

@@ -27,8 +27,10 @@ Json toJson(const Gap& gap) {
 
 Json toJson(const FoundEffect& effect) {
   Json parameters = Json::object();
-  for (const auto& [name, estimate] : effect.parameters)
+  for (const auto& [name, estimate] : effect.parameters) {
     parameters[name] = {{"value", toJson(estimate.value)}, {"ci95", {toJson(estimate.low), toJson(estimate.high)}}};
+    if (!estimate.is_determined) parameters[name]["determined"] = false;
+  }
   return {{"id", effect.id},
           {"component", effect.component},
           {"probability", effect.probability},
@@ -98,6 +100,7 @@ std::string diagnosisJson(const Diagnosis& d, const std::string& schedule_file) 
   json["explanations"] = Json::array();
   for (const ExplanationProbability& explanation : d.explanations)
     json["explanations"].push_back({{"effects", explanation.effects}, {"probability", explanation.probability}});
+  if (!d.candidates.empty()) json["candidates"] = d.candidates;
   json["chosen"] = d.chosen;
   json["ambiguity_set"] = d.ambiguity_set;
   json["gap"] = gapJson(d);
@@ -126,7 +129,7 @@ std::string diagnosisJson(const Diagnosis& d, const std::string& schedule_file) 
 std::string diagnosisSummary(const Diagnosis& d) {
   std::string text = verdictSentence(d) + "\n";
   if (d.partial) text = "Interrupted: what follows is only what was known by then.\n" + text;
-  if (!d.tuned.empty()) text += fmt::format("tuned     {} numbers of the model first, see nominal.toml\n", d.tuned.size());
+  if (!d.tuned.empty()) text += fmt::format("tuned     {} of the model first, see nominal.toml\n", counted(d.tuned.size(), "number"));
   if (!d.where.empty()) text += fmt::format("where     {}\n", whereSentence(d));
   for (std::size_t i = 0; i < std::min<std::size_t>(3, d.effects.size()); ++i)
     text +=

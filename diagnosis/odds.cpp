@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 namespace musclesim {
@@ -69,6 +70,7 @@ double Odds::beforehand(const Explanation& explanation) const {
 }
 
 double Odds::ofExplanation(const Explanation& explanation) const {
+  if (explanation.is_hollow) return -std::numeric_limits<double>::infinity();
   return beforehand(explanation) + ofMisfit(explanation.judged());
 }
 

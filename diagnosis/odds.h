@@ -20,6 +20,7 @@ struct Explanation {
   Eigen::VectorXd tuning = {};             ///< coordinates of the numbers of the model that are fitted together with the effects
   Eigen::VectorXd tuning_half_width = {};  ///< Plant::tunedAt tells the values
   bool fitted_to_all = false;              ///< not only to the first look
+  bool is_hollow = false;                  ///< as good with an effect at next to no strength: that is not what acts
   Eigen::VectorXd unseen = {};  ///< residual where every stretch is predicted from a fit to the others; empty where that was not tried
   /// What the explanation is judged by.
   const Eigen::VectorXd& judged() const { return unseen.size() ? unseen : residual; }
@@ -46,7 +47,7 @@ class Odds {
   Odds(const Comparison& comparison, const Eigen::VectorXd& nominal_residual, const std::vector<Suspect>& suspects)
       : comparison_(comparison), nominal_residual_(nominal_residual), suspects_(suspects) {}
 
-  /// ln of the odds of an explanation, but for a constant.
+  /// ln of the odds of an explanation, but for a constant; of a hollow one minus infinity.
   double ofExplanation(const Explanation& explanation) const;
   /// The same of no effect at all.
   double ofNoEffect() const;

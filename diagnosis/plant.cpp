@@ -17,12 +17,12 @@ namespace musclesim {
 
 namespace {
 
-constexpr double ms_per_s = 1000;
 constexpr int fewest_to_coarsen = 8;  ///< with fewer internal steps than that a simulation is cheap and as coarse as it can be
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* held_effect = "sensor_dropout";
 /// Friction within the muscles and the curvature of Eq. 1.
-constexpr const char* nominal_names[] = {"muscle.slider_friction_N", "muscle.hinge_friction_Nm", "force_law.b"};
+constexpr const char* hinge_friction = "muscle.hinge_friction_Nm";
+constexpr const char* nominal_names[] = {"muscle.slider_friction_N", hinge_friction, "force_law.b"};
 
 void requireDiagnosable(const std::vector<Recording>& recordings) {
   if (recordings.empty()) throw BadParameter("diagnosis: there is no recording");
@@ -89,8 +89,7 @@ bool hasNumbers(const Signal& signal) {
 }  // namespace
 
 Plant::Plant(std::vector<Recording> recordings, const DiagnosisOptions& options) : recordings_(std::move(recordings)), options_(options) {
-  if (options.model.robot)
-    for (Recording& recording : recordings_) recording.info.robot = *options.model.robot;
+  for (Recording& recording : recordings_) replaceRobot(recording.info, options.model.robot);
   requireDiagnosable(recordings_);
   for (const auto* ids : {&options.candidates, &options.exclude})
     for (const std::string& id : *ids) effectInfo(id);  // throws for an unknown one
@@ -100,8 +99,9 @@ Plant::Plant(std::vector<Recording> recordings, const DiagnosisOptions& options)
   reference_->build(info.robot);
   reference_->parameters().requireAllKnown();
   for (const std::string& name : options.tune) tuned_.push_back(numberNamed(name));
+  const bool has_hinges = std::ranges::any_of(reference_->actuators(), [](const auto& actuator) { return !actuator->hinges().empty(); });
   for (const Parameter& parameter : reference_->parameters().declared())
-    if (std::ranges::find(nominal_names, parameter.name) != std::end(nominal_names) ||
+    if ((std::ranges::find(nominal_names, parameter.name) != std::end(nominal_names) && (has_hinges || parameter.name != hinge_friction)) ||
         std::ranges::find(options.tune, parameter.name) != options.tune.end())
       nominal_.emplace_back(parameter.name, std::get<double>(parameter.value));
   compareSignals();
@@ -148,6 +148,9 @@ void Plant::compareSignals() {
       measured_[i].push_back(found ? found->values : std::vector<double>{});
     }
   }
+  for (const Recording& recording : recordings_)
+    for (const std::string& name : unknownSignals(recording, reference_->robot().signalNames()))
+      notes_.push_back(fmt::format("{}: {} has no {}; it is not compared", recording.file, robot(), name));
   if (signals_.empty())
     throw BadFile(recordings_.front().file,
                   "it has no signal that can be compared: one that changes and that the model also has, for example length_0_mm");
@@ -206,6 +209,10 @@ double Plant::tensionN(int muscle, double pressure_ratio, double length_mm) cons
 
 RobotDrawing Plant::drawing() const {
   return drawingOf(*reference_);
+}
+
+bool Plant::hasHand() const {
+  return reference_->robot().getState().hand_mm.has_value();
 }
 
 /// Coarse steps only where there is something to gain.

@@ -9,6 +9,7 @@
 
 #include "musclesim/diagnosis/diagnosis.h"
 #include "musclesim/effect/catalogue.h"
+#include "musclesim/units.h"
 #include "noise_floor.h"
 #include "prediction_store.h"
 
@@ -94,10 +95,11 @@ class Plant {
 
   /// The robot as built.
   RobotDrawing drawing() const;
+  bool hasHand() const;
 
   /// Different simulations, and seconds of them.
   long simulationCount() const { return simulation_count_; }
-  double simulatedS() const { return static_cast<double>(simulated_ms_) * 1e-3; }
+  double simulatedS() const { return static_cast<double>(simulated_ms_) / ms_per_s; }
   bool interrupted() const { return options_.interrupted && options_.interrupted(); }
 
  private:

@@ -65,15 +65,29 @@ double samplesPerIndependent(const Comparison& comparison, const Eigen::VectorXd
   return sum / cell_count;
 }
 
+/// Half of the 95 % interval of every coordinate; infinite where the data do not determine it, alone or beside the others.
 Eigen::VectorXd halfWidths(const Comparison& comparison, const Point& point, const Eigen::MatrixXd& jacobian) {
+  constexpr double nothing = 1e-12, flat = 1e-8, takes_part = 0.1;
   // Weighted residuals have mean square 1 / rows per cell where the misfit is the residual's own size.
   Eigen::VectorXd per_sample = comparison.weights(point.residual);
   for (const Comparison::Cell& cell : comparison.cells())
     per_sample.segment(cell.first, cell.count()) *= cell.block > 0 ? 0 : std::sqrt(static_cast<double>(cell.count()));
   const Eigen::MatrixXd weighted = per_sample.asDiagonal() * jacobian;
   const Eigen::MatrixXd information = weighted.transpose() * weighted / samplesPerIndependent(comparison, point.residual);
-  const Eigen::MatrixXd covariance = information.completeOrthogonalDecomposition().pseudoInverse();
-  return normal_95 * covariance.diagonal().cwiseMax(0).cwiseSqrt();
+  const Eigen::ArrayXd size = information.diagonal().array().max(0).sqrt();
+  // Of unit size, so that a direction that changes nothing shows whatever the units.
+  const Eigen::VectorXd per_size = (size > nothing).select(size.inverse(), 0.0);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> directions(per_size.asDiagonal() * information * per_size.asDiagonal());
+  constexpr double unbounded = std::numeric_limits<double>::infinity();
+  Eigen::ArrayXd variance = Eigen::ArrayXd::Zero(size.size());
+  for (Eigen::Index k = 0; k < size.size(); ++k) {
+    const Eigen::ArrayXd share = directions.eigenvectors().col(k).array().square();
+    if (directions.eigenvalues()[k] > flat)
+      variance += share / directions.eigenvalues()[k];
+    else
+      variance = (share > takes_part * takes_part).select(unbounded, variance);
+  }
+  return (size > nothing).select(normal_95 * variance.sqrt() * per_size.array(), unbounded);
 }
 
 }  // namespace

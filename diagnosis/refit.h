@@ -21,7 +21,7 @@ struct FitResult {
   Eigen::VectorXd z;
   Eigen::VectorXd residual;  ///< measured - predicted; empty if no prediction could be made
   double log_misfit = 0;
-  Eigen::VectorXd half_width;  ///< half of the 95 % interval of every coordinate
+  Eigen::VectorXd half_width;  ///< half of the 95 % interval of every coordinate; infinite: not determined
 };
 
 /// d(prediction)/dz at z, column by column: differences of 5 % of the coordinate, at least 0.02, to the side where the model goes on; zero

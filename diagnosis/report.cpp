@@ -211,8 +211,12 @@ std::string attemptWords(const Attempt& attempt) {
   std::vector<std::string> words;
   for (const ActiveEffect& effect : attempt.active_effects) {
     std::vector<std::string> values;
+    const EffectInfo info = effectInfo(effect.id);
     for (const auto& [name, value] : effect.parameters)
-      if (const auto* number = std::get_if<double>(&value)) values.push_back(fmt::format("{} = {:.3g}", name, *number));
+      if (const auto* number = std::get_if<double>(&value)) {
+        const auto parameter = std::ranges::find(info.parameters, name, &EffectParameter::name);
+        values.push_back(fmt::format("{} = {:.3g}{}", name, *number, parameter == info.parameters.end() ? "" : remarkOn(*parameter, *number)));
+      }
     words.push_back(fmt::format("{}@{} ({})", effect.id, effect.component, fmt::join(values, ", ")));
   }
   return fmt::format("{}", fmt::join(words, " together with "));
@@ -250,7 +254,7 @@ std::string howFar(const Diagnosis& d) {
   if (!searched)
     text += paragraph(
         "A signal agrees up to 1.15 times its floor, 1.3 times where the floor was estimated from quiet rows. What is smaller "
-        "stays unseen, and so does what these commands did not bring out: no effect was tried.");
+        "stays unseen, and so does what these commands did not bring out: no effect was fitted.");
   if (!d.traces.empty())
     text +=
         "<p class=screen>Drag over a plot to zoom all of them in time; double click, or <button type=button id=whole>show "
@@ -301,9 +305,9 @@ std::string looks(const Diagnosis& d) {
   }
   const std::string which = places.size() <= shown ? "" : fmt::format("; these are the first {} and what was chosen", shown);
   return lead(fmt::format(
-             "{} effects on components were looked at{}. How much of the logarithm of the gap each would remove if its response "
+             "{} looked at{}. How much of the logarithm of the gap each would remove if its response "
              "were proportional to its strength; a fit, which follows the response, may remove more{}:",
-             places.size(), which, some_not_fitted ? "; the dark ones were fitted" : "")) +
+             counted(places.size(), "effect on a component was", "effects on components were"), which, some_not_fitted ? "; the dark ones were fitted" : "")) +
          sliding(barsFigure("First look", all, 1));
 }
 

@@ -28,11 +28,12 @@ std::string parameterWords(const FoundEffect& effect) {
 }  // namespace
 
 bool isLeftOut(const Estimate& estimate) {
-  return estimate.value == 0 && estimate.low == 0 && estimate.high == 0;
+  return estimate.value == 0 && (!estimate.is_determined || (estimate.low == 0 && estimate.high == 0));
 }
 
 std::string estimateWords(const Estimate& estimate) {
   constexpr int most_decimals = 8;
+  if (!estimate.is_determined) return fmt::format("{:.3g} (these recordings do not determine it)", estimate.value);
   const double half = (estimate.high - estimate.low) / 2;
   if (!(half > 0)) return fmt::format("{:.4g}", estimate.value);
   const int power = static_cast<int>(std::floor(std::log10(half)));
@@ -48,6 +49,10 @@ std::string estimateWords(const Estimate& estimate) {
 std::string effectSentence(const FoundEffect& effect) {
   const std::string parameters = parameterWords(effect);
   return effect.label() + (parameters.empty() ? "" : ": " + parameters);
+}
+
+std::string counted(std::size_t count, const std::string& one, const std::string& several) {
+  return count == 1 ? "1 " + one : fmt::format("{} {}", count, several.empty() ? one + "s" : several);
 }
 
 std::string percentWords(double percent) {
@@ -235,7 +240,11 @@ std::string otherwise(const Diagnosis& d) {
 std::string noneWords(const Diagnosis& d) {
   constexpr double worth_saying = 0.1;
   if (d.none_of_these < worth_saying) return "";
-  return fmt::format("That none of the known effects is the cause is {} likely.", probabilityWords(d.none_of_these));
+  if (d.candidates.empty()) return fmt::format("That none of the known effects is the cause is {} likely.", probabilityWords(d.none_of_these));
+  return fmt::format("That {} is {} likely; other effects were not asked about.",
+                     d.candidates.size() == 1 ? d.candidates.front() + " is not the cause"
+                                              : fmt::format("none of {} is the cause", fmt::join(d.candidates, ", ")),
+                     probabilityWords(d.none_of_these));
 }
 
 std::string mostProbable(const Diagnosis& d) {

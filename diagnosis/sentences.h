@@ -24,7 +24,7 @@ std::string componentWords(const std::string& component);
 /// "valve_lag@muscle_1: vent_time_constant_s = 0.081 (0.077 to 0.085)".
 std::string effectSentence(const FoundEffect& effect);
 
-/// "0.081 (0.077 to 0.085)": as many decimals as the interval bears. "8" where there is none.
+/// "0.081 (0.077 to 0.085)": as many decimals as the interval bears. "8" where there is none, and words where nothing determines it.
 std::string estimateWords(const Estimate& estimate);
 /// Whether a parameter was not fitted since nothing in the data depends on it.
 bool isLeftOut(const Estimate& estimate);
@@ -33,6 +33,8 @@ std::string shapeOfRest(const Diagnosis& diagnosis, const std::string& signal);
 /// RMS residual over the noise floor; 0 without a floor.
 double overFloor(const SignalGap& gap);
 
+/// "1 number", "2 numbers".
+std::string counted(std::size_t count, const std::string& one, const std::string& several = "");
 /// "96.2 %"; "more than 99.9 %" rather than 100 % of what is nearly all.
 std::string percentWords(double percent);
 /// "On another recording of this plant 94.0 to 97.5 % are expected (95 %)."

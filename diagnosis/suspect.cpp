@@ -104,6 +104,20 @@ bool Suspect::isTime(int coordinate) const {
   return info_.parameters[coordinates_[static_cast<std::size_t>(coordinate)].parameter].unit == "s";
 }
 
+int Suspect::counterpartOf(int coordinate) const {
+  const auto nameOf = [this](const Coordinate& c) -> const std::string& { return info_.parameters[c.parameter].name; };
+  const std::string fill = "fill_", vent = "vent_", &name = nameOf(coordinates_[static_cast<std::size_t>(coordinate)]);
+  const std::string wanted = name.starts_with(fill) ? vent + name.substr(fill.size())
+                             : name.starts_with(vent) ? fill + name.substr(vent.size())
+                                                      : "";
+  const auto found = std::ranges::find_if(coordinates_, [&](const Coordinate& c) { return nameOf(c) == wanted; });
+  return found == coordinates_.end() ? -1 : static_cast<int>(found - coordinates_.begin());
+}
+
+double Suspect::coordinateLike(int coordinate, int other, double z_of_other) const {
+  return coordinateOf(coordinates_[static_cast<std::size_t>(coordinate)], valueOf(coordinates_[static_cast<std::size_t>(other)], z_of_other));
+}
+
 double Suspect::valueOf(const Coordinate& c, double z) const {
   const double base = base_[c.parameter];
   switch (c.scale) {

@@ -35,6 +35,10 @@ class Suspect {
   void leaveOut(int coordinate);
   /// Whether it is a time.
   bool isTime(int coordinate) const;
+  /// The coordinate of the other direction, venting for filling and the reverse; -1: there is none.
+  int counterpartOf(int coordinate) const;
+  /// Where a coordinate stands for the value that another one has.
+  double coordinateLike(int coordinate, int other, double z_of_other) const;
   ActiveEffect at(const Eigen::VectorXd& z) const;
   /// Names and values of the parameters that z changes, and of those that are set to something else than neutral.
   std::vector<std::pair<std::string, double>> valuesAt(const Eigen::VectorXd& z) const;

@@ -40,7 +40,8 @@ std::vector<TunedParameter> tunedParameters(const Plant& plant, const Eigen::Vec
   std::vector<TunedParameter> result;
   for (std::size_t i = 0; i < at.size(); ++i) {
     const Parameter& parameter = plant.tuned()[i];
-    const Estimate fitted = {at[i].second, std::min(one[i].second, other[i].second), std::max(one[i].second, other[i].second)};
+    const Estimate fitted = {at[i].second, std::min(one[i].second, other[i].second), std::max(one[i].second, other[i].second),
+                             std::isfinite(half_width[static_cast<Eigen::Index>(i)])};
     result.push_back({parameter.name, parameter.unit, std::get<double>(parameter.value), fitted, fitted});
   }
   return result;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <numeric>
 
 #include "columns.h"
 #include "musclesim/error.h"
@@ -49,6 +50,7 @@ class TableReader {
   void readTime(const CsvCell& cell, const ColumnInUse& use);
   double readValue(const CsvCell& cell, const ColumnInUse& use) const;
   void addNotes();
+  void noteSlowRows();
 
   CsvReader csv_;
   const std::string& file_;
@@ -69,6 +71,9 @@ void TableReader::readHeader() {
     if (isIgnored(cell.text)) ignored += (ignored.empty() ? "" : ", ") + std::string(cell.text);
   }
   if (!ignored.empty()) recording_.notes.push_back("columns ignored as asked: " + ignored);
+  for (const std::string& name : options_.ignore_columns)
+    if (std::ranges::none_of(csv_.header(), [&](const CsvCell& cell) { return cell.text == name; }))
+      recording_.notes.push_back("there is no column " + name + " to ignore");
   requireTimeAndCommands();
 }
 
@@ -154,6 +159,9 @@ void TableReader::addNotes() {
     names += (names.empty() ? "" : ", ") + std::string(header_cells_[i].text);
   }
   for (const auto& [conversion, names] : converted) recording_.notes.push_back(conversion + names);
+  for (const auto& [name, deviation] : recording_.info.noise_std)
+    if (!recording_.find(name)) recording_.notes.push_back("noise_std of " + name + ", which is no column of this recording");
+  noteSlowRows();
   for (const auto& signal : recording_.signals) {
     const bool is_empty = std::all_of(signal.values.begin(), signal.values.end(), [](double value) { return std::isnan(value); });
     if (is_empty) recording_.notes.push_back(signal.name + " holds no value in any row");
@@ -163,6 +171,18 @@ void TableReader::addNotes() {
     if (odd != signal.values.end())
       recording_.notes.push_back(fmt::format("{} reaches {} of full scale: is its unit right?", signal.name, *odd));
   }
+}
+
+/// Milliseconds in place of seconds would be simulated, for hours.
+void TableReader::noteSlowRows() {
+  constexpr double slow_s = 2;
+  const std::vector<double>& time_s = recording_.time_s;
+  if (time_s.size() < 3) return;
+  std::vector<double> steps_s(time_s.size());
+  std::adjacent_difference(time_s.begin(), time_s.end(), steps_s.begin());
+  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
+  std::nth_element(steps_s.begin() + 1, middle, steps_s.end());
+  if (*middle > slow_s) recording_.notes.push_back(fmt::format("rows are {:g} s apart: is time_s in seconds?", *middle));
 }
 
 /// The text without a last line that lacks its line end, if the sidecar says that the writer did not finish.

@@ -38,6 +38,13 @@ const std::vector<std::string>& knownMembers() {
   return names;
 }
 
+/// What runs of this program write besides; nobody needs to be told of it.
+bool isOfARun(const std::string& member) {
+  static const std::vector<std::string> names = {"controller",      "task",       "stepper", "substeps",
+                                                 "internal_step_s", "parameters", "verdict", "by_hand_s"};
+  return std::find(names.begin(), names.end(), member) != names.end();
+}
+
 bool isKnown(const std::string& member) {
   return std::find(knownMembers().begin(), knownMembers().end(), member) != knownMembers().end();
 }
@@ -191,6 +198,7 @@ void SidecarReader::keepFurtherMembers(RecordingInfo& info, std::vector<std::str
   for (const auto& [member, value] : document_.root().items()) {
     if (isKnown(member)) continue;
     further[member] = value;
+    if (isOfARun(member)) continue;
     names += (names.empty() ? "" : ", ") + inQuotes(member);
   }
   info.extra_json = further.dump();

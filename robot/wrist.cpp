@@ -40,7 +40,7 @@ void Wrist::buildHand() {
 void Wrist::buildMuscle(int i) {
   const double length_mm = parameter("wrist.muscle_length_mm", 200, "mm", 20, 1e4, "length of the muscles at wrist.middle_deg");
   const double minimum_mm = parameter("wrist.minimum_length_mm", 120, "mm", 15, 1e4, "both muscles: shortest length");
-  const double maximum_mm = parameter("wrist.maximum_length_mm", 400, "mm", 15, 1e4, "both muscles: longest length, a stop");
+  const double maximum_mm = parameter("wrist.maximum_length_mm", 260, "mm", 15, 1e4, "both muscles: longest length, a stop");
   const double rest_mm = parameter(fmt::format("wrist.rest_length_{}_mm", i), 215, "mm", 20, 1e4,
                                    fmt::format("muscle {}: length at which it matches the force law's rest length", i));
   const double side = i == 0 ? 1 : -1;

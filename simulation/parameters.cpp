@@ -82,19 +82,32 @@ const Parameters::Override* Parameters::overrideOf(const std::string& name) cons
   return found == overrides_.end() ? nullptr : &*found;
 }
 
-void Parameters::set(const std::string& name, const Parameter::Value& value, const std::string& source) {
-  if (name.empty()) throw BadParameter(source + ": a parameter needs a name");
+void Parameters::refuse(const Override& given, const std::string& what) {
+  if (!given.file.empty()) throw BadFile(given.file, given.line, 0, what);
+  throw BadParameter(given.source.empty() ? what : given.source + ": " + what);
+}
+
+void Parameters::add(Override given) {
+  if (given.name.empty()) refuse(given, "a parameter needs a name");
   for (auto& parameter : declared_) {
-    if (parameter.name != name) continue;
-    requireAllowed(parameter, value, source);
-    parameter.value = value;
+    if (parameter.name != given.name) continue;
+    requireAllowed(parameter, given);
+    parameter.value = given.value;
   }
-  std::erase_if(overrides_, [&](const Override& o) { return o.name == name; });
-  overrides_.push_back({name, value, source});
+  std::erase_if(overrides_, [&](const Override& o) { return o.name == given.name; });
+  overrides_.push_back(std::move(given));
+}
+
+void Parameters::set(const std::string& name, const Parameter::Value& value, const std::string& source) {
+  add({name, value, source});
+}
+
+void Parameters::setFromFile(const std::string& name, const Parameter::Value& value, const std::string& file, int line) {
+  add({name, value, file, file, line});
 }
 
 void Parameters::setAll(const Parameters& others) {
-  for (const auto& given : others.overrides_) set(given.name, given.value, given.source);
+  for (const auto& given : others.overrides_) add(given);
 }
 
 void Parameters::setFromText(const std::string& assignment, const std::string& source) {
@@ -110,13 +123,12 @@ void Parameters::readToml(const std::string& file) {
     for (const auto& [key, node] : entries) {
       const std::string name = prefix + std::string(key.str());
       const auto line = static_cast<int>(node.source().begin.line);
-      const std::string source = fmt::format("{}:{}", file, line);
       if (const auto* nested = node.as_table()) {
         readTable(*nested, name + ".");
       } else if (const auto value = node.value<double>(); value && !node.is_boolean()) {
-        set(name, *value, source);
+        setFromFile(name, *value, file, line);
       } else if (const auto word = node.value<std::string>()) {
-        set(name, *word, source);
+        setFromFile(name, *word, file, line);
       } else {
         throw BadFile(file, line, static_cast<int>(node.source().begin.column), name + ": must be a number or a string");
       }
@@ -125,25 +137,26 @@ void Parameters::readToml(const std::string& file) {
   readTable(table, "");
 }
 
-void Parameters::requireAllowed(const Parameter& parameter, const Parameter::Value& value, const std::string& source) const {
-  bool allowed = false;
-  if (const auto* number = std::get_if<double>(&value)) {
-    allowed = parameter.choices.empty() && std::isfinite(*number) && *number >= parameter.minimum && *number <= parameter.maximum &&
-              (!parameter.integer || *number == std::round(*number));
-  } else {
-    const auto& word = std::get<std::string>(value);
-    allowed = std::find(parameter.choices.begin(), parameter.choices.end(), word) != parameter.choices.end();
-  }
-  const std::string from = source.empty() ? "" : source + ": ";
-  if (!allowed) throw BadParameter(from + parameter.name, withUnit(text(value), parameter.unit), allowedText(parameter));
+bool Parameters::allows(const Parameter& parameter, const Parameter::Value& value) {
+  if (const auto* number = std::get_if<double>(&value))
+    return parameter.choices.empty() && std::isfinite(*number) && *number >= parameter.minimum && *number <= parameter.maximum &&
+           (!parameter.integer || *number == std::round(*number));
+  return std::ranges::find(parameter.choices, std::get<std::string>(value)) != parameter.choices.end();
+}
+
+void Parameters::requireAllowed(const Parameter& parameter, const Override& given) {
+  if (allows(parameter, given.value)) return;
+  const bool is_number = std::holds_alternative<double>(given.value);
+  const std::string written = is_number ? withUnit(text(given.value), parameter.unit) : text(given.value);
+  refuse(given, fmt::format("{} = {}: must {}", parameter.name, written, allowedText(parameter)));
 }
 
 const Parameter& Parameters::declare(Parameter parameter) {
   if (const auto* known = find(parameter.name)) return *known;
-  requireAllowed(parameter, parameter.default_value, "default");
+  requireAllowed(parameter, {parameter.name, parameter.default_value, "default"});
   parameter.value = parameter.default_value;
   if (const auto* given = overrideOf(parameter.name)) {
-    requireAllowed(parameter, given->value, given->source);
+    requireAllowed(parameter, *given);
     parameter.value = given->value;
   }
   declared_.push_back(std::move(parameter));
@@ -172,8 +185,8 @@ void Parameters::requireAllKnown() const {
   for (const auto& given : overrides_) {
     if (find(given.name)) continue;
     const std::string nearest = nearestName(given.name, names);
-    throw BadParameter(fmt::format("{}: there is no parameter \"{}\" in this run{} (--print-config lists all)", given.source, given.name,
-                                   nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?"));
+    refuse(given, fmt::format("there is no parameter \"{}\" in this run{} (--print-config lists all)", given.name,
+                              nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?"));
   }
 }
 

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "musclesim/controller/replay.h"
@@ -28,6 +30,32 @@ int recordedSubsteps(const RecordingInfo& info) {
   return extra["substeps"].get<int>();
 }
 
+constexpr const char* plane_height = "world.plane_height_mm";
+constexpr std::array<const char*, 4> model_groups = {"physics.", "muscle.", "force_law.", "world."};
+
+nlohmann::json toJson(const Parameter::Value& value) {
+  if (const auto* number = std::get_if<double>(&value)) return *number;
+  return std::get<std::string>(value);
+}
+
+/// What a replay needs to rebuild the robot: its own parameters, all others of the model that differ from their defaults, and the ground
+/// plane's height, which says that there is one.
+std::map<std::string, Parameter::Value> robotParameters(Simulation& simulation) {
+  std::map<std::string, Parameter::Value> result;
+  const std::string own = simulation.robot().name() + ".";
+  // Controllers and tasks have parameters too, but a replay has neither.
+  const auto belongsToModel = [](const std::string& name) {
+    return std::any_of(model_groups.begin(), model_groups.end(), [&](const char* group) { return name.starts_with(group); });
+  };
+  for (const Parameter& p : simulation.parameters().declared()) {
+    if (p.name.starts_with(own))
+      result[p.name.substr(own.size())] = p.value;
+    else if (p.name == plane_height || (belongsToModel(p.name) && p.value != p.default_value))
+      result[p.name] = p.value;
+  }
+  return result;
+}
+
 void requireRegistered(const std::string& robot, const std::string& source) {
   std::vector<std::string> names;
   for (const auto& [name, description] : Robot::registered()) names.push_back(name);
@@ -35,7 +63,45 @@ void requireRegistered(const std::string& robot, const std::string& source) {
     throw BadFile(source, fmt::format("there is no robot \"{}\"; registered: {}", robot, fmt::join(names, ", ")));
 }
 
+/// What a run notes beside what its robot reports.
+bool isOfTask(const std::string& signal) {
+  return signal == "activity" || signal.starts_with("target_");
+}
+
 }  // namespace
+
+std::vector<std::string> unknownSignals(const Recording& recording, const std::vector<std::string>& of_robot) {
+  std::vector<std::string> unknown;
+  for (const Signal& signal : recording.signals)
+    if (!isOfTask(signal.name) && std::ranges::find(of_robot, signal.name) == of_robot.end()) unknown.push_back(signal.name);
+  return unknown;
+}
+
+RecordingInfo describeModel(Simulation& simulation, const std::string& initial_state) {
+  RecordingInfo info;
+  info.robot = simulation.robot().name();
+  info.physics = nameOf(simulation.physics().kind);
+  info.initial_state = initial_state;
+  info.robot_parameters = robotParameters(simulation);
+  info.active_effects = simulation.effects().active();
+  info.noise_std = simulation.effects().noise();
+  info.seed = simulation.seed();
+  info.step_s = simulation.stepS();
+  info.program = "musclesim " MUSCLESIM_VERSION;
+  nlohmann::json extra;
+  extra["stepper"] = simulation.stepper().name();
+  extra["substeps"] = simulation.substeps();
+  extra["internal_step_s"] = simulation.internalStepS();
+  for (const Parameter& p : simulation.parameters().declared()) extra["parameters"][p.name] = toJson(p.value);
+  info.extra_json = extra.dump();
+  return info;
+}
+
+void replaceRobot(RecordingInfo& info, const std::optional<std::string>& robot) {
+  if (!robot || *robot == info.robot) return;
+  std::erase_if(info.robot_parameters, [](const auto& entry) { return entry.first.find('.') == std::string::npos; });
+  info.robot = *robot;
+}
 
 SimulationOptions simulationOptionsFor(const RecordingInfo& info, const std::string& source, const ReplayOptions& options) {
   if (!options.robot) requireRegistered(info.robot, source);
@@ -46,10 +112,11 @@ SimulationOptions simulationOptionsFor(const RecordingInfo& info, const std::str
   result.substeps = options.substeps;
   // A run of ours is repeated with its own internal steps unless the user changes what they depend on.
   if (options.substeps == 0 && !options.physics && !options.step_s) result.substeps = recordedSubsteps(info);
-  result.plane = options.plane;
-  result.seed = options.seed;
+  result.plane = options.plane || info.robot_parameters.contains(plane_height);
+  result.seed = options.seed.value_or(info.seed.value_or(1));
+  result.interrupted = options.interrupted;
   for (const auto& [name, value] : info.robot_parameters)
-    result.parameters.set(name.find('.') == std::string::npos ? info.robot + "." + name : name, value, source);
+    result.parameters.setFromFile(name.find('.') == std::string::npos ? info.robot + "." + name : name, value, source);
   result.parameters.setAll(options.parameters);
   result.effects = info.active_effects;
   result.effects.insert(result.effects.end(), options.effects.begin(), options.effects.end());
@@ -58,7 +125,7 @@ SimulationOptions simulationOptionsFor(const RecordingInfo& info, const std::str
 
 ReplayResult replayRecording(const Recording& recording, const ReplayOptions& options) {
   RecordingInfo info = recording.info;
-  if (options.robot) info.robot = *options.robot;
+  replaceRobot(info, options.robot);
   Simulation simulation(simulationOptionsFor(info, sidecarPath(recording.file), options));
   Robot& robot = simulation.build(info.robot);
   simulation.parameters().requireAllKnown();
@@ -67,13 +134,9 @@ ReplayResult replayRecording(const Recording& recording, const ReplayOptions& op
   ReplayResult result;
   result.substeps = simulation.substeps();
   result.stepper = simulation.stepper().name();
-  result.simulated.info = info;
-  result.simulated.info.physics = nameOf(simulation.physics().kind);
-  result.simulated.info.initial_state = options.initial_state.value_or(info.initial_state.value_or(robot.initialState()));
-  result.simulated.info.step_s = simulation.stepS();
-  result.simulated.info.program = "musclesim " MUSCLESIM_VERSION;
-  result.simulated.info.noise_std = simulation.effects().noise();
-  result.simulated.info.active_effects = simulation.effects().active();
+  result.simulated.info = describeModel(simulation, options.initial_state.value_or(info.initial_state.value_or(robot.initialState())));
+  result.simulated.info.description = info.description;
+  result.simulated.info.trial = info.trial;
   const ReplayOptions::Watcher watcher = options.watch ? options.watch(simulation) : nullptr;
   for (const auto& name : robot.signalNames()) result.simulated.signals.push_back({name, {}});
   try {
@@ -93,7 +156,10 @@ ReplayResult replayRecording(const Recording& recording, const ReplayOptions& op
     }
   } catch (const Diverged& error) {
     result.divergence = error.what();
+  } catch (const Interrupted&) {
+    result.interrupted = true;
   }
+  result.simulated.info.complete = !result.divergence && !result.interrupted;
   result.worst_gap = simulation.worstGap();
   result.errors = compareSignals(result.simulated, recording);
   return result;

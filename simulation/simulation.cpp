@@ -71,7 +71,8 @@ Simulation::Simulation(SimulationOptions options)
     : parameters_(std::move(options.parameters)),
       physics_(options.physics, parameters_),
       step_s_(requireStep(options.step_s)),
-      seed_(options.seed) {
+      seed_(options.seed),
+      interrupted_(std::move(options.interrupted)) {
   ode_runtime::prepareThread();
   if (options.substeps < 0 || options.substeps > 1000000)
     throw BadParameter("substeps", fmt::format("{}", options.substeps), "be a whole number in 1 .. 1000000, or 0 for automatic");
@@ -254,6 +255,7 @@ void Simulation::updateForces(double h_s) {
 }
 
 void Simulation::internalStep(double h_s) {
+  if (interrupted_ && interrupted_()) throw Interrupted("interrupted within a step");
   // A sample's way: command -> pressure -> force -> body -> sensor. (Readings are taken in Robot::getState.)
   updateForces(h_s);
   for (const auto& actuator : actuators_) {

@@ -1,8 +1,12 @@
 #include "command_line.h"
 
-#include <cstdio>
-#include <string>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cstdio>
+
+#include "musclesim/parameters.h"
 #include "musclesim/version.h"
 
 namespace musclesim::program {
@@ -52,12 +56,43 @@ CommandLine::CommandLine()
   refuseEmptyValues(app_);
 }
 
+/// The sub-command goes first, wherever it stands: what is before it is meant for it.
+std::vector<std::string> CommandLine::ordered(std::vector<std::string> arguments) const {
+  const auto commands = app_.get_subcommands([](const CLI::App*) { return true; });
+  const auto isCommand = [&](const std::string& word) {
+    return std::ranges::any_of(commands, [&](const CLI::App* command) { return command->get_name() == word; });
+  };
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const CLI::Option* before = i > 0 ? app_.get_option_no_throw(arguments[i - 1]) : nullptr;
+    const bool is_value = before && before->get_expected_max() > 0;
+    if (is_value || !isCommand(arguments[i])) continue;
+    std::rotate(arguments.begin(), arguments.begin() + static_cast<std::ptrdiff_t>(i),
+                arguments.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+    break;
+  }
+  return arguments;
+}
+
+/// What a usage error says; words that fit nowhere in the order in which they were given, with the command that may have been meant.
+std::string CommandLine::messageFor(const CLI::ParseError& error) const {
+  if (!dynamic_cast<const CLI::ExtrasError*>(&error)) return error.what();
+  const std::vector<std::string> words = app_.remaining(true);
+  std::string message = fmt::format("not expected here: {}", fmt::join(words, " "));
+  if (words.empty() || words.front().starts_with('-') || !app_.get_subcommands().empty()) return message;
+  std::vector<std::string> names;
+  for (const CLI::App* command : app_.get_subcommands([](const CLI::App*) { return true; })) names.push_back(command->get_name());
+  const std::string nearest = nearestName(words.front(), names);
+  return message + (nearest.empty() ? fmt::format("; commands are {}", fmt::join(names, ", ")) : "; did you mean " + nearest + "?");
+}
+
 std::optional<int> CommandLine::parse(int argument_count, const char* const* arguments) {
   try {
-    app_.parse(argument_count, arguments);
+    std::vector<std::string> words = ordered({arguments + std::min(argument_count, 1), arguments + argument_count});
+    std::reverse(words.begin(), words.end());  // as CLI11 takes them
+    app_.parse(std::move(words));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app_.exit(error);  // --help, --version
-    std::fprintf(stderr, "musclesim: error: %s\nmusclesim --help lists the options\n", error.what());
+    std::fprintf(stderr, "musclesim: error: %s\nmusclesim --help lists the options\n", messageFor(error).c_str());
     return bad_usage;
   }
   return std::nullopt;

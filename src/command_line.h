@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -22,6 +23,9 @@ class CommandLine {
   int run();
 
  private:
+  std::vector<std::string> ordered(std::vector<std::string> arguments) const;
+  std::string messageFor(const CLI::ParseError& error) const;
+
   CLI::App app_;
   ModelOptions model_;
   Action run_;

@@ -9,6 +9,7 @@
 #include "musclesim/effect/effects_file.h"
 #include "musclesim/error.h"
 #include "musclesim/log/file.h"
+#include "output_folder.h"
 #include "progress.h"
 
 namespace musclesim::program {
@@ -60,25 +61,38 @@ void writeSchedule(const Diagnosis& diagnosis, const RecordingInfo& plant, const
 
 void writeAll(const Diagnosis& diagnosis, const std::filesystem::path& folder, const DiagnoseArguments& arguments,
               const std::vector<ActiveEffect>& effects_of_user, const RecordingInfo& plant) {
-  std::filesystem::create_directories(folder);
   for (const char* of_an_earlier_run : {"attempt.json", "nominal.toml", "next.csv", "next.json"})
     std::filesystem::remove(folder / of_an_earlier_run);
   const std::string json = diagnosisJson(diagnosis);
   replaceFile((folder / "diagnosis.json").string(), json);
-  if (arguments.json) replaceFile(*arguments.json, json);
   replaceFile((folder / "report.html").string(), diagnosisReport(diagnosis));
   writeWith(diagnosis.chosen_effects, effects_of_user, folder / "effects.json");
   if (!diagnosis.attempt.effects.empty()) writeWith(diagnosis.attempt.active_effects, effects_of_user, folder / "attempt.json");
   if (!diagnosis.tuned.empty()) replaceFile((folder / "nominal.toml").string(), tunedToml(diagnosis.tuned));
   if (!diagnosis.next_experiment.commands.empty()) writeSchedule(diagnosis, plant, folder);
+  if (arguments.json) replaceFile(*arguments.json, json);
+}
+
+/// Before minutes of work: what is written has a place, and it is none of the recordings.
+void requirePlaces(const std::filesystem::path& folder, const DiagnoseArguments& arguments) {
+  if (arguments.json) {
+    const std::filesystem::path file = *arguments.json;
+    if (file.extension() != ".json") throw BadParameter("--json", file.string(), "end in .json (diagnosis.json is written there too)");
+    for (const std::string& recording : arguments.recordings) requireOther(file, {recording, sidecarPath(recording)});
+    if (file.has_parent_path()) makeFolder(file.parent_path());
+  }
+  makeFolder(folder);
+  requireWritable(folder);
 }
 
 int diagnoseCommand(const ModelOptions& model, const DiagnoseArguments& arguments) {
+  const std::filesystem::path folder = folderFor(arguments);
   std::vector<Recording> recordings;
   for (const std::string& file : arguments.recordings) {
     recordings.push_back(readRecording(file, {arguments.ignore_columns}));
     for (const auto& note : recordings.back().notes) say(model, note);
   }
+  requirePlaces(folder, arguments);
   DiagnosisOptions options;
   options.model = replayOptionsFrom(model);
   options.candidates = arguments.candidates;
@@ -86,16 +100,15 @@ int diagnoseCommand(const ModelOptions& model, const DiagnoseArguments& argument
   options.tune = arguments.tune;
   options.max_effects = arguments.max_effects;
   options.job_count = arguments.jobs;
-  options.seed = model.seed;
+  options.seed = model.seed.value_or(1);
   options.interrupted = [] { return interruptSignal() != 0; };
   PhaseProgress progress(model.quiet);
   options.progress = [&](const DiagnosisProgress& now) { progress.show(now.phase, now.done, now.expected); };
   const RecordingInfo plant = recordings.front().info;
   const Diagnosis diagnosis = diagnose(std::move(recordings), options);
-  const std::filesystem::path folder = folderFor(arguments);
   writeAll(diagnosis, folder, arguments, options.model.effects, plant);
   if (!model.quiet) fmt::print("{}report    {}\n", diagnosisSummary(diagnosis), (folder / "report.html").string());
-  return diagnosis.partial ? interrupted_base + 2 : done;
+  return diagnosis.partial ? interrupted_base + interruptSignal() : done;
 }
 
 }  // namespace

@@ -88,7 +88,7 @@ int effects(const EffectsArguments& arguments) {
     nlohmann::json list = nlohmann::json::array();
     if (arguments.id.empty())
       for (const EffectInfo& info : effectCatalogue()) list.push_back(toJson(info));
-    fmt::print("{}\n", (arguments.id.empty() ? list : toJson(effectInfo(arguments.id))).dump());
+    fmt::print("{}\n", (arguments.id.empty() ? nlohmann::json{{"effects", list}} : toJson(effectInfo(arguments.id))).dump());
   } else if (arguments.id.empty()) {
     printList();
   } else {
@@ -102,7 +102,7 @@ int effects(const EffectsArguments& arguments) {
 Action addEffects(CLI::App& command) {
   auto arguments = std::make_shared<EffectsArguments>();
   command.add_option("id", arguments->id, "One effect, with its equation, parameters, units, ranges and source");
-  command.add_flag("--json", arguments->json, "Print JSON");
+  command.add_flag("--json", arguments->json, "Print one JSON object");
   return [arguments] { return effects(*arguments); };
 }
 

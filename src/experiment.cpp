@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
+#include "interrupt.h"
 #include "laboratory/frame_report.h"
 #include "musclesim/error.h"
 #include "musclesim/log/file.h"
@@ -49,6 +50,7 @@ nlohmann::json errorsOf(const std::vector<FramePoint>& points) {
 }
 
 int experiment(const ModelOptions& model, const ExperimentArguments& arguments) {
+  endAtInterrupts();
   const auto specimens = specimensOf(arguments.specimen);
   std::optional<StaticPoints> measured;
   if (arguments.data) measured = readStaticPoints(*arguments.data);

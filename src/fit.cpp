@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
+#include "interrupt.h"
 #include "laboratory/fit_figure.h"
 #include "laboratory/fit_report.h"
 #include "musclesim/error.h"
@@ -96,6 +97,7 @@ nlohmann::json verdictOf(const FitArguments& arguments, const StaticPoints& poin
 }
 
 int fit(const FitArguments& arguments) {
+  endAtInterrupts();
   StaticPoints points = readStaticPoints(arguments.data, pointsOptions(arguments));
   const Specimen specimen = specimenOf(points, arguments.rest_length_mm);
   const BraunLengths lengths = braunLengths(arguments, specimen);

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include "commands.h"
+#include "output_folder.h"
 
 namespace musclesim::program {
 
@@ -16,6 +17,8 @@ struct ImportArguments {
 };
 
 int importCommand(const ImportArguments& arguments) {
+  requireOther(arguments.out, {arguments.table, arguments.mapping});
+  requireOther(sidecarPath(arguments.out), {arguments.table, arguments.mapping});
   const Recording recording = importTable(arguments.table, readImportMapping(arguments.mapping));
   if (!arguments.quiet)
     for (const auto& note : recording.notes) std::fprintf(stderr, "musclesim: %s\n", note.c_str());

@@ -20,6 +20,11 @@ void watchInterrupts() {
   std::signal(SIGTERM, note);
 }
 
+void endAtInterrupts() {
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+}
+
 int interruptSignal() {
   return received;
 }

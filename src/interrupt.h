@@ -5,6 +5,8 @@ namespace musclesim::program {
 
 /// Installs handlers for SIGINT and SIGTERM. A second signal ends the process at once.
 void watchInterrupts();
+/// From here on a signal ends the process at once: for commands whose files are each written in one go.
+void endAtInterrupts();
 /// The number of the signal that arrived, 0 if none did.
 int interruptSignal();
 

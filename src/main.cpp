@@ -2,8 +2,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <filesystem>
 #include <optional>
+#include <system_error>
 
 #include "command_line.h"
 #include "interrupt.h"
@@ -38,7 +38,9 @@ int main(int argument_count, char** arguments) {
     std::_Exit(complain(error, diverged));
   } catch (const IoError& error) {
     std::_Exit(complain(error, io_error));
-  } catch (const std::filesystem::filesystem_error& error) {
+  } catch (const Interrupted&) {
+    std::_Exit(interrupted_base + interruptSignal());
+  } catch (const std::system_error& error) {  // of file systems and of output
     std::_Exit(complain(error, io_error));
   } catch (const std::exception& error) {
     std::_Exit(complain(error, internal_error));

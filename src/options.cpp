@@ -1,5 +1,6 @@
 #include "options.h"
 
+#include <charconv>
 #include <cstdio>
 
 #include "musclesim/effect/effects_file.h"
@@ -8,18 +9,19 @@ namespace musclesim::program {
 
 void addModelOptions(CLI::App& command, ModelOptions& options) {
   const std::string model = "Model";
-  command.add_option("--robot", options.robot, "Robot: arm, rig, elbow or a registered name (default arm)")->group(model);
+  command.add_option("--robot", options.robot, "Robot: arm, rig, elbow, wrist, spring_bench or a registered name (default: arm; of a recording its own)")->group(model);
   command
       .add_option("--physics", options.physics,
-                  "si: true seconds (default); original: the published program's units; scaled: its constants in true units")
+                  "si: true seconds; original: the published program's units; scaled: its constants in true units (default: si; of a recording its own)")
       ->group(model);
   command
       .add_option("--initial-state", options.initial_state, "built: the pose as built; settled: at equilibrium (default: the robot's own)")
-      ->group(model);
+      ->group(model)
+      ->check(CLI::IsMember({"built", "settled"}));
   command.add_option("--stepper", options.stepper, "auto, chain, ode (dWorldStep) or quick (dWorldQuickStep)")
       ->group(model)
       ->capture_default_str();
-  command.add_option("--step", options.step_s, "Control and logging step in s (default 0.01)")->group(model);
+  command.add_option("--step", options.step_s, "Control and logging step in s (default 0.01; of a recording its own)")->group(model);
   command.add_option("--substeps", options.substeps, "Internal steps per control step (default: as many as the stepper needs)")
       ->group(model);
   command.add_option("--muscles", options.muscle_count, "Number of muscles of the arm, 1 .. 30 (default 10)")->group(model);
@@ -30,10 +32,14 @@ void addModelOptions(CLI::App& command, ModelOptions& options) {
                   "Friction of the chains' joints; coulomb: dry (default); viscous: grows with the speed, faster to compute")
       ->group(model);
   command.add_flag("--plane", options.plane, "Add a ground plane")->group(model);
-  command.add_option("--seed", options.seed, "Seed of everything random")
+  command.add_option("--seed", options.seed, "Seed of everything random (default 1; of a recording its own)")
       ->group(model)
-      ->capture_default_str()
-      ->check([](const std::string& value) { return value.starts_with('-') ? "must be a whole number, 0 or larger" : ""; });
+      ->check([](const std::string& value) {
+        std::uint64_t seed = 0;
+        const auto end = value.data() + value.size();
+        const auto read = std::from_chars(value.data(), end, seed);
+        return read.ec == std::errc() && read.ptr == end ? "" : "must be a whole number in 0 .. 18446744073709551615";
+      });
   command.add_option("--set", options.set, "name=value: override one named parameter; may be repeated")
       ->group(model)
       ->allow_extra_args(false);

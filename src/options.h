@@ -18,7 +18,7 @@ struct ModelOptions {
   std::optional<double> step_s;
   std::optional<int> substeps, muscle_count;
   bool plane = false;
-  std::uint64_t seed = 1;
+  std::optional<std::uint64_t> seed;
   std::optional<std::string> muscle, joint_friction;
   std::vector<std::string> set;
   std::optional<std::string> config, effects;

@@ -1,10 +1,12 @@
 #include "output_folder.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <ctime>
 
 #include "musclesim/error.h"
+#include "musclesim/log/recording.h"
 
 namespace musclesim::program {
 
@@ -32,6 +34,29 @@ fs::path outputFolder(const std::optional<std::string>& given, const std::string
   const fs::path folder = given ? fs::path(*given) : freshFolder(label);
   makeFolder(folder);
   return folder;
+}
+
+void requireWritable(const fs::path& folder) {
+  if (access(folder.c_str(), W_OK | X_OK) != 0) throw IoError(fmt::format("{}: nothing can be written there", folder.string()));
+}
+
+void requireReplaceable(const fs::path& csv) {
+  if (!fs::exists(csv)) return;
+  const auto keep = [&](const std::string& what) {
+    throw BadParameter(fmt::format("{} exists and is {}: choose another name, or remove it", csv.string(), what));
+  };
+  try {
+    if (readRecording(csv.string()).info.program.empty()) keep("a recording that musclesim did not simulate");
+  } catch (const BadFile&) {
+    keep("no recording");
+  }
+}
+
+void requireOther(const fs::path& output, const std::vector<std::string>& inputs) {
+  std::error_code ignored;
+  for (const std::string& input : inputs)
+    if (fs::equivalent(output, input, ignored))
+      throw BadParameter(fmt::format("{} would be written over {}: choose another name", output.string(), input));
 }
 
 }  // namespace musclesim::program

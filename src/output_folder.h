@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace musclesim::program {
 
@@ -15,5 +16,14 @@ std::filesystem::path outputFolder(const std::optional<std::string>& given, cons
 
 /// Makes a folder and those above it. Throws IoError.
 void makeFolder(const std::filesystem::path& folder);
+
+/// Throws IoError if nothing can be written into a folder.
+void requireWritable(const std::filesystem::path& folder);
+
+/// Throws BadParameter if a recording of that name would replace one that was not simulated, or another table.
+void requireReplaceable(const std::filesystem::path& csv);
+
+/// Throws BadParameter if a file that is to be written is one of those that are read.
+void requireOther(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 
 }  // namespace musclesim::program

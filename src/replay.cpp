@@ -7,7 +7,7 @@
 
 #include "commands.h"
 #include "interrupt.h"
-#include "musclesim/error.h"
+#include "output_folder.h"
 #include "pictures.h"
 
 namespace musclesim::program {
@@ -33,21 +33,11 @@ void printTable(const ReplayResult& result) {
     fmt::print("{:<20} {:>12.4g} {:>12.4g} {:>9}  {}\n", e.name, e.rmse, e.largest, e.sample_count, unitOf(e.name));
 }
 
-/// Thrown between two rows.
-struct Interruption {};
-
-int reportInterruption(const ModelOptions& model, const ReplayArguments& arguments) {
-  say(model, "interrupted; pictures show the replay up to then, nothing is compared");
-  if (model.json)
-    fmt::print("{}\n", nlohmann::json{{"command", "replay"}, {"recording", arguments.recording}, {"status", "interrupted"}}.dump());
-  return interrupted_base + interruptSignal();
-}
-
 nlohmann::json verdictOf(const ReplayResult& result, const ReplayArguments& arguments) {
   nlohmann::json json;
   json["command"] = "replay";
   json["recording"] = arguments.recording;
-  json["status"] = result.divergence ? "diverged" : "done";
+  json["status"] = result.divergence ? "diverged" : result.interrupted ? "interrupted" : "done";
   if (result.divergence) json["message"] = *result.divergence;
   if (arguments.out) json["out"] = *arguments.out;
   json["stepper"] = result.stepper;
@@ -59,29 +49,29 @@ nlohmann::json verdictOf(const ReplayResult& result, const ReplayArguments& argu
 }
 
 int replay(const ModelOptions& model, const ReplayArguments& arguments) {
+  if (arguments.out) requireReplaceable(*arguments.out);
   const Recording recording = readRecording(arguments.recording, {arguments.ignore_columns});
   for (const auto& note : recording.notes) say(model, note);
   std::unique_ptr<Spectator> spectator;
   ReplayOptions options = replayOptionsFrom(model);
   options.watch = [&](Simulation& simulation) {
     if (arguments.pictures.wanted()) spectator = makePictures(arguments.pictures, simulation);
+    for (const std::string& name : unknownSignals(recording, simulation.robot().signalNames()))
+      say(model, fmt::format("{}: {} has no {}; it is not compared", arguments.recording, simulation.robot().name(), name));
     return [&](const State& state) {
       if (spectator) spectator->see(state);
-      if (interruptSignal() != 0) throw Interruption{};
     };
   };
-  ReplayResult result;
-  try {
-    result = replayRecording(recording, options);
-  } catch (const Interruption&) {
-    if (spectator) spectator->finish();
-    return reportInterruption(model, arguments);
-  }
+  options.interrupted = [] { return interruptSignal() != 0; };
+  const ReplayResult result = replayRecording(recording, options);
   if (spectator) spectator->finish();
-  if (arguments.out) writeRecording(result.simulated, *arguments.out);
+  if (arguments.out && !result.simulated.time_s.empty()) writeRecording(result.simulated, *arguments.out);
+  if (result.interrupted)
+    say(model, fmt::format("interrupted; what follows is of {} of {} rows", result.simulated.time_s.size(), recording.time_s.size()));
   printTable(result);
   if (result.divergence) std::fprintf(stderr, "musclesim: error: %s\n", result.divergence->c_str());
   if (model.json) fmt::print("{}\n", verdictOf(result, arguments).dump());
+  if (result.interrupted) return interrupted_base + interruptSignal();
   return result.divergence ? diverged : done;
 }
 

@@ -89,6 +89,7 @@ class Run {
     const State first_state = robot().getState();
     const musclesim::Action first_action = controller_->output(first_state);
     const fs::path csv = recordingPath(options_, simulation_.seed());
+    requireReplaceable(csv);
     addSpectator(first_state, csv);
     if (csv.has_parent_path()) makeFolder(csv.parent_path());
     Recorder recorder(csv.string(), describe(simulation_, options_, initial_state), columns());
@@ -103,6 +104,8 @@ class Run {
       loop(recorder, progress, first_action);
     } catch (const Diverged& error) {
       divergence = error;
+    } catch (const Interrupted&) {
+      // endingOf() tells of the signal.
     }
     const Ending ending = endingOf(divergence);
     const nlohmann::json verdict = conclude(ending, progress.wallS());
@@ -154,7 +157,8 @@ class Run {
     options.substeps = model.substeps.value_or(0);
     if (model.substeps && *model.substeps < 1) throw BadParameter("substeps", std::to_string(*model.substeps), "be at least 1");
     options.plane = model.plane;
-    options.seed = model.seed;
+    options.seed = model.seed.value_or(1);
+    options.interrupted = [] { return interruptSignal() != 0; };
     options.parameters = parametersFrom(model);
     options.effects = effectsFrom(model);
     return options;
@@ -163,7 +167,11 @@ class Run {
   /// The figure beside the recording; an empty path for a run that ended before its first row.
   fs::path drawFigure(const fs::path& csv, long row_count) const {
     if (row_count == 0) return {};
-    const fs::path svg = fs::path(csv).replace_extension(".svg");
+    fs::path svg = fs::path(csv).replace_extension(".svg");
+    if (options_.record && options_.out) {
+      makeFolder(*options_.out);
+      svg = fs::path(*options_.out) / svg.filename();
+    }
     const Recording recording = readRecording(csv.string());
     writeRunFigure(recording, namedMuscleColors(robot()), recording.info.description, svg.string());
     return svg;

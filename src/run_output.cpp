@@ -3,44 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "musclesim/error.h"
-#include "musclesim/version.h"
 #include "output_folder.h"
 
 namespace musclesim::program {
 
 namespace fs = std::filesystem;
-
-namespace {
-
-constexpr std::array<const char*, 4> model_groups = {"physics.", "muscle.", "force_law.", "world."};
-
-nlohmann::json toJson(const Parameter::Value& value) {
-  if (const auto* number = std::get_if<double>(&value)) return *number;
-  return std::get<std::string>(value);
-}
-
-/// What a replay needs to rebuild the robot: its own parameters, and all others of the model that differ from their defaults.
-std::map<std::string, Parameter::Value> robotParameters(Simulation& simulation) {
-  std::map<std::string, Parameter::Value> result;
-  const std::string own = simulation.robot().name() + ".";
-  // Controllers and tasks have parameters too, but a replay has neither.
-  const auto belongsToModel = [](const std::string& name) {
-    return std::any_of(model_groups.begin(), model_groups.end(), [&](const char* group) { return name.starts_with(group); });
-  };
-  for (const Parameter& p : simulation.parameters().declared()) {
-    if (p.name.starts_with(own))
-      result[p.name.substr(own.size())] = p.value;
-    else if (belongsToModel(p.name) && p.value != p.default_value)
-      result[p.name] = p.value;
-  }
-  return result;
-}
-
-}  // namespace
 
 fs::path recordingPath(const RunOptions& options, std::uint64_t seed) {
   const fs::path file = options.record
@@ -51,24 +21,15 @@ fs::path recordingPath(const RunOptions& options, std::uint64_t seed) {
 }
 
 RecordingInfo describe(Simulation& simulation, const RunOptions& options, const std::string& initial_state) {
-  RecordingInfo info;
-  info.robot = simulation.robot().name();
-  info.physics = nameOf(simulation.physics().kind);
-  info.initial_state = initial_state;
-  info.robot_parameters = robotParameters(simulation);
-  info.description = fmt::format("{} under {}, {} task", info.robot, options.controller, options.task);
-  info.active_effects = simulation.effects().active();
-  info.noise_std = simulation.effects().noise();
-  info.seed = simulation.seed();
-  info.step_s = simulation.stepS();
-  info.program = "musclesim " MUSCLESIM_VERSION;
-  nlohmann::json extra;
+  RecordingInfo info = describeModel(simulation, initial_state);
+  info.description = fmt::format("{} under {}", info.robot, options.controller);
+  nlohmann::json extra = nlohmann::json::parse(info.extra_json);
   extra["controller"] = options.controller;
-  extra["task"] = options.task;
-  extra["stepper"] = simulation.stepper().name();
-  extra["substeps"] = simulation.substeps();
-  extra["internal_step_s"] = simulation.internalStepS();
-  for (const Parameter& p : simulation.parameters().declared()) extra["parameters"][p.name] = toJson(p.value);
+  // Without a target there is no task.
+  if (simulation.controller() && simulation.controller()->targetMm()) {
+    info.description += fmt::format(", {} task", options.task);
+    extra["task"] = options.task;
+  }
   info.extra_json = extra.dump();
   return info;
 }

@@ -6,6 +6,7 @@
 
 #include "foreign.h"
 #include "musclesim/robot/actuator.h"
+#include "musclesim/units.h"
 
 namespace musclesim::foreign {
 
@@ -153,7 +154,7 @@ class StiffeningTendon final : public ForceEffect {
 /// F' = F (1 + r T (1 - exp(-t / T)))
 class WarmUp final : public ForceEffect {
  public:
-  explicit WarmUp(const EffectValues& v) : rate_per_s_(v["rate_per_min"] / 60), duration_s_(v["duration_s"]) {}
+  explicit WarmUp(const EffectValues& v) : rate_per_s_(v["rate_per_min"] / s_per_min), duration_s_(v["duration_s"]) {}
   double tensionN(const MuscleInput& input, const ForceBelow& below) const override {
     const double t = std::max(0.0, input.moment.clock_s);
     return below(input) * (1 - rate_per_s_ * duration_s_ * std::expm1(-t / duration_s_));

@@ -46,6 +46,11 @@ class Diverged : public Error {
   std::string where_;
 };
 
+/// The caller asked a simulation to stop within a step (exit status 130 or 143).
+class Interrupted : public Error {
+  using Error::Error;
+};
+
 /// Reading or writing failed for reasons outside the file's contents (exit status 5).
 class IoError : public Error {
   using Error::Error;

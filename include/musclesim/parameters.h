@@ -31,6 +31,8 @@ class Parameters {
   /// Overrides one parameter. `source` is named in errors ("--set", "model.toml:12").
   /// A later call replaces an earlier one. Throws BadParameter for an empty name or, once declared, for a value out of range.
   void set(const std::string& name, const Parameter::Value& value, const std::string& source);
+  /// The same from a line of a file (0: from the file as a whole): what is wrong with it is thrown as BadFile.
+  void setFromFile(const std::string& name, const Parameter::Value& value, const std::string& file, int line = 0);
   /// All overrides of another set, each as with set().
   void setAll(const Parameters& others);
   /// "name=value" as given to --set; the value is a number where it reads as one. Throws BadParameter if there is no "=".
@@ -56,10 +58,15 @@ class Parameters {
     std::string name;
     Parameter::Value value;
     std::string source;
+    std::string file = {};  ///< empty: not from a file
+    int line = 0;
   };
+  void add(Override given);
+  [[noreturn]] static void refuse(const Override& given, const std::string& what);
   const Parameter* find(const std::string& name) const;
   const Override* overrideOf(const std::string& name) const;
-  void requireAllowed(const Parameter& parameter, const Parameter::Value& value, const std::string& source) const;
+  static bool allows(const Parameter& parameter, const Parameter::Value& value);
+  static void requireAllowed(const Parameter& parameter, const Override& given);
   const Parameter& declare(Parameter parameter);
 
   std::vector<Override> overrides_;

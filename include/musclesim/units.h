@@ -11,6 +11,7 @@ inline constexpr double mm_per_m = 1000.0;
 inline constexpr double mm_per_cm = 10.0;
 inline constexpr double g_per_kg = 1000.0;
 inline constexpr double s_per_min = 60.0;
+inline constexpr double ms_per_s = 1000.0;
 inline constexpr double kPa_per_bar = 100.0;
 inline constexpr double kPa_per_MPa = 1000.0;
 inline constexpr double rad_per_deg = std::numbers::pi / 180.0;

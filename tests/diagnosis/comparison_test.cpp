@@ -122,6 +122,28 @@ TEST_F(Rig, CorrectedFitEndsWhereTheExactPredictionDoes) {
   EXPECT_GT(found.half_width[0], 0);
 }
 
+/// One coordinate does nothing, two act alike, one is by itself.
+TEST_F(Rig, IntervalsOfWhatTheDataDoNotDetermineAreUnbounded) {
+  FitProblem problem;
+  problem.start = Eigen::VectorXd::Constant(4, 0.5);
+  problem.clamped = [](const Eigen::VectorXd& z) { return z; };
+  problem.predicted = [&](const Eigen::VectorXd& z) -> Eigen::VectorXd {
+    Eigen::VectorXd change(300);
+    for (Eigen::Index i = 0; i < 300; ++i) {
+      const auto t = static_cast<double>(i);
+      change[i] = 5 * (z[1] + z[2] - 2) * std::sin(0.1 * t) + 5 * (z[3] - 1) * std::cos(0.03 * t) + 0.2 * std::sin(7 * t);
+    }
+    return both.measured() + change;
+  };
+  const FitResult found = fit(both, problem, 8);
+  EXPECT_TRUE(std::isinf(found.half_width[0]));
+  EXPECT_TRUE(std::isinf(found.half_width[1]));
+  EXPECT_TRUE(std::isinf(found.half_width[2]));
+  EXPECT_GT(found.half_width[3], 0);
+  EXPECT_LT(found.half_width[3], 0.1);
+  EXPECT_NEAR(found.z[3], 1, 0.1);
+}
+
 TEST_F(Rig, FitStaysWithinBoundsAndReportsADivergedStart) {
   FitProblem problem;
   problem.start = Eigen::VectorXd::Constant(1, 0.1);

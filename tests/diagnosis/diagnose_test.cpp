@@ -14,8 +14,13 @@ namespace musclesim {
 namespace {
 
 using planted::few;
+using planted::measuredUnder;
 using planted::plant;
 using planted::recorded;
+
+bool lists(const std::vector<std::string>& labels, const std::string& label) {
+  return std::ranges::find(labels, label) != labels.end();
+}
 
 TEST(Diagnose, FindsAPlantedPayload) {
   const Diagnosis found = diagnose(plant({{"payload", "hand", {{"mass_kg", 0.2}}}}), few({"payload", "valve_lag", "force_gain", "creep"}));
@@ -252,7 +257,61 @@ TEST(Diagnose, AnotherRobotIsTakenForAllRecordings) {
 
 TEST(Diagnose, RestingCommandsAreNotExcited) {
   std::vector<Recording> recordings = {recorded({}, 0, 1), recorded({}, 0, 2)};
-  EXPECT_EQ(diagnose(recordings).verdict, Verdict::not_excited);
+  const Diagnosis found = diagnose(recordings);
+  EXPECT_EQ(found.verdict, Verdict::not_excited);
+  EXPECT_TRUE(found.explanations.empty()) << "nothing is known: not that there is no effect";
+  EXPECT_TRUE(lists(found.not_excited, "valve_lag@muscle_0"));
+}
+
+/// That there is no gap does not mean that there is no effect.
+TEST(Diagnose, SaysWhatCouldNotHaveShownWhereThereIsNoGap) {
+  const Diagnosis found = diagnose(plant({}), few({"valve_lag", "command_dead_band"}));
+  ASSERT_EQ(found.verdict, Verdict::no_gap);
+  EXPECT_FALSE(lists(found.not_excited, "valve_lag@muscle_0"));
+  EXPECT_TRUE(lists(found.not_excited, "command_dead_band@muscle_0")) << "all commands are above it";
+}
+
+/// A leak without a leak, and a coupling without a coupling, are their regulators' lags.
+TEST(Diagnose, DoesNotBelieveAnEffectThatDoesAsWellAtNoStrength) {
+  const std::vector<ActiveEffect> lag = {{"valve_lag", "all", {{"fill_time_constant_s", 0.08}, {"vent_time_constant_s", 0.08}}}};
+  const Diagnosis found = diagnose(plant(lag), few({"valve_lag", "leak", "volume_coupling"}));
+  ASSERT_EQ(found.chosen, std::vector<std::string>{"valve_lag@muscle_0"});
+  EXPECT_GT(found.effects.front().probability, 0.9);
+  EXPECT_EQ(found.ambiguity_set, found.chosen);
+}
+
+/// The muscle only vents: it is filled before the recording begins.
+TEST(Diagnose, WhatWasNotRecordedIsNotDetermined) {
+  const std::vector<ActiveEffect> lag = {{"valve_lag", "all", {{"fill_time_constant_s", 0.08}, {"vent_time_constant_s", 0.08}}}};
+  const auto venting = [&](double highest, std::uint64_t seed) {
+    Recording plan = recorded({}, 0.1, seed);
+    for (std::size_t row = 0; row < plan.time_s.size(); ++row) plan.signals[0].values[row] = highest - 0.15 * std::floor(plan.time_s[row]);
+    return measuredUnder(lag, plan, seed);
+  };
+  const Diagnosis found = diagnose({venting(0.8, 1), venting(0.7, 2)}, few({"valve_lag", "payload"}));
+  ASSERT_EQ(found.chosen, std::vector<std::string>{"valve_lag@muscle_0"});
+  const Estimate filling = found.effects.front().parameters.at("fill_time_constant_s"),
+                 emptying = found.effects.front().parameters.at("vent_time_constant_s");
+  EXPECT_FALSE(filling.is_determined);
+  EXPECT_LT(filling.low, 0.01);
+  EXPECT_GT(filling.high, 1);
+  EXPECT_EQ(filling.value, emptying.value) << "for all that is known it fills as it vents";
+  EXPECT_TRUE(emptying.is_determined);
+  EXPECT_NEAR(emptying.value, 0.08, 0.005);
+  EXPECT_TRUE(contains(diagnosisSummary(found), "(these recordings do not determine it)"));
+}
+
+TEST(Diagnose, RefusesToAskAboutNothing) {
+  DiagnosisOptions options = few({"payload"});
+  options.exclude = {"payload"};
+  EXPECT_THROW(diagnose(plant({}), options), BadParameter);
+}
+
+TEST(Diagnose, NamesTheColumnsThatNothingIsComparedWith) {
+  std::vector<Recording> recordings = plant({});
+  recordings.front().signals.push_back({"angle_elbow_deg", std::vector<double>(400, 1.0)});
+  const Diagnosis found = diagnose(recordings, few({"payload"}));
+  EXPECT_TRUE(std::ranges::any_of(found.notes, [](const std::string& note) { return contains(note, "rig has no angle_elbow_deg"); }));
 }
 
 }  // namespace

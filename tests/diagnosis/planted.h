@@ -14,7 +14,21 @@ namespace musclesim::planted {
 
 constexpr double noise_mm = 0.05;
 
-/// What a rig with these effects measures under steps and a wave, 4 s.
+/// What a rig with these effects measures under the commands of a plan.
+inline Recording measuredUnder(const std::vector<ActiveEffect>& effects, const Recording& plan, std::uint64_t seed) {
+  ReplayOptions options;
+  options.effects = effects;
+  Recording recording = replayRecording(plan, options).simulated;
+  recording.file = plan.file;
+  recording.info.active_effects.clear();
+  recording.info.noise_std = {{"length_0_mm", noise_mm}};
+  std::erase_if(recording.signals, [](const Signal& s) { return s.name != "command_0" && s.name != "length_0_mm"; });
+  RandomStream random(seed, "planted");
+  for (double& value : recording.signals[1].values) value += noise_mm * random.normal();
+  return recording;
+}
+
+/// The same under steps and a wave, 4 s.
 inline Recording recorded(const std::vector<ActiveEffect>& effects, double amplitude, std::uint64_t seed) {
   Recording plan;
   plan.file = "plan_" + std::to_string(seed) + ".csv";
@@ -26,16 +40,7 @@ inline Recording recorded(const std::vector<ActiveEffect>& effects, double ampli
     const double step = std::fmod(t, 1.0) < 0.5 ? 1 : -1;
     plan.signals[0].values.push_back(0.45 + amplitude * (t < 2 ? step : std::sin(2 * std::numbers::pi * t)));
   }
-  ReplayOptions options;
-  options.effects = effects;
-  Recording recording = replayRecording(plan, options).simulated;
-  recording.file = plan.file;
-  recording.info.active_effects.clear();
-  recording.info.noise_std = {{"length_0_mm", noise_mm}};
-  std::erase_if(recording.signals, [](const Signal& s) { return s.name != "command_0" && s.name != "length_0_mm"; });
-  RandomStream random(seed, "planted");
-  for (double& value : recording.signals[1].values) value += noise_mm * random.normal();
-  return recording;
+  return measuredUnder(effects, plan, seed);
 }
 
 inline std::vector<Recording> plant(const std::vector<ActiveEffect>& effects) {

@@ -74,7 +74,7 @@ TEST(Report, GivesTheNumbersOfWhatComesNearest) {
   Diagnosis d = answer(Verdict::unexplained);
   d.attempt.effects = {"leak@muscle_0"};
   d.attempt.active_effects = {{"leak", "muscle_0", {{"leak_per_s", 0.25}}}};
-  EXPECT_TRUE(contains(diagnosisReport(d), "What comes nearest: leak@muscle_0 (leak_per_s = 0.25)."));
+  EXPECT_TRUE(contains(diagnosisReport(d), "What comes nearest: leak@muscle_0 (leak_per_s = 0.25, usual are 0.0003 to 0.05)."));
 }
 
 TEST(Report, ShowsTheLargestGapFirst) {

@@ -166,6 +166,10 @@ TEST(VerdictSentence, SaysHowLikelyNoneOfTheKnownEffectsIs) {
   EXPECT_FALSE(contains(verdictSentence(d), "none of the known effects"));
   d.none_of_these = 0.48;
   EXPECT_TRUE(contains(verdictSentence(d), "That none of the known effects is the cause is 48 % likely."));
+  d.candidates = {"creep"};
+  EXPECT_TRUE(contains(verdictSentence(d), "That creep is not the cause is 48 % likely; other effects were not asked about."));
+  d.candidates = {"creep", "valve_lag"};
+  EXPECT_TRUE(contains(verdictSentence(d), "That none of creep, valve_lag is the cause is 48 % likely; other effects"));
 }
 
 TEST(VerdictSentence, SaysWhatAnUnexplainedGapLooksLike) {

@@ -39,9 +39,10 @@ struct DiagnosisOptions {
 enum class Verdict { no_gap, effects_found, unexplained, not_excited };
 std::string nameOf(Verdict verdict);
 
-/// A value with its 95 % interval.
+/// A value with its 95 % interval; all that is possible where the recordings do not determine it.
 struct Estimate {
   double value = 0, low = 0, high = 0;
+  bool is_determined = true;
 };
 
 struct Place {
@@ -155,6 +156,7 @@ struct Diagnosis {
   std::string where_method;  ///< in words: which signals decided
   std::vector<FoundEffect> effects;
   double none_of_these = 0;
+  std::vector<std::string> candidates;  ///< ids that could be an answer, where that was not the whole catalogue
   std::vector<ExplanationProbability> explanations;
   std::vector<std::string> chosen, ambiguity_set;
   std::vector<ActiveEffect> chosen_effects;

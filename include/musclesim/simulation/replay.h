@@ -19,12 +19,13 @@ struct ReplayOptions {
   StepperKind stepper = StepperKind::automatic;
   int substeps = 0;
   bool plane = false;
-  std::uint64_t seed = 1;
+  std::optional<std::uint64_t> seed;
   Parameters parameters;              ///< wins over the sidecar's robot_parameters
   std::vector<ActiveEffect> effects;  ///< besides the sidecar's active_effects
   /// Called before the first row with the simulation; what it returns is shown the readings of every row.
   using Watcher = std::function<void(const State&)>;
   std::function<Watcher(Simulation&)> watch;
+  std::function<bool()> interrupted;  ///< true ends the replay soon
 };
 
 /// Difference of one signal, simulated minus recorded, over the samples where both are numbers.
@@ -35,13 +36,25 @@ struct SignalError {
 };
 
 struct ReplayResult {
-  Recording simulated;              ///< at the recording's times; shorter if the simulation diverged
+  Recording simulated;              ///< at the recording's times; shorter, and not complete, if it diverged or was interrupted
   std::vector<SignalError> errors;  ///< of every signal that both have, commands excepted
   JointGap worst_gap;
   int substeps = 1;
   std::string stepper;
   std::optional<std::string> divergence;  ///< the message, if it diverged
+  bool interrupted = false;
 };
+
+/// What a sidecar states of a model, so that simulationOptionsFor builds it again: robot, physics, initial state, parameters that differ
+/// from their defaults (the robot's own: all), ground plane, effects, noise, seed and step; as further members the stepper, its internal
+/// steps and all named parameters.
+RecordingInfo describeModel(Simulation& simulation, const std::string& initial_state);
+
+/// Signals of a recording that a robot with these does not report: nothing is compared with them.
+std::vector<std::string> unknownSignals(const Recording& recording, const std::vector<std::string>& of_robot);
+
+/// Another robot in place of the recording's, if one is given: parameters of the recording's own robot are left out.
+void replaceRobot(RecordingInfo& info, const std::optional<std::string>& robot);
 
 /// Options for a simulation of the recording's plant: physics, step, parameters of the robot. Throws BadFile if the recording names a robot
 /// that is not registered and the options none.

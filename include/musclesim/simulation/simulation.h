@@ -4,6 +4,7 @@
 #include <ode/ode.h>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -34,6 +35,7 @@ struct SimulationOptions {
   std::uint64_t seed = 1;
   Parameters parameters;              ///< overrides by name
   std::vector<ActiveEffect> effects;  ///< what the clean model leaves out
+  std::function<bool()> interrupted;  ///< asked before every internal step; true ends the step in Interrupted
 };
 
 /// The largest distance by which a joint is torn.
@@ -71,7 +73,8 @@ class Simulation {
   /// Pressures and tensions as they are now that new commands have been set: nothing moves on.
   void sense();
   /// One control step: pressures, forces, then the bodies, in substeps() internal steps.
-  /// Throws Diverged with time, place and cause; the world is then frozen as it was, and further steps throw the same again.
+  /// Throws Diverged with time, place and cause; the world is then frozen as it was, and further steps throw the same again. Throws
+  /// Interrupted within the step if the options ask for it; the time is then still that of the step's beginning.
   void step();
   /// The same for any duration, in equal internal steps no longer than those of step(). Throws BadParameter unless it is positive.
   void advance(double duration_s);
@@ -159,6 +162,7 @@ class Simulation {
   long step_count_ = 0;
   bool faulted_ = false;
   std::optional<Diverged> divergence_;
+  std::function<bool()> interrupted_;
   long solver_message_count_ = 0;
   TornJoint worst_gap_;
 
