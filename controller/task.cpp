@@ -27,7 +27,10 @@ BadParameter unknownTask(const std::string& task) {
 }  // namespace
 
 Vector reportedHand(const State& state) {
-  if (!state.hand_mm) throw BadParameter("the task needs a robot that reports its hand; this robot reports none");
+  if (!state.hand_mm)
+    throw BadParameter(
+        "the task needs a robot that reports its hand; this robot reports none: take a controller without a task, for example --controller "
+        "hold or random");
   const Vector& hand = *state.hand_mm;
   // Written so that NaN fails too.
   if (!(hand.cwiseAbs().array() <= kLargestHand_mm).all())

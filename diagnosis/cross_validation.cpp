@@ -1,4 +1,5 @@
-// Cross-validation: explanations are judged by recordings that their numbers were not fitted to.
+// What speaks against explanations beside their misfit: that they do not hold on recordings that their numbers were not fitted to, and
+// that they do as well at no strength.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -128,6 +129,31 @@ std::set<std::size_t> Attributor::sameCommandsAs(std::size_t stretch) const {
   for (std::size_t k = 0; k < fit_.stretches().size(); ++k)
     if (sameCommands(recordingOf(k), recordingOf(stretch))) result.insert(k);
   return result;
+}
+
+/// Whether one of its effects does as well at next to no strength, with its shape as it is: a leak without a leak is its regulator's lag.
+bool Attributor::isHollow(const Explanation& explanation) const {
+  constexpr double next_to_nothing = 1e-3, noticeable = 0.02;  // typical strengths; log misfit per affected cell
+  if (explanation.residual.size() != fit_.size()) return false;
+  const Eigen::VectorXd as_it_is = fit_.predicted(modelOf(explanation));
+  Eigen::Index first = 0;
+  for (const std::size_t index : explanation.suspects) {
+    const Suspect& suspect = result_.suspects[index];
+    const auto strength_count = static_cast<int>(suspect.strengths().size());
+    if (strength_count > 0 && strength_count < suspect.coordinateCount() && as_it_is.size() && !plant_.interrupted()) {
+      Explanation weak = explanation;
+      for (const int strength : suspect.strengths()) weak.z[first + strength] = next_to_nothing;
+      weak.z = clampedAll(weak.suspects, weak.z);
+      const Eigen::VectorXd predicted = fit_.predicted(modelOf(weak));
+      on_simulation_();
+      if (predicted.size() == fit_.size() && predicted.allFinite()) {
+        const double misfit = fit_.logMisfit(explanation.residual + as_it_is - predicted) / fit_.affectedCells(nominal_residual_);
+        if (misfit < explanation.log_misfit + noticeable) return true;
+      }
+    }
+    first += suspect.coordinateCount();
+  }
+  return false;
 }
 
 /// Fits every explanation that is not out of the question to all recordings and judges it by stretches that it has not seen, and its

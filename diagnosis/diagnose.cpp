@@ -122,8 +122,8 @@ class Run {
     for (const ComparedSignal& signal : plant_.signals())
       if (signal.floor.source == NoiseFloor::Source::quiet_rows) estimated.push_back(signal.name);
     if (!estimated.empty())
-      diagnosis_.notes.push_back(fmt::format("no repeats and no noise_std of {}: the noise floor was estimated from quiet rows",
-                                             fmt::join(estimated, ", ")));
+      diagnosis_.notes.push_back(
+          fmt::format("no repeats and no noise_std of {}: the noise floor was estimated from quiet rows", fmt::join(estimated, ", ")));
   }
 
   /// Throws BadParameter if nothing could be an answer.
@@ -269,12 +269,10 @@ class Run {
     std::ranges::stable_sort(diagnosis_.effects, [](const auto& a, const auto& b) { return a.probability > b.probability; });
     ambiguity();
     // What was found shows, if not where it is as strong as usual.
-    std::erase_if(diagnosis_.not_excited,
-                  [&](const std::string& label) {
-                    const auto& tried = diagnosis_.attempt.effects;
-                    return (found.contains(label) && found[label].probability >= listed) ||
-                           std::ranges::find(tried, label) != tried.end();
-                  });
+    std::erase_if(diagnosis_.not_excited, [&](const std::string& label) {
+      const auto& tried = diagnosis_.attempt.effects;
+      return (found.contains(label) && found[label].probability >= listed) || std::ranges::find(tried, label) != tried.end();
+    });
     for (FoundEffect& effect : diagnosis_.effects) effect.shrink_percent = singleShrink(effect.label());
   }
 

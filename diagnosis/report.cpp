@@ -215,7 +215,8 @@ std::string attemptWords(const Attempt& attempt) {
     for (const auto& [name, value] : effect.parameters)
       if (const auto* number = std::get_if<double>(&value)) {
         const auto parameter = std::ranges::find(info.parameters, name, &EffectParameter::name);
-        values.push_back(fmt::format("{} = {:.3g}{}", name, *number, parameter == info.parameters.end() ? "" : remarkOn(*parameter, *number)));
+        values.push_back(
+            fmt::format("{} = {:.3g}{}", name, *number, parameter == info.parameters.end() ? "" : remarkOn(*parameter, *number)));
       }
     words.push_back(fmt::format("{}@{} ({})", effect.id, effect.component, fmt::join(values, ", ")));
   }
@@ -304,10 +305,10 @@ std::string looks(const Diagnosis& d) {
     all.push_back({fmt::format("{}. {}", rank, look.effect), look.removed, fmt::format("{:.0f} %", 100 * look.removed), fitted});
   }
   const std::string which = places.size() <= shown ? "" : fmt::format("; these are the first {} and what was chosen", shown);
-  return lead(fmt::format(
-             "{} looked at{}. How much of the logarithm of the gap each would remove if its response "
-             "were proportional to its strength; a fit, which follows the response, may remove more{}:",
-             counted(places.size(), "effect on a component was", "effects on components were"), which, some_not_fitted ? "; the dark ones were fitted" : "")) +
+  return lead(fmt::format("{} looked at{}. How much of the logarithm of the gap each would remove if its response "
+                          "were proportional to its strength; a fit, which follows the response, may remove more{}:",
+                          counted(places.size(), "effect on a component was", "effects on components were"), which,
+                          some_not_fitted ? "; the dark ones were fitted" : "")) +
          sliding(barsFigure("First look", all, 1));
 }
 

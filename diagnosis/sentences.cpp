@@ -240,7 +240,8 @@ std::string otherwise(const Diagnosis& d) {
 std::string noneWords(const Diagnosis& d) {
   constexpr double worth_saying = 0.1;
   if (d.none_of_these < worth_saying) return "";
-  if (d.candidates.empty()) return fmt::format("That none of the known effects is the cause is {} likely.", probabilityWords(d.none_of_these));
+  if (d.candidates.empty())
+    return fmt::format("That none of the known effects is the cause is {} likely.", probabilityWords(d.none_of_these));
   return fmt::format("That {} is {} likely; other effects were not asked about.",
                      d.candidates.size() == 1 ? d.candidates.front() + " is not the cause"
                                               : fmt::format("none of {} is the cause", fmt::join(d.candidates, ", ")),

@@ -107,7 +107,7 @@ bool Suspect::isTime(int coordinate) const {
 int Suspect::counterpartOf(int coordinate) const {
   const auto nameOf = [this](const Coordinate& c) -> const std::string& { return info_.parameters[c.parameter].name; };
   const std::string fill = "fill_", vent = "vent_", &name = nameOf(coordinates_[static_cast<std::size_t>(coordinate)]);
-  const std::string wanted = name.starts_with(fill) ? vent + name.substr(fill.size())
+  const std::string wanted = name.starts_with(fill)   ? vent + name.substr(fill.size())
                              : name.starts_with(vent) ? fill + name.substr(vent.size())
                                                       : "";
   const auto found = std::ranges::find_if(coordinates_, [&](const Coordinate& c) { return nameOf(c) == wanted; });
@@ -115,7 +115,8 @@ int Suspect::counterpartOf(int coordinate) const {
 }
 
 double Suspect::coordinateLike(int coordinate, int other, double z_of_other) const {
-  return coordinateOf(coordinates_[static_cast<std::size_t>(coordinate)], valueOf(coordinates_[static_cast<std::size_t>(other)], z_of_other));
+  return coordinateOf(coordinates_[static_cast<std::size_t>(coordinate)],
+                      valueOf(coordinates_[static_cast<std::size_t>(other)], z_of_other));
 }
 
 double Suspect::valueOf(const Coordinate& c, double z) const {

@@ -58,11 +58,14 @@ print(f'Written by `scripts/make_practice_docs.sh`, version {commit}. ' +
 columns = [('verdict', 'verdict'), ('top1', 'top 1 by id'), ('top3', 'top 3 by id'), ('acceptable', 'acceptable first'), ('covered', 'truth in the set'), ('stage', 'first stage right')]
 print('| kind | cases | ' + ' | '.join(title for _, title in columns) + ' | mean probability on the truth | size of the set | median shrink |')
 print('|---' * (len(columns) + 5) + '|')
-for kind, s in list(score['by_kind'].items()) + [('all', score['overall'])]:
-    cells = [wilson(s[name], s['n']) if s.get(name) is not None else '' for name, _ in columns]
+kinds = score['by_kind']
+def counted(kind, name):  # cases to which a rate applies
+    return sum(s['n'] for other, s in kinds.items() if kind in (other, 'all') and s.get(name) is not None)
+for kind, s in list(kinds.items()) + [('all', score['overall'])]:
+    cells = [wilson(s[name], counted(kind, name)) if s.get(name) is not None and counted(kind, name) else '' for name, _ in columns]
     rest = ['' if s.get(name) is None else f'{s[name]:.2f}' for name in ('p_truth', 'size', 'shrink_median')]
     print(f'| {kind} | {s["n"]} | ' + ' | '.join(cells + rest) + ' |')
-print('\nRates with 95 % Wilson intervals; a rate over fewer cases than its row has (kinds to which it does not apply) is counted over the row.\n')
+print('\nRates with 95 % Wilson intervals, over the cases of kinds to which they apply.\n')
 print('| case | robot | true | said | chosen | probability of the first | none of these | shrink |\n|---' + '|---' * 7 + '|')
 for name, key in keys.items():
     try:

@@ -9,10 +9,14 @@ namespace musclesim::program {
 
 void addModelOptions(CLI::App& command, ModelOptions& options) {
   const std::string model = "Model";
-  command.add_option("--robot", options.robot, "Robot: arm, rig, elbow, wrist, spring_bench or a registered name (default: arm; of a recording its own)")->group(model);
+  command
+      .add_option("--robot", options.robot,
+                  "Robot: arm, rig, elbow, wrist, spring_bench or a registered name (default: arm; of a recording its own)")
+      ->group(model);
   command
       .add_option("--physics", options.physics,
-                  "si: true seconds; original: the published program's units; scaled: its constants in true units (default: si; of a recording its own)")
+                  "si: true seconds; original: the published program's units; scaled: its constants in true units (default: si; of a "
+                  "recording its own)")
       ->group(model);
   command
       .add_option("--initial-state", options.initial_state, "built: the pose as built; settled: at equilibrium (default: the robot's own)")

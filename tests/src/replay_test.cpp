@@ -57,6 +57,57 @@ TEST_F(ReplayCommand, ReproducesItsOwnRunsBitForBit) {
   EXPECT_EQ(again.time_s, readRecording((folder_ / "run.csv").string()).time_s);
 }
 
+/// What was simulated, not what was recorded: with the options of the replay, the ground plane and the seed.
+TEST_F(ReplayCommand, ASimulatedRecordingStatesItsOwnModel) {
+  record({"--plane", "--seed", "7"});
+  replay({"--out", "sim.csv", "--set", "elbow.forearm_kg=0.7", "--set", "force_law.b=1.5"});
+  const RecordingInfo info = readRecording((folder_ / "sim.csv").string()).info;
+  EXPECT_EQ(std::get<double>(info.robot_parameters.at("forearm_kg")), 0.7);
+  EXPECT_EQ(std::get<double>(info.robot_parameters.at("force_law.b")), 1.5);
+  EXPECT_TRUE(info.robot_parameters.contains("world.plane_height_mm"));
+  EXPECT_EQ(info.seed, 7u);
+  EXPECT_EQ(info.complete, true);
+  const ProgramResult again = runProgram({"replay", "sim.csv", "--json", "--quiet"}, folder_);
+  ASSERT_EQ(again.status, 0) << again.err;
+  const auto verdict = nlohmann::json::parse(again.out.substr(again.out.find('{')));
+  for (const auto& [name, error] : verdict.at("signals").items()) EXPECT_EQ(error.at("largest"), 0.0) << name;
+}
+
+TEST_F(ReplayCommand, WritesOverNothingThatWasNotSimulated) {
+  record({});
+  write("table.csv", "t,x\n0,1\n");
+  EXPECT_EQ(runProgram({"replay", "run.csv", "--out", "table.csv"}, folder_).status, 2);
+  write("measured.csv", "time_s,command_0,command_1\n0,0.5,0.5\n0.1,0.5,0.5\n");
+  write("measured.json", R"({"format": "musclesim-recording-1", "robot": "elbow"})");
+  const ProgramResult refused = runProgram({"replay", "measured.csv", "--out", "measured.csv"}, folder_);
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("did not simulate"), std::string::npos) << refused.err;
+  EXPECT_EQ(runProgram({"--simple", "--robot", "elbow", "--duration", "0.1", "--record", "measured.csv"}, folder_).status, 2);
+  EXPECT_EQ(runProgram({"replay", "run.csv", "--out", "run.csv", "--quiet"}, folder_).status, 0) << "a simulated one may be made anew";
+}
+
+/// Contract: the order of arguments is free.
+TEST_F(ReplayCommand, OptionsMayStandBeforeTheCommand) {
+  record({});
+  const ProgramResult result = runProgram({"--out", "sim.csv", "--quiet", "run.csv", "replay"}, folder_);
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_TRUE(fs::exists(folder_ / "sim.csv"));
+  const ProgramResult unknown = runProgram({"replai", "run.csv"}, folder_);
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_NE(unknown.err.find("did you mean replay?"), std::string::npos) << unknown.err;
+  const ProgramResult other = runProgram({"replay", "run.csv", "--duration", "1"}, folder_);
+  EXPECT_NE(other.err.find("--duration 1"), std::string::npos) << other.err;
+}
+
+TEST_F(ReplayCommand, NumbersInFilesThatCannotBeAreBadInput) {
+  record({});
+  write("model.toml", "[elbow]\nforearm_kg = -1\n");
+  const ProgramResult refused = runProgram({"replay", "run.csv", "--config", "model.toml"}, folder_);
+  EXPECT_EQ(refused.status, 3);
+  EXPECT_NE(refused.err.find("model.toml:2"), std::string::npos) << refused.err;
+  EXPECT_EQ(runProgram({"replay", "run.csv", "--set", "elbow.forearm_kg=-1"}, folder_).status, 2);
+}
+
 TEST_F(ReplayCommand, InterruptedVideosAreWhole) {
   if (std::system("command -v ffmpeg >/dev/null 2>&1") != 0) GTEST_SKIP() << "ffmpeg is not installed";
   const ProgramResult recorded =
