@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include <ctime>
+#include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "musclesim/error.h"
 #include "musclesim/log/recording.h"
@@ -40,16 +42,14 @@ void requireWritable(const fs::path& folder) {
   if (access(folder.c_str(), W_OK | X_OK) != 0) throw IoError(fmt::format("{}: nothing can be written there", folder.string()));
 }
 
+/// The sidecar tells: the table of a run that was killed may be torn.
 void requireReplaceable(const fs::path& csv) {
   if (!fs::exists(csv)) return;
-  const auto keep = [&](const std::string& what) {
-    throw BadParameter(fmt::format("{} exists and is {}: choose another name, or remove it", csv.string(), what));
-  };
-  try {
-    if (readRecording(csv.string()).info.program.empty()) keep("a recording that musclesim did not simulate");
-  } catch (const BadFile&) {
-    keep("no recording");
-  }
+  std::ifstream sidecar(sidecarPath(csv.string()));
+  const auto json = nlohmann::json::parse(sidecar, nullptr, false);
+  if (json.is_object() && json.contains("program")) return;
+  const char* what = json.is_object() ? "is a recording that musclesim did not simulate" : "is no recording";
+  throw BadParameter(fmt::format("{} exists and {}: choose another name, or remove it", csv.string(), what));
 }
 
 void requireOther(const fs::path& output, const std::vector<std::string>& inputs) {
