@@ -103,7 +103,7 @@ void Parameters::set(const std::string& name, const Parameter::Value& value, con
 }
 
 void Parameters::setFromFile(const std::string& name, const Parameter::Value& value, const std::string& file, int line) {
-  add({name, value, file, file, line});
+  add({name, value, {}, file, line});
 }
 
 void Parameters::setAll(const Parameters& others) {

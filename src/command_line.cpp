@@ -56,16 +56,19 @@ CommandLine::CommandLine()
   refuseEmptyValues(app_);
 }
 
+std::vector<std::string> CommandLine::commandNames() const {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app_.get_subcommands([](const CLI::App*) { return true; })) names.push_back(command->get_name());
+  return names;
+}
+
 /// The sub-command goes first, wherever it stands: what is before it is meant for it.
 std::vector<std::string> CommandLine::ordered(std::vector<std::string> arguments) const {
-  const auto commands = app_.get_subcommands([](const CLI::App*) { return true; });
-  const auto isCommand = [&](const std::string& word) {
-    return std::ranges::any_of(commands, [&](const CLI::App* command) { return command->get_name() == word; });
-  };
+  const std::vector<std::string> names = commandNames();
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const CLI::Option* before = i > 0 ? app_.get_option_no_throw(arguments[i - 1]) : nullptr;
     const bool is_value = before && before->get_expected_max() > 0;
-    if (is_value || !isCommand(arguments[i])) continue;
+    if (is_value || std::ranges::find(names, arguments[i]) == names.end()) continue;
     std::rotate(arguments.begin(), arguments.begin() + static_cast<std::ptrdiff_t>(i),
                 arguments.begin() + static_cast<std::ptrdiff_t>(i) + 1);
     break;
@@ -79,8 +82,7 @@ std::string CommandLine::messageFor(const CLI::ParseError& error) const {
   const std::vector<std::string> words = app_.remaining(true);
   std::string message = fmt::format("not expected here: {}", fmt::join(words, " "));
   if (words.empty() || words.front().starts_with('-') || !app_.get_subcommands().empty()) return message;
-  std::vector<std::string> names;
-  for (const CLI::App* command : app_.get_subcommands([](const CLI::App*) { return true; })) names.push_back(command->get_name());
+  const std::vector<std::string> names = commandNames();
   const std::string nearest = nearestName(words.front(), names);
   return message + (nearest.empty() ? fmt::format("; commands are {}", fmt::join(names, ", ")) : "; did you mean " + nearest + "?");
 }

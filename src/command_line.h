@@ -23,6 +23,7 @@ class CommandLine {
   int run();
 
  private:
+  std::vector<std::string> commandNames() const;
   std::vector<std::string> ordered(std::vector<std::string> arguments) const;
   std::string messageFor(const CLI::ParseError& error) const;
 
