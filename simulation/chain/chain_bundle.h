@@ -1,4 +1,4 @@
-/// Block elimination of four chains at once, one per lane of a Pack.
+/// Block elimination of two or four chains at once, one per lane of a Pack.
 ///
 /// The unknowns of a chain are the forces of its joints, node k for the joint between bead k and bead k + 1 (the last: the ball at the end
 /// on the bone B), six rows each. With the beads eliminated they couple neighbour with neighbour only:
@@ -6,6 +6,8 @@
 ///     A_k = J_k S J_k^T + cfm/h,   A_k,k+1 = J_k S J_k+1^T,   r_k = c/h - J_k a,   a = v/h + S f
 /// S the beads' inverse inertia, u_B the bone's new velocity / h, y_j the forces of the border rows, which stay for the core: the ball at
 /// the start (3 rows) and the free rows of contacts on the beads. Elimination runs from the start to the end, A_k = L D L^T.
+///
+/// Joints are a slider, a hinge, a slider, ..., a slider, the ball. Three rows of each push and turn, the others only turn: their v is 0.
 #pragma once
 
 #include <array>
@@ -14,6 +16,7 @@
 #include "body_state.h"
 #include "joint_rows.h"
 #include "pack.h"
+#include "wide.h"
 
 namespace musclesim::chain {
 
@@ -23,6 +26,7 @@ struct BeadInertia {
   double operator[](int component) const { return component < 3 ? per_mass : per_inertia; }
 };
 
+template <int lane_count>
 class ChainBundle {
  public:
   /// Chains of different length are aligned at their ends; the shorter one's first nodes are empty. Bead counts are even; 0: empty lane.
@@ -30,7 +34,7 @@ class ChainBundle {
 
   int nodeCount() const { return static_cast<int>(nodes_.size()); }
 
-  /// Rows of joint k of a chain, for the step h.
+  /// Rows of joint k of a chain, for the step h: v of a slider's rows 0..2 and of the others' rows 3..5 is taken as 0.
   void setJoint(int lane, int joint, const JointRows& rows, double h_s);
   void setInertia(int lane, const BeadInertia& inertia);
   /// a without the forces of rows at a bound.
@@ -68,10 +72,10 @@ class ChainBundle {
   void setBorderForce(int lane, int column, double force) { border_force_[static_cast<std::size_t>(column)].value[lane] = force; }
   /// Back substitution: forces of all joints, then the beads' new velocities / h.
   void substitute();
-  double axisForce(int lane, int joint) const { return nodes_[index(lane, joint)].force[5][lane]; }
+  double axisForce(int lane, int joint) const { return axes_[index(lane, joint)].force[lane]; }
   /// w of row 5 at a bound.
-  double axisSlack(int lane, int joint) const { return nodes_[index(lane, joint)].slack[lane]; }
-  double axisDiagonal(int lane, int joint) const { return nodes_[index(lane, joint)].own[5][5][lane]; }
+  double axisSlack(int lane, int joint) const { return axes_[index(lane, joint)].slack[lane]; }
+  double axisDiagonal(int lane, int joint) const { return axes_[index(lane, joint)].diagonal[lane]; }
   Vector6 velocity(int lane, int bead) const;
   /// Velocity of a bead along a row.
   double velocityAlong(int lane, int bead, const double jacobian[6]) const;
@@ -79,20 +83,26 @@ class ChainBundle {
   double largestVelocity() const;
 
  private:
+  using Pack = chain::Pack<lane_count>;
   struct Node {
     Pack jacobian[2][6][6];  ///< [body][row][v, w]
     Pack target[6];          ///< c/h
     Pack softness[6];        ///< cfm/h
     Pack own[6][6];          ///< A_k, lower part
     Pack next[6][6];         ///< A_k,k+1
-    Pack free;               ///< 1 where row 5 takes part, 0 where its force is given
-    Pack given;              ///< that force
     Pack factor[6][6];       ///< L below the diagonal
     Pack per_pivot[6];       ///< 1 / D
     Pack coupling[6][6];     ///< L^-1 A_k,k+1; last node: L^-1 J of the bone B
     Pack right[6];           ///< L^-1 r_k
     Pack force[6];           ///< l
-    Pack slack;
+  };
+  /// Row 5 of a node, apart from the rest because it is asked about joint by joint.
+  struct Axis {
+    Pack free;      ///< 1 where it takes part, 0 where its force is given
+    Pack given;     ///< that force
+    Pack force;     ///< l
+    Pack slack;     ///< w
+    Pack diagonal;  ///< of A_k
   };
   struct Bead {
     Pack free_motion[6];  ///< v/h + S f
@@ -112,16 +122,47 @@ class ChainBundle {
   };
   struct Carry;
 
+  MUSCLESIM_INLINE static Pack all(double value) { return Pack{} + value; }
+  /// Product of 6-vectors (v, w).
+  template <typename Other>
+  MUSCLESIM_INLINE static Pack dot(const Pack a[6], const Other b[6]) {
+    Pack sum = a[0] * b[0];
+    for (int i = 1; i < 6; ++i) sum += a[i] * b[i];
+    return sum;
+  }
+  /// The same; without `push`, v of one of them is 0.
+  template <bool push>
+  MUSCLESIM_INLINE static Pack dotOf(const Pack a[6], const Pack b[6]) {
+    if constexpr (push) return dot(a, b);
+    Pack sum = a[3] * b[3];
+    for (int i = 4; i < 6; ++i) sum += a[i] * b[i];
+    return sum;
+  }
+  /// y <- L^-1 y with unit lower L.
+  MUSCLESIM_INLINE static void forward(const Pack factor[6][6], Pack y[6]) {
+    for (int i = 1; i < 6; ++i)
+      for (int j = 0; j < i; ++j) y[i] -= factor[i][j] * y[j];
+  }
   std::size_t index(int lane, int joint) const { return static_cast<std::size_t>(offset_[static_cast<std::size_t>(lane)] + joint); }
+  /// The first of the three rows of a joint that push. A slider stands between the two beads of each link.
+  static constexpr int firstPushing(int joint) { return joint % 2 == 0 ? 3 : 0; }
   static std::size_t blockIndex(int i, int j) {
     const int high = i > j ? i : j, low = i > j ? j : i;
     return static_cast<std::size_t>(high * (high + 1) / 2 + low);
   }
   Column* borderOf(int node) { return border_.data() + static_cast<std::size_t>(node) * border_capacity_; }
   const Column* borderOf(int node) const { return border_.data() + static_cast<std::size_t>(node) * border_capacity_; }
+  // In functions of their own, since what is compiled several times cannot be called from other files.
+  MUSCLESIM_WIDE void makeAllBlocks();
+  MUSCLESIM_WIDE void eliminateNodes();
+  MUSCLESIM_WIDE void substituteAll();
   void growBorder(int count);
   void fillBorder();
-  void moveBeads();
+  MUSCLESIM_INLINE void moveBeads();
+  template <bool slider, bool push>
+  MUSCLESIM_INLINE void makeThreeRows(std::size_t k);
+  template <bool push>
+  MUSCLESIM_INLINE void makeThreeRights(std::size_t k, int first, const Carry& carry);
   MUSCLESIM_INLINE void factorise(Node& node, Pack own[6][6]) const;
   MUSCLESIM_INLINE void factoriseNode(int k, const Carry& carry);
   MUSCLESIM_INLINE void reduceColumns(int k, const Carry& carry);
@@ -141,15 +182,19 @@ class ChainBundle {
   std::size_t border_capacity_ = 0;
   Pack per_mass_{}, per_inertia_{};
   std::vector<Node> nodes_;
+  std::vector<Axis> axes_;
   std::vector<Bead> beads_;
   std::vector<Column> border_;
   std::vector<BorderEntry> entries_;
-  std::vector<int> first_node_;  ///< of every border row: the first with which it couples
+  std::vector<int> first_node_, last_node_;  ///< of every border row: with which it couples before the elimination
   std::vector<Single> border_block_, border_right_, border_force_;
   std::vector<Column> bone_coupling_;
   Matrix6 bone_mass_[lane_count];
   Vector6 bone_momentum_[lane_count];
   Pack bone_velocity_[6] = {};
 };
+
+extern template class ChainBundle<2>;
+extern template class ChainBundle<4>;
 
 }  // namespace musclesim::chain

@@ -37,15 +37,15 @@ StepProblem::StepProblem(Model& model) : model_(model) {
   });
   chains_.resize(order.size());
   // The incomplete bundle takes the shortest.
-  for (std::size_t first = 0, end = (order.size() + lane_count - 1) % lane_count + 1; first < order.size();
-       first = end, end += lane_count) {
-    std::array<int, lane_count> counts = {};
-    for (std::size_t lane = 0; first + lane < end; ++lane) {
-      const auto number = static_cast<std::size_t>(order[first + lane]);
-      counts[lane] = model.chains[number].beadCount();
+  constexpr std::size_t most = Bundle::most_chains;
+  for (std::size_t first = 0, end = (order.size() + most - 1) % most + 1; first < order.size(); first = end, end += most) {
+    std::vector<int> counts;
+    for (std::size_t i = first; i < end; ++i) {
+      const auto number = static_cast<std::size_t>(order[i]);
       chains_[number].bundle = static_cast<int>(bundles_.size());
-      chains_[number].lane = static_cast<int>(lane);
+      chains_[number].lane = static_cast<int>(i - first);
       chains_[number].joints.resize(model.chains[number].joints.size());
+      counts.push_back(model.chains[number].beadCount());
     }
     bundles_.emplace_back(counts);
   }
@@ -93,7 +93,7 @@ void StepProblem::reserve() {
     chain.border_rows.reserve(3 + 3 * contacts_per_chain);
     chain.border_contacts.reserve(3 * contacts_per_chain);
   }
-  for (ChainBundle& bundle : bundles_) bundle.reserve(3 + 3 * contacts_per_chain);
+  for (Bundle& bundle : bundles_) bundle.reserve(3 + 3 * contacts_per_chain);
   layout_.row_count = 3 * static_cast<int>(chains_.size()) + 6 * static_cast<int>(skeleton_.size()) + contact_count;
   core_.reset(layout_);
 }
@@ -209,7 +209,7 @@ void StepProblem::setUpBundles() {
   for (std::size_t c = 0; c < chains_.size(); ++c) {
     const Chain& chain = model_.chains[c];
     ChainState& state = chains_[c];
-    ChainBundle& bundle = bundles_[static_cast<std::size_t>(state.bundle)];
+    Bundle& bundle = bundles_[static_cast<std::size_t>(state.bundle)];
     const BeadInertia inertia = {1 / chain.bead_mass_g, 1 / chain.bead_inertia};
     bundle.setInertia(state.lane, inertia);
     for (int k = 0; k < chain.beadCount(); ++k) {
@@ -221,7 +221,7 @@ void StepProblem::setUpBundles() {
     }
     setUpStart(c);
   }
-  for (ChainBundle& bundle : bundles_) bundle.makeBlocks();
+  for (Bundle& bundle : bundles_) bundle.makeBlocks();
 }
 
 void StepProblem::setUpStart(std::size_t number) {

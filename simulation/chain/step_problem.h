@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "box_active_set.h"
-#include "chain_bundle.h"
+#include "bundle.h"
 #include "contact_set.h"
 #include "core_order.h"
 #include "model.h"
@@ -129,7 +129,7 @@ class StepProblem final : public BoxProblem {
   std::vector<ChainState> chains_;
   std::vector<JointState> skeleton_, fixed_;
   std::vector<BoneState> bones_;
-  std::vector<ChainBundle> bundles_;
+  std::vector<Bundle> bundles_;
   std::vector<char> bundle_dirty_;
   CoreOrder order_;
   bool keeps_bones_ = false;  ///< bones that move are unknowns of the core

@@ -46,7 +46,7 @@ void StepProblem::setUpBorders() {
     if (bundle_dirty_[p]) bundles_[p].clearBeadForces();
   }
   for (ChainState& chain : chains_) {
-    ChainBundle& bundle = bundles_[static_cast<std::size_t>(chain.bundle)];
+    Bundle& bundle = bundles_[static_cast<std::size_t>(chain.bundle)];
     chain.border_contacts.clear();
     for (int row = 0; row < 3; ++row) bundle.addBorder(chain.lane, row, 0, chain.start.rows.jacobian[0][row]);
     if (!bundle_dirty_[static_cast<std::size_t>(chain.bundle)]) continue;
@@ -70,7 +70,7 @@ void StepProblem::setUpContactBorder(std::size_t number, int row) {
     const auto place = model_.placeOf(contact.body[side]);
     if (place.chain < 0) continue;
     ChainState& chain = chains_[static_cast<std::size_t>(place.chain)];
-    ChainBundle& bundle = bundles_[static_cast<std::size_t>(chain.bundle)];
+    Bundle& bundle = bundles_[static_cast<std::size_t>(chain.bundle)];
     if (!free) {
       if (bundle_dirty_[static_cast<std::size_t>(chain.bundle)])
         bundle.addBeadForce(chain.lane, place.bead, contact.jacobian[side][row], givenForce(contact, row));
@@ -136,7 +136,7 @@ void StepProblem::findStiffStart(std::size_t number) {
   ChainState& state = chains_[number];
   std::fill_n(state.start_in_band, 3, keeps_bones_);
   if (!keeps_bones_) return;
-  const ChainBundle& bundle = bundles_[static_cast<std::size_t>(state.bundle)];
+  const Bundle& bundle = bundles_[static_cast<std::size_t>(state.bundle)];
   Eigen::Matrix3d d = state.start_block;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) d(i, j) -= bundle.borderBlock(state.lane, i, j);
@@ -190,7 +190,7 @@ void StepProblem::addBones() {
 void StepProblem::addChain(std::size_t number) {
   const ChainState& state = chains_[number];
   const Chain& chain = model_.chains[number];
-  const ChainBundle& bundle = bundles_[static_cast<std::size_t>(state.bundle)];
+  const Bundle& bundle = bundles_[static_cast<std::size_t>(state.bundle)];
   const int lane = state.lane;
   const int* rows = state.border_rows.data();
   const double per_h = 1 / conditions_.h_s;
@@ -283,14 +283,14 @@ void StepProblem::substitute() {
   const Vector6 rest = Vector6::Zero();
   for (std::size_t c = 0; c < chains_.size(); ++c) {
     const ChainState& chain = chains_[c];
-    ChainBundle& bundle = bundles_[static_cast<std::size_t>(chain.bundle)];
+    Bundle& bundle = bundles_[static_cast<std::size_t>(chain.bundle)];
     const int end_bone = model_.chains[c].joints.back().body[1];
     bundle.setBoneVelocity(chain.lane, end_bone >= 0 ? core_.velocity(end_bone) : rest);
     for (std::size_t i = 0; i < chain.border_rows.size(); ++i)
       bundle.setBorderForce(chain.lane, static_cast<int>(i), core_.force(chain.border_rows[i]));
   }
   velocity_scale_ = force_scale_ = 0;
-  for (ChainBundle& bundle : bundles_) {
+  for (Bundle& bundle : bundles_) {
     bundle.substitute();
     velocity_scale_ = std::max(velocity_scale_, bundle.largestVelocity());
   }
@@ -306,7 +306,7 @@ void StepProblem::giveForces(std::vector<BoundedRow>& rows) {
     const bool free = rows[i].state == RowState::free;
     if (place.kind == RowKind::chain_joint) {
       const ChainState& chain = chains_[owner];
-      const ChainBundle& bundle = bundles_[static_cast<std::size_t>(chain.bundle)];
+      const Bundle& bundle = bundles_[static_cast<std::size_t>(chain.bundle)];
       (free ? rows[i].force : rows[i].slack) = free ? bundle.axisForce(chain.lane, place.part) : bundle.axisSlack(chain.lane, place.part);
     } else if (place.kind == RowKind::skeleton_joint) {
       (free ? rows[i].force : rows[i].slack) = free ? core_.force(skeleton_[owner].core_row + 5) : slackOfSkeleton(owner);

@@ -84,17 +84,18 @@ BENCHMARK(jointRows)->Arg(10)->Arg(30);
 void fourChains(benchmark::State& state) {
   const auto bead_count = static_cast<int>(state.range(0));
   RandomStream random(1, "benchmark");
-  chain::ChainBundle bundle({bead_count, bead_count, bead_count, bead_count});
+  chain::ChainBundle<4> bundle({bead_count, bead_count, bead_count, bead_count});
   bundle.reserve(3);
-  for (int lane = 0; lane < chain::lane_count; ++lane) {
+  for (int lane = 0; lane < 4; ++lane) {
     bundle.setInertia(lane, {0.1, 0.02});
     for (int joint = 0; joint < bead_count; ++joint) {
       chain::JointRows rows;
       rows.row_count = joint + 1 < bead_count ? 6 : 3;
       for (int row = 0; row < rows.row_count; ++row) {
         rows.softness[row] = 1e-3;
+        const bool pushes = (row >= 3) == (joint % 2 == 0);
         for (auto& body : rows.jacobian)
-          for (double& entry : body[row]) entry = random.normal();
+          for (int i = pushes ? 0 : 3; i < 6; ++i) body[row][i] = random.normal();
       }
       bundle.setJoint(lane, joint, rows, 8e-4);
       bundle.setFreeMotion(lane, joint, chain::Vector6::Ones());

@@ -9,7 +9,7 @@
 namespace musclesim::chain {
 namespace {
 
-/// A chain of random rows, as ChainBundle sees it and as one dense system
+/// A chain of random rows, sliders and hinges in turn, as ChainBundle sees it and as one dense system
 ///     J u + cfm/h l = c/h,   u = a + S J^T l   with u of the bone and y of the border given.
 struct RandomChain {
   int beads;
@@ -28,8 +28,9 @@ struct RandomChain {
       for (int row = 0; row < rows.row_count; ++row) {
         rows.velocity[row] = random.normal();
         rows.softness[row] = 1e-3;
+        const bool pushes = (row >= 3) == (k % 2 == 0);
         for (auto& body : rows.jacobian)
-          for (double& entry : body[row]) entry = random.normal();
+          for (int i = pushes ? 0 : 3; i < 6; ++i) body[row][i] = random.normal();
       }
       Vector6 motion;
       for (int i = 0; i < 6; ++i) motion[i] = random.normal();
@@ -43,7 +44,8 @@ struct RandomChain {
     for (int i = 0; i < 6; ++i) bone_velocity[i] = random.normal();
   }
 
-  void put(ChainBundle& bundle, int lane, double h_s) const {
+  template <typename Bundle>
+  void put(Bundle& bundle, int lane, double h_s) const {
     bundle.setInertia(lane, inertia);
     for (int k = 0; k < beads; ++k) {
       const auto i = static_cast<std::size_t>(k);
@@ -94,28 +96,52 @@ struct RandomChain {
   }
 };
 
+template <int lane_count>
+void expectLanesLikeTheDenseSystem(RandomStream& random, const std::array<int, lane_count>& counts) {
+  const double h_s = 0.01;
+  ChainBundle<lane_count> bundle(counts);
+  std::vector<RandomChain> chains;
+  for (const int beads : counts)
+    if (beads > 0) chains.emplace_back(random, beads);
+  for (std::size_t lane = 0; lane < chains.size(); ++lane) chains[lane].put(bundle, static_cast<int>(lane), h_s);
+  bundle.makeBlocks();
+  bundle.eliminate();
+  for (std::size_t lane = 0; lane < chains.size(); ++lane) {
+    bundle.setBoneVelocity(static_cast<int>(lane), chains[lane].bone_velocity);
+    for (int c = 0; c < 3; ++c) bundle.setBorderForce(static_cast<int>(lane), c, chains[lane].border_force[c]);
+  }
+  bundle.substitute();
+  for (std::size_t lane = 0; lane < chains.size(); ++lane) {
+    const Eigen::VectorXd expected = chains[lane].velocities(h_s);
+    for (int k = 0; k < chains[lane].beads; ++k)
+      EXPECT_LT((bundle.velocity(static_cast<int>(lane), k) - expected.segment<6>(6 * k)).norm(), 1e-7 * expected.norm()) << k;
+  }
+}
+
 TEST(ChainBundle, LanesMatchTheDenseSystem) {
   RandomStream random(3, "chains");
-  const double h_s = 0.01;
-  for (const std::array<int, lane_count>& counts : {std::array{4, 4, 4, 4}, {2, 8, 4, 6}, {10, 6, 2, 0}, {6, 4, 0, 0}, {6, 0, 0, 0}}) {
-    ChainBundle bundle(counts);
-    std::vector<RandomChain> chains;
-    for (const int beads : counts)
-      if (beads > 0) chains.emplace_back(random, beads);
-    for (std::size_t lane = 0; lane < chains.size(); ++lane) chains[lane].put(bundle, static_cast<int>(lane), h_s);
+  for (const std::array<int, 4>& counts : {std::array{4, 4, 4, 4}, {2, 8, 4, 6}, {10, 6, 2, 0}, {6, 4, 0, 0}, {6, 0, 0, 0}})
+    expectLanesLikeTheDenseSystem<4>(random, counts);
+  for (const std::array<int, 2>& counts : {std::array{6, 6}, {2, 8}, {4, 0}}) expectLanesLikeTheDenseSystem<2>(random, counts);
+}
+
+/// The same chain takes the same operations in two lanes and in four.
+TEST(ChainBundle, WidthLeavesTheBits) {
+  RandomStream random(4, "chains");
+  const RandomChain chain(random, 8);
+  ChainBundle<2> two({8, 0});
+  ChainBundle<4> four({0, 0, 0, 8});
+  const auto solve = [&](auto& bundle, int lane) {
+    chain.put(bundle, lane, 0.01);
     bundle.makeBlocks();
     bundle.eliminate();
-    for (std::size_t lane = 0; lane < chains.size(); ++lane) {
-      bundle.setBoneVelocity(static_cast<int>(lane), chains[lane].bone_velocity);
-      for (int c = 0; c < 3; ++c) bundle.setBorderForce(static_cast<int>(lane), c, chains[lane].border_force[c]);
-    }
+    bundle.setBoneVelocity(lane, chain.bone_velocity);
+    for (int c = 0; c < 3; ++c) bundle.setBorderForce(lane, c, chain.border_force[c]);
     bundle.substitute();
-    for (std::size_t lane = 0; lane < chains.size(); ++lane) {
-      const Eigen::VectorXd expected = chains[lane].velocities(h_s);
-      for (int k = 0; k < chains[lane].beads; ++k)
-        EXPECT_LT((bundle.velocity(static_cast<int>(lane), k) - expected.segment<6>(6 * k)).norm(), 1e-7 * expected.norm()) << k;
-    }
-  }
+  };
+  solve(two, 0);
+  solve(four, 3);
+  for (int k = 0; k < 8; ++k) EXPECT_EQ(two.velocity(0, k), four.velocity(3, k)) << k;
 }
 
 }  // namespace

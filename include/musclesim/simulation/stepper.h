@@ -36,8 +36,7 @@ struct BodyBounds {
   double farthest_mm, fastest_mm_per_s;
   /// Throws BodyOutOfBounds; numbers that are not finite are out of bounds.
   void require(dBodyID body, const Vector& position_mm, const Vector& velocity_mm_per_s) const {
-    const bool within = position_mm.cwiseAbs().maxCoeff() <= farthest_mm && velocity_mm_per_s.cwiseAbs().maxCoeff() <= fastest_mm_per_s &&
-                        position_mm.allFinite() && velocity_mm_per_s.allFinite();
+    const bool within = (position_mm.array().abs() <= farthest_mm).all() && (velocity_mm_per_s.array().abs() <= fastest_mm_per_s).all();
     if (!within) refuse(body, position_mm, velocity_mm_per_s);
   }
 
