@@ -53,14 +53,27 @@ const Unit* unitOf(const std::string& quantity, const std::string& unit) {
   return nullptr;
 }
 
-/// A column's name and its unit: behind a colon, or the name's ending.
-std::pair<std::string, std::string> splitUnit(const std::string& written) {
+/// A column's name, its unit, and whether it is written: behind a colon, or as the name's ending.
+struct MappedColumn {
+  std::string name, unit;
+  bool has_unit;
+};
+
+MappedColumn splitUnit(const std::string& written) {
   if (const auto colon = written.rfind(':'); colon != std::string::npos) {
     const std::string unit = written.substr(colon + 1);
-    return {written.substr(0, colon), unit == "fraction" ? "" : unit};
+    return {written.substr(0, colon), unit == "fraction" ? "" : unit, true};
   }
   const auto underscore = written.rfind('_');
-  return {written, underscore == std::string::npos ? "?" : written.substr(underscore + 1)};
+  const std::string ending = underscore == std::string::npos ? "" : written.substr(underscore + 1);
+  const bool is_unit =
+      std::any_of(units().begin(), units().end(), [&](const Unit& unit) { return !ending.empty() && unit.unit == ending; });
+  return {written, is_unit ? ending : "", is_unit};
+}
+
+/// What a name without a unit is taken for: fraction, mm, N.
+const Unit& plainUnit(const std::string& quantity) {
+  return *std::find_if(units().begin(), units().end(), [&](const Unit& unit) { return unit.quantity == quantity; });
 }
 
 }  // namespace
@@ -97,20 +110,20 @@ std::size_t PointColumns::indexOf(const std::string& name) const {
                 fmt::format("there is no column {}; the columns are {}", inQuotes(name), fmt::join(names, ", ")));
 }
 
-PointColumn PointColumns::find(const std::string& quantity, const StaticPointsOptions& options) const {
+PointColumn PointColumns::find(const std::string& quantity, const StaticPointsOptions& options) {
   const auto columnOf = [&](std::size_t index, const Unit& unit) {
     return PointColumn{index, std::string(reader_.header()[index].text), unit.factor, unit.lowest, unit.highest, unit.unit, unit.hint};
   };
   for (const auto& [mapped, written] : options.columns) {
     if (mapped != quantity) continue;
-    const auto [name, unit_name] = splitUnit(written);
-    if (const Unit* unit = unitOf(quantity, unit_name)) return columnOf(indexOf(name), *unit);
-    throw BadParameter(
-        "--columns", quantity + "=" + written,
-        fmt::format("say the unit: a column that ends like {}, or NAME:unit, for example {}={}:{}", allowedNames(quantity), quantity, name,
-                    quantity == "pressure" ? "fraction"
-                    : quantity == "length" ? "mm"
-                                           : "N"));
+    const MappedColumn column = splitUnit(written);
+    const Unit* unit = column.has_unit ? unitOf(quantity, column.unit) : &plainUnit(quantity);
+    if (!unit)
+      throw BadParameter("--columns", quantity + "=" + written,
+                         fmt::format("be a column that ends like {}, or NAME:unit with such a unit", allowedNames(quantity)));
+    if (!column.has_unit)
+      assumed_.push_back(fmt::format("{} in {}", column.name, unit->unit.empty() ? "fractions of full scale" : unit->unit));
+    return columnOf(indexOf(column.name), *unit);
   }
   std::vector<PointColumn> found;
   for (std::size_t i = 0; i < reader_.header().size(); ++i)

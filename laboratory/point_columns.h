@@ -34,16 +34,18 @@ class PointColumns {
   /// Whether a row passes the filters.
   bool selects(const std::vector<CsvCell>& cells) const;
   const std::vector<std::string>& ignored() const { return ignored_; }
+  /// Mapped columns whose names have no unit, with the one they are taken to be in.
+  const std::vector<std::string>& assumed() const { return assumed_; }
 
  private:
   std::size_t indexOf(const std::string& name) const;
-  PointColumn find(const std::string& quantity, const StaticPointsOptions& options) const;
+  PointColumn find(const std::string& quantity, const StaticPointsOptions& options);
 
   const CsvReader& reader_;
   std::string file_;
   std::vector<PointColumn> columns_;
   std::vector<std::pair<std::size_t, std::string>> filters_;
-  std::vector<std::string> ignored_;
+  std::vector<std::string> ignored_, assumed_;
 };
 
 }  // namespace musclesim

@@ -104,6 +104,8 @@ StaticPoints parseStaticPoints(const std::string& text, const std::string& file,
   result.file = file;
   CsvReader reader(text, file);
   const PointColumns columns(reader, file, options);
+  if (const auto& assumed = columns.assumed(); !assumed.empty())
+    result.notes.push_back(fmt::format("no unit is given; taken to be: {}", fmt::join(assumed, ", ")));
   if (const auto& ignored = columns.ignored(); !ignored.empty())
     result.notes.push_back(fmt::format("columns not used: {}", fmt::join(ignored, ", ")));
   result.points = readRows(reader, columns, result);

@@ -123,7 +123,9 @@ Action addFit(CLI::App& command) {
   command.add_option("data", arguments->data, "Table of static points: pressure or pressure_kPa|bar|MPa, length_mm|cm|m, force_N")
       ->required();
   command.add_option("--law", arguments->law, fmt::format("all, or one of {}", fmt::join(lawModelNames(), ", ")))->capture_default_str();
-  command.add_option("--columns", arguments->columns, "pressure=NAME,length=NAME,force=NAME: other columns; NAME:unit gives a unit")
+  command
+      .add_option("--columns", arguments->columns,
+                  "pressure=NAME,length=NAME,force=NAME: other columns; NAME:unit gives a unit (else fraction, mm, N)")
       ->delimiter(',');
   command.add_option("--where", arguments->where, "column=value: only these rows; may be repeated")->delimiter(',');
   command.add_option("--full-scale-kPa", arguments->full_scale_kPa, "Pressure of fraction 1 (default: the largest of the file)")
