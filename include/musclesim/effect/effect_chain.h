@@ -54,7 +54,6 @@ class EffectChain {
 
   /// Standard deviations of the sensors' noise by signal, where there is any.
   const std::map<std::string, double>& noise() const;
-  double clockS() const { return clock_s_; }
   /// Rate of a muscle's length over the last internal step, mm/s.
   double lengthRateMmPerS(std::size_t muscle) const;
   /// Whether an effect of that id acts on anything.

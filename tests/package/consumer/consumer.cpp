@@ -1,4 +1,4 @@
-#include <musclesim/simulation/simulation.h>
+#include <musclesim/musclesim.h>
 
 int main() {
   musclesim::Simulation simulation;

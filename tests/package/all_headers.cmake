@@ -1,0 +1,10 @@
+# Every public header is in musclesim.h. Variables: include (folder of public headers).
+file(GLOB_RECURSE headers RELATIVE ${include} ${include}/musclesim/*.h)
+list(REMOVE_ITEM headers musclesim/musclesim.h)
+file(READ ${include}/musclesim/musclesim.h text)
+foreach(header IN LISTS headers)
+  string(FIND "${text}" "#include \"${header}\"" place)
+  if(place EQUAL -1)
+    message(SEND_ERROR "include/musclesim/musclesim.h does not include ${header}")
+  endif()
+endforeach()
