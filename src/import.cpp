@@ -4,7 +4,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "commands.h"
+#include "musclesim/robot/robot.h"
 #include "output_folder.h"
 
 namespace musclesim::program {
@@ -22,6 +25,12 @@ int importCommand(const ImportArguments& arguments) {
   const Recording recording = importTable(arguments.table, readImportMapping(arguments.mapping));
   if (!arguments.quiet)
     for (const auto& note : recording.notes) std::fprintf(stderr, "musclesim: %s\n", note.c_str());
+  const auto robots = Robot::registered();
+  if (!arguments.quiet &&
+      std::none_of(robots.begin(), robots.end(), [&](const auto& robot) { return robot.first == recording.info.robot; }))
+    std::fprintf(stderr, "musclesim: robot %s is none of this program's: only a program that registers it can replay the recording\n",
+                 recording.info.robot.c_str());
+  prepareRecording(arguments.out);
   writeRecording(recording, arguments.out);
   std::vector<std::string> names;
   for (const Signal& signal : recording.signals) names.push_back(signal.name);

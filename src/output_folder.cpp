@@ -42,6 +42,11 @@ void requireWritable(const fs::path& folder) {
   if (access(folder.c_str(), W_OK | X_OK) != 0) throw IoError(fmt::format("{}: nothing can be written there", folder.string()));
 }
 
+void prepareRecording(const fs::path& csv) {
+  if (csv.extension() != ".csv") throw BadParameter("recording", csv.string(), "end in .csv");
+  if (csv.has_parent_path()) makeFolder(csv.parent_path());
+}
+
 /// The sidecar tells: the table of a run that was killed may be torn.
 void requireReplaceable(const fs::path& csv) {
   if (!fs::exists(csv)) return;

@@ -20,6 +20,9 @@ void makeFolder(const std::filesystem::path& folder);
 /// Throws IoError if nothing can be written into a folder.
 void requireWritable(const std::filesystem::path& folder);
 
+/// Throws BadParameter unless a recording's file ends in .csv, and makes the folder it is to be in. Throws IoError if that cannot be made.
+void prepareRecording(const std::filesystem::path& csv);
+
 /// Throws BadParameter if a recording of that name would replace one that was not simulated, or another table.
 void requireReplaceable(const std::filesystem::path& csv);
 

@@ -49,7 +49,10 @@ nlohmann::json verdictOf(const ReplayResult& result, const ReplayArguments& argu
 }
 
 int replay(const ModelOptions& model, const ReplayArguments& arguments) {
-  if (arguments.out) requireReplaceable(*arguments.out);
+  if (arguments.out) {
+    requireReplaceable(*arguments.out);
+    prepareRecording(*arguments.out);
+  }
   const Recording recording = readRecording(arguments.recording, {arguments.ignore_columns});
   for (const auto& note : recording.notes) say(model, note);
   std::unique_ptr<Spectator> spectator;

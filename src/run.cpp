@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "commands.h"
 #include "interrupt.h"
@@ -90,8 +91,8 @@ class Run {
     const musclesim::Action first_action = controller_->output(first_state);
     const fs::path csv = recordingPath(options_, simulation_.seed());
     requireReplaceable(csv);
+    prepareRecording(csv);
     addSpectator(first_state, csv);
-    if (csv.has_parent_path()) makeFolder(csv.parent_path());
     Recorder recorder(csv.string(), describe(simulation_, options_, initial_state), columns());
     say(model_, fmt::format("{} physics, stepper {}, {} internal steps of {:.4g} s per step of {:g} s, seed {}",
                             nameOf(simulation_.physics().kind), simulation_.stepper().name(), simulation_.substeps(),
@@ -211,9 +212,13 @@ class Run {
     const long step_count = std::lround(duration_s_ / simulation_.stepS());
     const long record_every = std::max(1L, std::lround(options_.record_interval_s.value_or(simulation_.stepS()) / simulation_.stepS()));
     for (long i = 0; i < step_count && goes_on_ && interruptSignal() == 0; ++i) {
-      if (i > 0) action = controller_->output(robot().getState());
+      const bool due = i % record_every == 0;
+      if (i > 0) {
+        const musclesim::Action before = std::exchange(action, controller_->output(robot().getState()));
+        if (!due && action != before) warnOfLateCommands(static_cast<double>(record_every) * simulation_.stepS());
+      }
       robot().step(action);
-      record(recorder, progress, i % record_every == 0);
+      record(recorder, progress, due);
       simulation_.step();
       warnOfGap();
     }
@@ -227,6 +232,14 @@ class Run {
     if (due) recorder.append(state.time_s, row(state));
     progress.show(state.time_s, state.hand_mm ? fmt::format("height {:.0f} mm", state.hand_mm->y()) : "");
     if (spectator_) goes_on_ = spectator_->see(state);
+  }
+
+  void warnOfLateCommands(double interval_s) {
+    if (std::exchange(late_commands_warned_, true)) return;
+    say(model_,
+        fmt::format("warning: commands change between the recorded rows, {:g} s apart: a replay of this recording changes them at the "
+                    "next row; a shorter --record-interval would keep it exact",
+                    interval_s));
   }
 
   void warnOfGap() {
@@ -300,7 +313,7 @@ class Run {
   ManualController* hands_ = nullptr;     ///< null without a window
   std::unique_ptr<Spectator> spectator_;  ///< may be null
   Score score_;
-  bool gap_warned_ = false, goes_on_ = true;
+  bool gap_warned_ = false, late_commands_warned_ = false, goes_on_ = true;
 };
 
 int run(const ModelOptions& model, const RunOptions& options) {

@@ -212,6 +212,10 @@ void JointModel::readLimits() {
   if (kind != Joint::Kind::slider && kind != Joint::Kind::hinge) return;
   limits.low_stop = parameterOf(*this, dParamLoStop);
   limits.high_stop = parameterOf(*this, dParamHiStop);
+  readMotor();
+}
+
+void JointModel::readMotor() {
   limits.motor_force = parameterOf(*this, dParamFMax);
 }
 

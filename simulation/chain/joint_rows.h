@@ -38,8 +38,9 @@ struct JointModel {
   double reduction = 0;  ///< ODE's ERP of the position rows as it was registered
   double softness = 0;   ///< ODE's CFM of the position rows
 
-  /// Reads stops and the motor's force from ODE; they may have been changed since the last step.
+  /// Reads stops and the motor's force from ODE, or that force alone; they may have been changed since the last step.
   void readLimits();
+  void readMotor();
   /// The same with all else that ODE keeps of a slider's or hinge's axis.
   void readAxis();
   /// Number of position rows: 3 for a ball, 5 for slider and hinge, 6 for a fixed joint.

@@ -173,12 +173,13 @@ void StepProblem::makeJointRows() {
     const double tension = chain.actuator->tensionN() * conditions_.force_per_N;
     for (std::size_t k = 0; k < chain.joints.size(); ++k) {
       JointModel& joint = chain.joints[k];
-      joint.readLimits();
-      if (settings.viscous) setViscousMotor(joint, settings);
+      if (joint.kind == Joint::Kind::slider) joint.readLimits();
       if (joint.kind == Joint::Kind::hinge) {
+        joint.readMotor();
         joint.limits.low_stop = -stop_rad;
         joint.limits.high_stop = stop_rad;
       }
+      if (settings.viscous) setViscousMotor(joint, settings);
       make(joint, chains_[c].joints[k]);
       if (joint.kind == Joint::Kind::slider) addAxisForce(joint, chains_[c].joints[k].rows, tension);
     }

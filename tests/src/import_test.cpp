@@ -34,6 +34,22 @@ TEST_F(ImportCommand, MakesARecordingThatReplays) {
   EXPECT_EQ(runProgram({"replay", "out.csv", "--quiet"}, folder_).status, 0);
 }
 
+TEST_F(ImportCommand, MakesTheFolderAndWantsATable) {
+  EXPECT_EQ(runProgram({"import", "table.csv", "map.toml", "sub/folder/out.csv"}, folder_).status, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "sub/folder/out.json"));
+  const ProgramResult wrong = runProgram({"import", "table.csv", "map.toml", "out.txt"}, folder_);
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_TRUE(contains(wrong.err, "recording = out.txt: must end in .csv")) << wrong.err;
+  EXPECT_FALSE(fs::exists(folder_ / "out.txt"));
+}
+
+TEST_F(ImportCommand, SaysThatARobotIsUnknown) {
+  std::ofstream(folder_ / "map.toml") << "robot = \"rigg\"\n[columns]\ntime_s = \"t\"\ncommand_0 = \"u\"\nlength_0_mm = \"l\"\n";
+  const ProgramResult made = runProgram({"import", "table.csv", "map.toml", "out.csv"}, folder_);
+  EXPECT_EQ(made.status, 0);
+  EXPECT_TRUE(contains(made.err, "robot rigg is none of this program's")) << made.err;
+}
+
 TEST_F(ImportCommand, EndsWithStatus3ForABadTableAndWritesNothing) {
   std::ofstream(folder_ / "table.csv") << "t,v\n0,0.2\n";
   const ProgramResult made = runProgram({"import", "table.csv", "map.toml", "out.csv"}, folder_);

@@ -105,6 +105,16 @@ TEST_F(RunCommand, StepIsTheLoggingStepAndRecordIntervalThinsIt) {
   EXPECT_EQ(readRecording((folder_ / "coarse.csv").string()).time_s.size(), 5u);
 }
 
+TEST_F(RunCommand, CommandsThatChangeBetweenRowsAreWarnedOf) {
+  const auto random = [&](const char* interval_s) {
+    return runProgram({"--simple", "--robot", "rig", "--controller", "random", "--decision-interval", "0.05", "--duration", "0.2",
+                       "--record-interval", interval_s, "--record", "random.csv"},
+                      folder_);
+  };
+  EXPECT_FALSE(contains(random("0.05").err, "commands change between the recorded rows"));
+  EXPECT_TRUE(contains(random("0.1").err, "commands change between the recorded rows, 0.1 s apart"));
+}
+
 TEST_F(RunCommand, PrintConfigIsAcceptedByConfig) {
   const ProgramResult printed = runRig({"--print-config", "--set", "rig.load_kg=3.5"});
   ASSERT_EQ(printed.status, 0) << printed.err;
