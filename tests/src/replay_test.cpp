@@ -152,7 +152,8 @@ TEST_F(ReplayCommand, RefusesBadInput) {
   expectRefused({"replay", "rig.csv"}, 3, "command");
   write("rig.csv", "time_s,command_0,length_0_mm\n0,0.5,200\n0.01,0.5,200\n");
   expectRefused({"replay", "rig.csv", "--set", "rig.lod_kg=2"}, 2, "rig.load_kg");
-  expectRefused({"replay", "rig.csv", "--out", "no/such/folder/x.csv"}, 5, "no/such/folder");
+  expectRefused({"replay", "rig.csv", "--out", "rig.json/x.csv"}, 5, "rig.json");
+  expectRefused({"replay", "rig.csv", "--out", "x.txt"}, 2, "recording = x.txt: must end in .csv");
   write("rig.json", R"({"format": "musclesim-recording-1", "robot": "rigg"})");
   expectRefused({"replay", "rig.csv"}, 3, "rig.json: there is no robot \"rigg\"");
   expectRefused({"replay", "rig.csv", "--robot", "elboww"}, 2, "elboww");

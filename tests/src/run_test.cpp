@@ -9,6 +9,7 @@
 
 #include "musclesim/log/recording.h"
 #include "src/program.h"
+#include "support/support.h"
 
 namespace musclesim {
 namespace {
