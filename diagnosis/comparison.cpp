@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "parallel.h"
+
 namespace musclesim {
 
 Comparison::Comparison(const Plant& plant, std::vector<Stretch> stretches, Averages averages)
@@ -79,8 +81,11 @@ Eigen::VectorXd Comparison::predicted(const Model& model) const {
 }
 
 Eigen::VectorXd Comparison::predicted(const Model& model, Fidelity fidelity) const {
-  std::vector<Prediction> predictions;
-  for (const Stretch& stretch : stretches_) predictions.push_back(plant_.predict(stretch.recording, model, stretch.end_row, fidelity));
+  std::vector<Prediction> predictions(stretches_.size());
+  parallelFor(static_cast<int>(stretches_.size()), plant_.jobCount(), [&](int i) {
+    const Stretch& stretch = stretches_[static_cast<std::size_t>(i)];
+    predictions[static_cast<std::size_t>(i)] = plant_.predict(stretch.recording, model, stretch.end_row, fidelity);
+  });
   return gathered(predictions);
 }
 

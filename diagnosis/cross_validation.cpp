@@ -54,14 +54,15 @@ Eigen::VectorXd Attributor::partOf(std::size_t stretch, const Eigen::VectorXd& a
 
 /// An explanation as it is: what fine steps leave of each stretch, and by how much they differ from coarse ones there.
 Attributor::Unmoved Attributor::unmoved(const Explanation& explanation) const {
-  Unmoved result;
-  for (std::size_t k = 0; k < one_by_one_.size(); ++k) {
+  Unmoved result{std::vector<double>(one_by_one_.size()), std::vector<Eigen::VectorXd>(one_by_one_.size())};
+  parallelFor(static_cast<int>(one_by_one_.size()), options_.job_count, [&](int i) {
+    const auto k = static_cast<std::size_t>(i);
     const Comparison& one = one_by_one_[k];
     const Eigen::VectorXd residual = partOf(k, explanation.residual), coarse = one.predicted(modelOf(explanation));
     on_simulation_();
-    result.misfit.push_back(one.logMisfit(residual));
-    result.shift.push_back(coarse.size() ? Eigen::VectorXd(one.measured() - residual - coarse) : Eigen::VectorXd::Zero(one.size()));
-  }
+    result.misfit[k] = one.logMisfit(residual);
+    result.shift[k] = coarse.size() ? Eigen::VectorXd(one.measured() - residual - coarse) : Eigen::VectorXd::Zero(one.size());
+  });
   return result;
 }
 
@@ -101,8 +102,9 @@ void Attributor::predictFromOthers(Explanation& explanation) const {
   const Eigen::VectorXd with_all = stepWithout({}, explanation, jacobian);
   const Unmoved as_it_is = effect_count ? unmoved(explanation) : Unmoved{};
   Eigen::VectorXd unseen = explanation.residual;
-  for (std::size_t k = 0; k < one_by_one_.size(); ++k) {
+  parallelFor(static_cast<int>(one_by_one_.size()), options_.job_count, [&](int i) {
     if (plant_.interrupted()) return;
+    const auto k = static_cast<std::size_t>(i);
     const std::set<std::size_t> left_out = sameCommandsAs(k);
     const Eigen::VectorXd step = stepWithout(left_out, explanation, jacobian) - with_all;
     const Explanation without = movedWithout(left_out, explanation, step, as_it_is);
@@ -116,8 +118,8 @@ void Attributor::predictFromOthers(Explanation& explanation) const {
       const Eigen::VectorXd& source = goes_on ? left : nominal_residual_;
       unseen.segment(cell.first, cell.count()) = source.segment(goes_on ? one.cellLike(cell).first : cell.first, cell.count());
     }
-  }
-  explanation.unseen = unseen;
+  });
+  if (!plant_.interrupted()) explanation.unseen = unseen;
 }
 
 /// The stretch itself and its repeats.

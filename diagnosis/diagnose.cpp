@@ -14,6 +14,7 @@
 #include "locate.h"
 #include "musclesim/diagnosis/diagnosis.h"
 #include "next_experiment.h"
+#include "parallel.h"
 #include "plant.h"
 #include "regimes.h"
 #include "shrink.h"
@@ -34,6 +35,7 @@ std::string modelOptions(const RecordingInfo& info, bool has_hand) {
   if (!has_hand) options += " --controller hold";
   if (info.physics && *info.physics != nameOf(PhysicsKind::si)) options += " --physics " + *info.physics;
   if (info.initial_state) options += " --initial-state " + *info.initial_state;
+  if (info.robot_parameters.contains("world.plane_height_mm")) options += " --plane";
   for (const auto& [name, value] : info.robot_parameters) {
     options += " --set " + (name.find('.') == std::string::npos ? info.robot + "." : "") + name + "=";
     options += std::visit(
@@ -140,8 +142,10 @@ class Run {
     monitor_.phase("comparing the model with the recordings", static_cast<long>(plant_.recordings().size()));
     std::vector<Stretch> everything = plant_.split().fit;
     everything.insert(everything.end(), plant_.split().held_out.begin(), plant_.split().held_out.end());
-    for (std::size_t i = 0; i < plant_.recordings().size(); ++i)
-      requireUnits(plant_, static_cast<int>(i), plant_.predict(static_cast<int>(i), Model{}));
+    std::vector<Prediction> whole(plant_.recordings().size());
+    const auto count = static_cast<int>(whole.size());
+    parallelFor(count, options_.job_count, [&](int i) { whole[static_cast<std::size_t>(i)] = plant_.predict(i, Model{}); });
+    for (int i = 0; i < count; ++i) requireUnits(plant_, i, whole[static_cast<std::size_t>(i)]);
     const Comparison all(plant_, everything);
     const Eigen::VectorXd predicted = all.predicted(Model{}), held = held_out_.predicted(Model{});
     if (!predicted.size() || !held.size())
@@ -200,8 +204,13 @@ class Run {
     monitor_.phase("asking what simpler changes would gain", 60);
     auto count = [this] { monitor_.count(); };
     const Comparison& fitted = attributor_.lookComparison();
-    const Eigen::VectorXd nominal = nominalRefitResidual(fitted, held_out_, count);
-    const Eigen::VectorXd sham = shamResidual(fitted, held_out_, static_cast<int>(best.z.size()), options_.seed, count);
+    Eigen::VectorXd nominal, sham;
+    parallelFor(2, options_.job_count, [&](int i) {
+      if (i == 0)
+        nominal = nominalRefitResidual(fitted, held_out_, count);
+      else
+        sham = shamResidual(fitted, held_out_, static_cast<int>(best.z.size()), options_.seed, count);
+    });
     auto shrinkOf = [&](const Eigen::VectorXd& residual) {
       return residual.size() ? shrinkPercent(diagnosis_.before, held_out_.gap(residual)) : 0.0;
     };
@@ -273,7 +282,10 @@ class Run {
       const auto& tried = diagnosis_.attempt.effects;
       return (found.contains(label) && found[label].probability >= listed) || std::ranges::find(tried, label) != tried.end();
     });
-    for (FoundEffect& effect : diagnosis_.effects) effect.shrink_percent = singleShrink(effect.label());
+    parallelFor(static_cast<int>(diagnosis_.effects.size()), options_.job_count, [&](int i) {
+      FoundEffect& effect = diagnosis_.effects[static_cast<std::size_t>(i)];
+      effect.shrink_percent = singleShrink(effect.label());
+    });
   }
 
   /// What was looked at and fitted.
@@ -357,7 +369,7 @@ class Run {
     return fmt::format("{}", fmt::join(own, " + "));
   }
 
-  double singleShrink(const std::string& label) {
+  double singleShrink(const std::string& label) const {
     const Attribution& attribution = attributor_.result();
     if (plant_.interrupted()) return 0;
     for (const Explanation& explanation : attribution.explanations) {

@@ -100,6 +100,8 @@ class Plant {
   /// Different simulations, and seconds of them.
   long simulationCount() const { return simulation_count_; }
   double simulatedS() const { return static_cast<double>(simulated_ms_) / ms_per_s; }
+  /// Threads that simulations may be shared among; 0: one per core.
+  int jobCount() const { return options_.job_count; }
   bool interrupted() const { return options_.interrupted && options_.interrupted(); }
 
  private:

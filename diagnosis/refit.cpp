@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "parallel.h"
+
 namespace musclesim {
 
 namespace {
@@ -31,7 +33,7 @@ Point evaluate(const Comparison& comparison, const FitProblem& problem, const Ei
 
 Eigen::MatrixXd derivatives(const Comparison& comparison, const FitProblem& problem, const Point& at, double difference) {
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(comparison.size(), at.z.size());
-  for (Eigen::Index i = 0; i < at.z.size(); ++i)
+  parallelFor(static_cast<int>(at.z.size()), comparison.plant().jobCount(), [&](int i) {
     for (const double side : {1.0, -1.0}) {
       Eigen::VectorXd z = at.z;
       z[i] += side * difference * std::max(1.0, std::abs(z[i]));
@@ -41,6 +43,7 @@ Eigen::MatrixXd derivatives(const Comparison& comparison, const FitProblem& prob
       jacobian.col(i) = (at.residual - beside.residual) / (beside.z[i] - at.z[i]);
       break;
     }
+  });
   return jacobian;
 }
 

@@ -28,7 +28,7 @@ td.number,th.number{text-align:right;font-variant-numeric:tabular-nums}
 svg{max-width:100%;height:auto;display:block;margin:.5rem 0}code{font-size:.9em}
 .scroll,.trace{overflow-x:auto}.scroll svg{min-width:32rem}.trace svg{min-width:36rem}.trace h3{font-size:1rem;margin:.8rem 0 0;position:sticky;left:0}.lead{break-after:avoid}
 .place{display:flex;gap:1.5rem}.place>:first-child{flex:1}.robot{flex:0 0 17rem}@media screen and (max-width:44rem){.place{display:block}}
-@media print{.screen{display:none}.scroll,.trace{overflow:visible}.scroll svg,.trace svg{min-width:0}body{max-width:none;font-size:14px}h2,h3{break-after:avoid}svg,tr,.trace{break-inside:avoid}})";
+@media print{.screen{display:none}.scroll,.trace{overflow:visible}.scroll svg,.trace svg{min-width:0}body{max-width:none;font-size:14px}h2,h3{break-after:avoid}svg,tr,.trace{break-inside:avoid}tr:first-child{break-after:avoid}})";
 
 std::string heading(const std::string& words) {
   return "<h2>" + words + "</h2>\n";

@@ -33,6 +33,12 @@ std::string pathData(const std::vector<std::vector<SvgPoint>>& pieces) {
   return data;
 }
 
+/// "pressure_0" of "signal_pressure_0": what is below the sensor's box must be no wider than it.
+std::string withoutPrefix(const std::string& component) {
+  const std::string prefix = "signal_";
+  return component.starts_with(prefix) ? component.substr(prefix.size()) : component;
+}
+
 }  // namespace
 
 std::string barsFigure(const std::string& title, const std::vector<Bar>& bars, double full) {
@@ -72,7 +78,7 @@ std::string stagesFigure(const std::vector<Place>& where) {
     };
     words(top + 24, stages[i], 15, ink);
     words(top + 46, fmt::format("{:.0f} %", 100 * share), 17, ink);
-    if (share >= 0.05) words(top + height + 20, place->component, 13, "#222222");
+    if (share >= 0.05) words(top + height + 20, withoutPrefix(place->component), 13, "#222222");
     if (i + 1 < stages.size())
       markup += fmt::format("<path d=\"M{0:.0f} {1:.0f}h{2:.0f}m-7 -5l7 5l-7 5\" fill=\"none\" stroke=\"#555555\" stroke-width=\"1.6\"/>",
                             x + box + 4, top + height / 2, gap - 8);

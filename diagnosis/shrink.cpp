@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "musclesim/random.h"
+#include "parallel.h"
 #include "refit.h"
 
 namespace musclesim {
@@ -174,12 +175,14 @@ Eigen::VectorXd shamResidual(const Comparison& fitted, const Comparison& held_ou
   std::vector<Sine> sines;
   for (int i = 0; i < parameter_count; ++i) sines.push_back({0.1 + 1.9 * random.uniform(), 2 * std::numbers::pi * random.uniform()});
   auto predictedOn = [&](const Comparison& comparison, const Eigen::VectorXd& amplitude) {
-    std::vector<Prediction> predictions;
-    for (const Stretch& stretch : comparison.stretches()) {
-      const Recording& recording = comparison.plant().recordings()[static_cast<std::size_t>(stretch.recording)];
-      predictions.push_back(comparison.plant().predict(stretch.recording, Model{}, disturbed(recording, sines, amplitude), stretch.end_row,
-                                                       comparison.fidelity()));
-    }
+    const Plant& plant = comparison.plant();
+    std::vector<Prediction> predictions(comparison.stretches().size());
+    parallelFor(static_cast<int>(predictions.size()), plant.jobCount(), [&](int i) {
+      const Stretch& stretch = comparison.stretches()[static_cast<std::size_t>(i)];
+      const Recording& recording = plant.recordings()[static_cast<std::size_t>(stretch.recording)];
+      predictions[static_cast<std::size_t>(i)] =
+          plant.predict(stretch.recording, Model{}, disturbed(recording, sines, amplitude), stretch.end_row, comparison.fidelity());
+    });
     return comparison.predicted(predictions, comparison.fidelity());
   };
   constexpr double typical = 0.02;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "musclesim/random.h"
+#include "parallel.h"
 
 namespace musclesim {
 
@@ -191,7 +192,7 @@ std::vector<double> withoutHoles(std::vector<double> values) {
 /// cannot follow or a pressure is missing.
 Eigen::VectorXd predictedUnderMeasuredPressures(const Comparison& comparison, RandomStream* noise) {
   const Plant& plant = comparison.plant();
-  std::vector<Prediction> predictions;
+  std::vector<std::vector<std::vector<double>>> commands_of;
   for (const Stretch& stretch : comparison.stretches()) {
     const std::size_t rows = plant.recordings()[static_cast<std::size_t>(stretch.recording)].time_s.size();
     std::vector<std::vector<double>> commands(rows, std::vector<double>(static_cast<std::size_t>(plant.muscleCount())));
@@ -205,8 +206,14 @@ Eigen::VectorXd predictedUnderMeasuredPressures(const Comparison& comparison, Ra
       for (std::size_t row = 0; row < rows; ++row)
         commands[row][static_cast<std::size_t>(muscle)] = std::clamp((p[row] + p[std::min(row + 1, rows - 1)]) / 2, 0.0, 1.0);
     }
-    predictions.push_back(plant.predict(stretch.recording, Model{}, commands, stretch.end_row, Fidelity::fine));
+    commands_of.push_back(std::move(commands));
   }
+  std::vector<Prediction> predictions(commands_of.size());
+  parallelFor(static_cast<int>(predictions.size()), plant.jobCount(), [&](int i) {
+    const auto k = static_cast<std::size_t>(i);
+    const Stretch& stretch = comparison.stretches()[k];
+    predictions[k] = plant.predict(stretch.recording, Model{}, commands_of[k], stretch.end_row, Fidelity::fine);
+  });
   return comparison.predicted(predictions, Fidelity::fine);
 }
 

@@ -40,6 +40,14 @@ TEST(Diagnose, SaysNoGapWhereThereIsOnlyNoise) {
   EXPECT_TRUE(found.chosen.empty());
 }
 
+TEST(Diagnose, OptionsOfTheModelHoldTheGroundPlane) {
+  auto recordings = plant({});
+  for (Recording& recording : recordings) recording.info.robot_parameters["world.plane_height_mm"] = -450.0;
+  const std::string options = diagnose(recordings, few({"payload"})).model_options;
+  EXPECT_NE(options.find("--plane "), std::string::npos) << options;
+  EXPECT_NE(options.find("--set world.plane_height_mm=-450"), std::string::npos) << options;
+}
+
 TEST(Diagnose, DoesNotBlameAnotherEffectWhenTheTrueOneIsLeftOut) {
   DiagnosisOptions options = few({"payload", "sensor_bias", "command_dead_band", "force_drift"});
   options.exclude = {"payload"};

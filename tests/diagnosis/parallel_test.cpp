@@ -3,7 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
+#include <mutex>
+#include <set>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace musclesim {
@@ -33,6 +37,53 @@ TEST(ParallelFor, ThrowsTheFirstFailureByIndexAfterAllHaveEnded) {
     EXPECT_STREQ(error.what(), "7");
   }
   EXPECT_EQ(calls, 20);
+}
+
+TEST(ParallelFor, CallsWithinShareTheThreads) {
+  std::vector<std::atomic<int>> calls(6 * 5);
+  std::atomic<int> at_once = 0, most = 0;
+  parallelFor(6, 3, [&](int i) {
+    parallelFor(5, 3, [&](int k) {
+      const int now = ++at_once;
+      for (int seen = most; seen < now && !most.compare_exchange_weak(seen, now);) {
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      ++calls[static_cast<std::size_t>(5 * i + k)];
+      --at_once;
+    });
+  });
+  for (const auto& count : calls) EXPECT_EQ(count, 1);
+  EXPECT_LE(most, 3) << "no more threads than the outer call has";
+}
+
+TEST(ParallelFor, IdleThreadsHelpWithin) {
+  std::set<std::thread::id> threads;
+  std::mutex mutex;
+  parallelFor(1, 2, [&](int) {
+    parallelFor(2, 2, [&](int) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      const std::lock_guard lock(mutex);
+      threads.insert(std::this_thread::get_id());
+    });
+  });
+  EXPECT_EQ(threads.size(), 2u);
+}
+
+TEST(ParallelFor, OneJobKeepsToItsThread) {
+  parallelFor(2, 2, [&](int) {
+    const std::thread::id own = std::this_thread::get_id();
+    parallelFor(20, 1, [&](int) { EXPECT_EQ(std::this_thread::get_id(), own); });
+  });
+}
+
+TEST(ParallelFor, FailuresWithinAreThrownOutside) {
+  EXPECT_THROW(parallelFor(3, 2,
+                           [](int i) {
+                             parallelFor(3, 2, [i](int k) {
+                               if (i == 1 && k == 2) throw std::runtime_error("within");
+                             });
+                           }),
+               std::runtime_error);
 }
 
 }  // namespace
