@@ -24,13 +24,19 @@ ChainBundle<lane_count>::ChainBundle(const std::array<int, lane_count>& bead_cou
 template <int lane_count>
 void ChainBundle<lane_count>::setJoint(int lane, int joint, const JointRows& rows, double h_s) {
   Node& node = nodes_[index(lane, joint)];
-  const int first_pushing = firstPushing(joint);
-  for (int body = 0; body < 2; ++body) {
-    for (int row = 0; row < 6; ++row)
-      for (int i = 3; i < 6; ++i) node.jacobian[body][row][i][lane] = rows.jacobian[body][row][i];
-    for (int row = first_pushing; row < first_pushing + 3; ++row)
-      for (int i = 0; i < 3; ++i) node.jacobian[body][row][i][lane] = rows.jacobian[body][row][i];
-  }
+  const auto copy = [&](int first_row, int end_row, int first, int end) {
+    for (int body = 0; body < 2; ++body)
+      for (int row = first_row; row < end_row; ++row)
+        for (int i = first; i < end; ++i) node.jacobian[body][row][i][lane] = rows.jacobian[body][row][i];
+  };
+  // What is 0 or 1 stays.
+  if (node.present[lane] == 0)
+    copy(0, 6, 0, 6);
+  else if (firstPushing(joint) == 3)
+    copy(3, 6, 0, 6);
+  else
+    copy(0, 6, 3, 6);
+  node.present[lane] = 1;
   for (int row = 0; row < 6; ++row) {
     const bool holds = row < rows.row_count;
     node.target[row][lane] = holds ? rows.velocity[row] / h_s : 0;
@@ -49,50 +55,6 @@ template <int lane_count>
 void ChainBundle<lane_count>::setFreeMotion(int lane, int bead, const Vector6& a) {
   Bead& b = beads_[index(lane, bead)];
   for (int i = 0; i < 6; ++i) b.free_motion[i][lane] = a[i];
-}
-
-/// The three rows of A_k and A_k,k+1 that push, or those that only turn.
-template <int lane_count>
-template <bool slider, bool push>
-MUSCLESIM_INLINE void ChainBundle<lane_count>::makeThreeRows(std::size_t k) {
-  constexpr int first = slider == push ? 3 : 0, first_of_next = slider ? 0 : 3;
-  const bool last = k + 1 == nodes_.size();
-  Node& node = nodes_[k];
-  for (int row = first; row < first + 3; ++row) {
-    Pack scaled[2][6];
-    for (int i = push ? 0 : 3; i < 6; ++i) {
-      scaled[0][i] = inertia(i) * node.jacobian[0][row][i];
-      scaled[1][i] = inertia(i) * node.jacobian[1][row][i];
-    }
-    for (int other = 0; other < first; ++other) {
-      node.own[row][other] = dotOf<false>(scaled[0], node.jacobian[0][other]);
-      if (!last) node.own[row][other] += dotOf<false>(scaled[1], node.jacobian[1][other]);
-    }
-    for (int other = first; other <= row; ++other) {
-      node.own[row][other] = dotOf<push>(scaled[0], node.jacobian[0][other]);
-      if (!last) node.own[row][other] += dotOf<push>(scaled[1], node.jacobian[1][other]);
-    }
-    node.own[row][row] += node.softness[row];
-    if (last) {
-      for (int i = 0; i < 6; ++i) node.next[row][i] = node.jacobian[1][row][i];
-      continue;
-    }
-    const auto& following = nodes_[k + 1].jacobian[0];
-    for (int other = first_of_next; other < first_of_next + 3; ++other) node.next[row][other] = dotOf<push>(scaled[1], following[other]);
-    for (int other = 3 - first_of_next; other < 6 - first_of_next; ++other)
-      node.next[row][other] = dotOf<false>(scaled[1], following[other]);
-  }
-}
-
-template <int lane_count>
-MUSCLESIM_WIDE void ChainBundle<lane_count>::makeAllBlocks() {
-  for (std::size_t k = 0; k < nodes_.size(); k += 2) {
-    makeThreeRows<true, false>(k);
-    makeThreeRows<true, true>(k);
-    makeThreeRows<false, true>(k + 1);
-    makeThreeRows<false, false>(k + 1);
-  }
-  for (std::size_t k = 0; k < nodes_.size(); ++k) axes_[k].diagonal = nodes_[k].own[5][5];
 }
 
 template <int lane_count>
@@ -452,11 +414,6 @@ MUSCLESIM_WIDE void ChainBundle<lane_count>::substituteAll() {
   substituteForces();
   substituteVelocities();
   makeSlacks();
-}
-
-template <int lane_count>
-void ChainBundle<lane_count>::makeBlocks() {
-  makeAllBlocks();
 }
 
 template <int lane_count>

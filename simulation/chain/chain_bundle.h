@@ -7,7 +7,8 @@
 /// S the beads' inverse inertia, u_B the bone's new velocity / h, y_j the forces of the border rows, which stay for the core: the ball at
 /// the start (3 rows) and the free rows of contacts on the beads. Elimination runs from the start to the end, A_k = L D L^T.
 ///
-/// Joints are a slider, a hinge, a slider, ..., a slider, the ball. Three rows of each push and turn, the others only turn: their v is 0.
+/// Joints are a slider, a hinge, a slider, ..., a slider, the ball, with J of their two bodies as joint_rows makes them:
+///     slider (0 1; d t) and (0 -1; -d t),   hinge (1 C; 0 e) and (-1 D; 0 -e),   ball (1 C) and (-1 D), or 0 for the environment.
 #pragma once
 
 #include <array>
@@ -34,7 +35,7 @@ class ChainBundle {
 
   int nodeCount() const { return static_cast<int>(nodes_.size()); }
 
-  /// Rows of joint k of a chain, for the step h: v of a slider's rows 0..2 and of the others' rows 3..5 is taken as 0.
+  /// Rows of joint k of a chain, for the step h. J must be as above.
   void setJoint(int lane, int joint, const JointRows& rows, double h_s);
   void setInertia(int lane, const BeadInertia& inertia);
   /// a without the forces of rows at a bound.
@@ -85,6 +86,7 @@ class ChainBundle {
  private:
   using Pack = chain::Pack<lane_count>;
   struct Node {
+    Pack present;            ///< 1 where the chain has this joint, 0 where it is shorter
     Pack jacobian[2][6][6];  ///< [body][row][v, w]
     Pack target[6];          ///< c/h
     Pack softness[6];        ///< cfm/h
@@ -138,6 +140,11 @@ class ChainBundle {
     for (int i = 4; i < 6; ++i) sum += a[i] * b[i];
     return sum;
   }
+  /// sum + w_a . w_b
+  MUSCLESIM_INLINE static Pack plusTurn(Pack sum, const Pack a[6], const Pack b[6]) {
+    for (int i = 3; i < 6; ++i) sum += a[i] * b[i];
+    return sum;
+  }
   /// y <- L^-1 y with unit lower L.
   MUSCLESIM_INLINE static void forward(const Pack factor[6][6], Pack y[6]) {
     for (int i = 1; i < 6; ++i)
@@ -159,8 +166,9 @@ class ChainBundle {
   void growBorder(int count);
   void fillBorder();
   MUSCLESIM_INLINE void moveBeads();
-  template <bool slider, bool push>
-  MUSCLESIM_INLINE void makeThreeRows(std::size_t k);
+  MUSCLESIM_INLINE void makeSliderBlocks(std::size_t k);
+  MUSCLESIM_INLINE void makeHingeBlocks(std::size_t k);
+  MUSCLESIM_INLINE void makeBallBlocks(std::size_t k);
   template <bool push>
   MUSCLESIM_INLINE void makeThreeRights(std::size_t k, int first, const Carry& carry);
   MUSCLESIM_INLINE void factorise(Node& node, Pack own[6][6]) const;

@@ -91,11 +91,16 @@ void fourChains(benchmark::State& state) {
     for (int joint = 0; joint < bead_count; ++joint) {
       chain::JointRows rows;
       rows.row_count = joint + 1 < bead_count ? 6 : 3;
+      const bool slider = joint % 2 == 0;
       for (int row = 0; row < rows.row_count; ++row) {
         rows.softness[row] = 1e-3;
-        const bool pushes = (row >= 3) == (joint % 2 == 0);
-        for (auto& body : rows.jacobian)
-          for (int i = pushes ? 0 : 3; i < 6; ++i) body[row][i] = random.normal();
+        const bool holds = row < 3;
+        for (int i = 0; i < 6; ++i) {
+          const bool zero = i < 3 ? slider == holds : slider && holds;
+          const bool one = holds && i == (slider ? 3 + row : row);
+          rows.jacobian[0][row][i] = one ? 1 : zero || (holds && i < 3) ? 0 : random.normal();
+          rows.jacobian[1][row][i] = (slider && !holds && i >= 3 ? 1 : -1) * rows.jacobian[0][row][i];
+        }
       }
       bundle.setJoint(lane, joint, rows, 8e-4);
       bundle.setFreeMotion(lane, joint, chain::Vector6::Ones());

@@ -28,10 +28,8 @@ struct RandomChain {
       for (int row = 0; row < rows.row_count; ++row) {
         rows.velocity[row] = random.normal();
         rows.softness[row] = 1e-3;
-        const bool pushes = (row >= 3) == (k % 2 == 0);
-        for (auto& body : rows.jacobian)
-          for (int i = pushes ? 0 : 3; i < 6; ++i) body[row][i] = random.normal();
       }
+      fill(random, k % 2 == 0, rows);
       Vector6 motion;
       for (int i = 0; i < 6; ++i) motion[i] = random.normal();
       a.push_back(motion);
@@ -42,6 +40,22 @@ struct RandomChain {
       border_force[c] = random.normal();
     }
     for (int i = 0; i < 6; ++i) bone_velocity[i] = random.normal();
+  }
+
+  /// (0 1; d t) and (0 -1; -d t) of a slider, (1 C; 0 e) and (-1 D; 0 -e) of a hinge, (1 C) and (-1 D) of the ball.
+  static void fill(RandomStream& random, bool slider, JointRows& rows) {
+    for (int row = 0; row < 3; ++row) {
+      const int held = slider ? 3 + row : row;
+      rows.jacobian[0][row][held] = 1;
+      rows.jacobian[1][row][held] = -1;
+      for (int i = 3; i < 6 && !slider; ++i)
+        for (auto& body : rows.jacobian) body[row][i] = random.normal();
+    }
+    for (int row = 3; row < rows.row_count; ++row)
+      for (int i = slider ? 0 : 3; i < 6; ++i) {
+        rows.jacobian[0][row][i] = random.normal();
+        rows.jacobian[1][row][i] = (slider && i >= 3 ? 1 : -1) * rows.jacobian[0][row][i];
+      }
   }
 
   template <typename Bundle>
