@@ -15,7 +15,7 @@ namespace musclesim {
 
 namespace {
 
-constexpr int look_rows = 1500;              ///< the look's stretches have that many rows together
+constexpr int look_rows = 1200;              ///< the look's stretches have that many rows together
 constexpr std::size_t look_count = 3;        ///< recordings that are looked at
 constexpr std::size_t many_suspects = 200;   ///< with more, most are looked at on the first stretch of the look only
 constexpr std::size_t nearest_count = 80;    ///< suspects that are looked at on all of it then
