@@ -250,6 +250,14 @@ Prediction Plant::predict(int recording, const Model& model, const std::vector<s
   return replay(std::move(changed), model, end_row, fidelity);
 }
 
+/// Whether changed numbers of the model, a force that grows a millionfold towards full length, need far more internal steps than it has.
+bool Plant::takesForEver(const Recording& recording, const ReplayOptions& options) const {
+  constexpr int most_ratio = 20;
+  Simulation changed(simulationOptionsFor(recording.info, sidecarPath(recording.file), options));
+  changed.build(recording.info.robot);
+  return changed.substeps() > most_ratio * reference_->substeps();
+}
+
 Prediction Plant::replay(Recording recording, const Model& model, int end_row, Fidelity fidelity) const {
   const std::size_t all_rows = recording.time_s.size();
   if (end_row > 0 && static_cast<std::size_t>(end_row) < all_rows) {
@@ -257,21 +265,24 @@ Prediction Plant::replay(Recording recording, const Model& model, int end_row, F
     for (Signal& signal : recording.signals) signal.values.resize(static_cast<std::size_t>(end_row));
   }
   ReplayOptions options = options_.model;
+  options.interrupted = options_.interrupted;
   if (const int ratio = ratioOf(possible(fidelity)); ratio > 1) options.substeps = (reference_->substeps() + ratio - 1) / ratio;
   for (const ActiveEffect& effect : model.effects)
     if (effect.id != held_effect) options.effects.push_back(effect);
   for (const auto& [name, value] : model.parameters) options.parameters.set(name, value, "diagnosis");
+  const Prediction refused = {std::vector<std::vector<double>>(signals_.size(), std::vector<double>(all_rows, nan)), true, true};
   ReplayResult result;
   try {
+    if (!model.parameters.empty() && takesForEver(recording, options)) return refused;
     result = replayRecording(recording, options);
   } catch (const BadParameter&) {
     // Such an effect cannot act on this plant, for example a payload that takes away more than there is.
     if (model.effects.empty() && model.parameters.empty()) throw;
-    return {std::vector<std::vector<double>>(signals_.size(), std::vector<double>(all_rows, nan)), true, true};
+    return refused;
   }
 
   Prediction prediction;
-  prediction.diverged = result.divergence.has_value();
+  prediction.diverged = result.divergence.has_value() || result.interrupted;
   for (const ComparedSignal& signal : signals_) {
     prediction.values.push_back(result.simulated.find(signal.name)->values);
     prediction.values.back().resize(all_rows, nan);

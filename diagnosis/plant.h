@@ -113,6 +113,7 @@ class Plant {
   Fidelity possible(Fidelity fidelity) const;
   void count(double simulated_s) const;
   Prediction replay(Recording recording, const Model& model, int end_row, Fidelity fidelity) const;
+  bool takesForEver(const Recording& recording, const ReplayOptions& options) const;
   void holdWhereMeasured(int recording, const Model& model, Prediction& prediction) const;
 
   std::vector<Recording> recordings_;

@@ -42,6 +42,16 @@ TEST_F(Rig, MisfitIsTheLogarithmOfTheResidualOverTheFloorPerCell) {
   EXPECT_TRUE(std::isinf(both.logMisfit(residual)));
 }
 
+TEST_F(Rig, NumbersThatNeedFarMoreStepsAreRefused) {
+  Recording machine = planted::recorded({}, 0.1, 1);
+  machine.info.extra_json = "{}";  // a measured recording's model takes as many as it needs
+  Recording other = planted::recorded({}, 0.1, 2);
+  other.info.extra_json = "{}";
+  const Plant measured({machine, other}, options);
+  EXPECT_FALSE(measured.predict(0, Model{{}, {{"force_law.b", 9}}}).refused);
+  EXPECT_TRUE(measured.predict(0, Model{{}, {{"force_law.b", 40}}}).refused) << "a force of e^40 would take hours";
+}
+
 TEST_F(Rig, GapIsTheMeanSquareBeyondTheFloorInUnitsOfTheFloor) {
   const Gap gap = both.gap(Eigen::VectorXd::Constant(300, 3 * planted::noise_mm));
   EXPECT_NEAR(gap.normalised, 8, 1e-9);
