@@ -15,14 +15,14 @@ template <int lanes>
 struct PackOf;
 template <>
 struct PackOf<2> {
-  using type = double __attribute__((vector_size(16), aligned(16)));
+  using Type = double __attribute__((vector_size(16), aligned(16)));
 };
 template <>
 struct PackOf<4> {
-  using type = double __attribute__((vector_size(32), aligned(32)));
+  using Type = double __attribute__((vector_size(32), aligned(32)));
 };
 
 template <int lanes>
-using Pack = typename PackOf<lanes>::type;
+using Pack = typename PackOf<lanes>::Type;
 
 }  // namespace musclesim::chain
