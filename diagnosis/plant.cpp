@@ -265,7 +265,8 @@ Prediction Plant::replay(Recording recording, const Model& model, int end_row, F
     for (Signal& signal : recording.signals) signal.values.resize(static_cast<std::size_t>(end_row));
   }
   ReplayOptions options = options_.model;
-  options.interrupted = options_.interrupted;
+  const bool unchanged = model.effects.empty() && model.parameters.empty();
+  if (!unchanged) options.interrupted = options_.interrupted;  // a partial report compares with the unchanged model too
   if (const int ratio = ratioOf(possible(fidelity)); ratio > 1) options.substeps = (reference_->substeps() + ratio - 1) / ratio;
   for (const ActiveEffect& effect : model.effects)
     if (effect.id != held_effect) options.effects.push_back(effect);
@@ -277,7 +278,7 @@ Prediction Plant::replay(Recording recording, const Model& model, int end_row, F
     result = replayRecording(recording, options);
   } catch (const BadParameter&) {
     // Such an effect cannot act on this plant, for example a payload that takes away more than there is.
-    if (model.effects.empty() && model.parameters.empty()) throw;
+    if (unchanged) throw;
     return refused;
   }
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <limits>
+
 #include "comparison.h"
 #include "musclesim/error.h"
 #include "refit.h"
@@ -28,8 +30,11 @@ Tuning tune(const std::vector<Recording>& recordings, DiagnosisOptions& options)
     model.parameters = plant.tunedAt(z);
     return fitted.predicted(model);
   };
-  const FitResult result = fit(fitted, problem, round_count);
-  if (!result.residual.size()) throw Diverged(0, plant.robot(), "the model without further effects cannot follow the recordings");
+  FitResult result = fit(fitted, problem, round_count);
+  if (!result.residual.size()) {
+    if (!plant.interrupted()) throw Diverged(0, plant.robot(), "the model without further effects cannot follow the recordings");
+    result.half_width.setConstant(std::numeric_limits<double>::infinity());
+  }
   Tuning tuning{tunedParameters(plant, result.z, result.half_width), plant.simulationCount(), plant.simulatedS()};
   for (const TunedParameter& parameter : tuning.parameters) options.model.parameters.set(parameter.name, parameter.fitted.value, "--tune");
   return tuning;

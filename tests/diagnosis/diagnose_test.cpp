@@ -257,6 +257,22 @@ TEST(Diagnose, AnInterruptedSearchClaimsNothing) {
   EXPECT_TRUE(contains(diagnosisSummary(found), "the search for its cause was interrupted"));
 }
 
+/// An interrupt is no divergence, not even before anything was simulated.
+TEST(Diagnose, AnInterruptAtTheStartLeavesTheGap) {
+  const std::vector<Recording> recordings = plant({{"payload", "hand", {{"mass_kg", 0.3}}}});
+  DiagnosisOptions options = few({"payload"});
+  const Diagnosis whole = diagnose(recordings, options);
+  options.interrupted = [] { return true; };
+  const Diagnosis found = diagnose(recordings, options);
+  EXPECT_TRUE(found.partial);
+  EXPECT_EQ(found.before.normalised, whole.before.normalised);
+  options.tune = {"rig.load_kg"};
+  const Diagnosis tuned = diagnose(recordings, options);
+  EXPECT_TRUE(tuned.partial);
+  ASSERT_EQ(tuned.tuned.size(), 1U);
+  EXPECT_FALSE(tuned.tuned.front().fitted.is_determined);
+}
+
 TEST(Diagnose, AnotherRobotIsTakenForAllRecordings) {
   DiagnosisOptions options = few({"payload"});
   options.model.robot = "elbow";
