@@ -28,7 +28,6 @@ constexpr std::size_t fewer_pairs = 3;       ///< further effects that are fitte
 constexpr double likely_share = 0.1;         ///< of the best one's probability, that those have at least
 constexpr double least_hope = -1;            ///< ln of the odds of one more effect that leaves nothing; below, none is looked for
 constexpr int few_effects = 2;               ///< up to that many, the first look serves for all of them
-constexpr double share_of_gap = 0.1;         ///< that coarse steps may change on the look, which only chooses what is fitted further
 constexpr int first_rounds = 2, last_rounds = 2;
 constexpr int many_rounds = 12;  ///< in place of the last rounds where many effects act together
 constexpr Reach single_reach = {0.8, 0.4}, pair_reach = {0.25, 0.1};
@@ -58,7 +57,7 @@ Attributor::Attributor(const Plant& plant, const DiagnosisOptions& options, OnSi
 
 Comparison Attributor::firstOfLook() const {
   Comparison result(plant_, {look_.stretches().front()}, Comparison::Averages::with);
-  result.goCoarse(result.predicted(Model{}), share_of_gap);
+  result.goCoarse(result.predicted(Model{}), Comparison::Purpose::looking);
   return result;
 }
 
@@ -141,7 +140,7 @@ void Attributor::look() {
   look_residual_ = look_.measured() - nominal;
   const Eigen::VectorXd everywhere = fit_.predicted(Model{});
   nominal_residual_ = fit_.measured() - everywhere;
-  look_.goCoarse(nominal, share_of_gap);
+  look_.goCoarse(nominal, Comparison::Purpose::looking);
   fit_.goCoarse(everywhere);
   result_.suspects = suspects(plant_, DiagnosisOptions{});
   keepNearestVariants();

@@ -54,16 +54,18 @@ void Comparison::average(Eigen::VectorXd& values) const {
   }
 }
 
-void Comparison::goCoarse(const Eigen::VectorXd& nominal, double gap_share) {
-  constexpr double few_floors = 5;
+void Comparison::goCoarse(const Eigen::VectorXd& nominal, Purpose purpose) {
+  constexpr double few_floors = 5, share_of_gap = 0.1;
   if (nominal.size() != size_) return;
+  const bool looking = purpose == Purpose::looking;
   const Eigen::VectorXd residual = measured_ - nominal;
-  for (const Fidelity fidelity : {Fidelity::coarse, Fidelity::medium}) {
+  for (const Fidelity fidelity : {Fidelity::coarsest, Fidelity::coarse, Fidelity::medium}) {
+    if (fidelity == Fidelity::coarsest && !looking) continue;
     const Eigen::VectorXd coarse = predicted(Model{}, fidelity);
     if (coarse.size() != nominal.size() || !coarse.allFinite()) continue;
     const Eigen::VectorXd correction = nominal - coarse;
     const bool follows = std::ranges::all_of(cells_, [&](const Cell& cell) {
-      const double bearable = std::max(few_floors * cell.floor, gap_share * std::sqrt(meanSquare(cell, residual)));
+      const double bearable = std::max(few_floors * cell.floor, looking ? share_of_gap * std::sqrt(meanSquare(cell, residual)) : 0);
       return std::sqrt(meanSquare(cell, correction)) <= bearable;
     });
     if (!follows) continue;

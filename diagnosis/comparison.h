@@ -37,11 +37,13 @@ class Comparison {
   const Cell& cellLike(const Cell& other) const;
   Eigen::Index size() const { return size_; }
 
+  enum class Purpose { fitting, looking };  ///< a look only chooses what is fitted further
+
   /// From here on predictions are coarse, corrected by what coarse steps change in the model without effects: medium where coarse steps
-  /// change a signal by more than a few floors, or `gap_share` of its gap where that is more, since they follow another motion then, and
-  /// fine where medium ones do. A model that diverges in coarse steps is simulated in fine ones. `nominal` is the fine prediction of the
-  /// model without effects.
-  void goCoarse(const Eigen::VectorXd& nominal, double gap_share = 0);
+  /// change a signal by more than a few floors, since they follow another motion then, and fine where medium ones do. A look begins
+  /// with the coarsest steps and bears a tenth of a signal's gap where that is more than those floors. A model that diverges in coarse
+  /// steps is simulated in fine ones. `nominal` is the fine prediction of the model without effects.
+  void goCoarse(const Eigen::VectorXd& nominal, Purpose purpose = Purpose::fitting);
   Fidelity fidelity() const { return fidelity_; }
 
   /// What a model predicts at the compared rows; empty if it diverges on one of the stretches.

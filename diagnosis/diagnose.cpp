@@ -392,8 +392,8 @@ class Run {
       models.push_back(attributor_.modelOf(*explanation));
     }
     monitor_.phase("planning the next experiment", static_cast<long>(6 * models.size()));
-    diagnosis_.next_experiment =
-        nextExperiment(plant_, labels, models, attributor_.lookComparison().fidelity(), options_.job_count, [this] { monitor_.count(); });
+    const Fidelity fidelity = std::min(attributor_.lookComparison().fidelity(), Fidelity::coarse);
+    diagnosis_.next_experiment = nextExperiment(plant_, labels, models, fidelity, options_.job_count, [this] { monitor_.count(); });
   }
 
   void finish() {

@@ -79,7 +79,7 @@ std::string keyOf(const Model& model) {
 
 /// Internal steps that a simulation makes one of.
 int ratioOf(Fidelity fidelity) {
-  return fidelity == Fidelity::coarse ? 4 : fidelity == Fidelity::medium ? 2 : 1;
+  return 1 << static_cast<int>(fidelity);
 }
 
 bool hasNumbers(const Signal& signal) {

@@ -33,10 +33,10 @@ struct Split {
   std::string held_out_words;
 };
 
-/// How finely a simulation steps. A coarse one takes steps that are four times as long, a medium one twice, which costs little; what it
-/// differs by is nearly the same for all models of one plant, so that differences between coarse predictions hold (Comparison corrects for
-/// the rest).
-enum class Fidelity { fine, medium, coarse };
+/// How finely a simulation steps. A coarse one takes steps that are four times as long, a medium one twice, the coarsest eight times, which
+/// costs little; what it differs by is nearly the same for all models of one plant, so that differences between coarse predictions hold
+/// (Comparison corrects for the rest).
+enum class Fidelity { fine, medium, coarse, coarsest };
 
 /// A model: further effects and changed parameters beside the user's own.
 struct Model {

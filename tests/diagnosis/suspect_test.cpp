@@ -135,8 +135,19 @@ TEST_F(PlantedRig, MediumStepsAreTakenWhereOnlyTheyFollow) {
   EXPECT_EQ(comparison.fidelity(), Fidelity::medium);
 }
 
+/// They are taken by a look alone, where they follow.
+TEST_F(PlantedRig, ALookBeginsWithTheCoarsestSteps) {
+  Comparison look(plant_, plant_.split().fit), fit = look;
+  const Eigen::VectorXd coarse = look.predicted(Model{}, Fidelity::coarse), coarsest = look.predicted(Model{}, Fidelity::coarsest);
+  EXPECT_NE(coarse, coarsest);
+  look.goCoarse(coarsest, Comparison::Purpose::looking);
+  EXPECT_EQ(look.fidelity(), Fidelity::coarsest);
+  fit.goCoarse(coarsest);
+  EXPECT_NE(fit.fidelity(), Fidelity::coarsest);
+}
+
 /// Three millimetres, sixty floors, a tenth of which is six.
-TEST_F(PlantedRig, CoarseStepsAreTakenBesideALargeGap) {
+TEST_F(PlantedRig, ALookBearsMoreBesideALargeGap) {
   std::vector<Recording> recordings = planted::plant({});
   for (Recording& recording : recordings)
     for (double& value : recording.signals[1].values) value += 60 * planted::noise_mm;
@@ -144,8 +155,8 @@ TEST_F(PlantedRig, CoarseStepsAreTakenBesideALargeGap) {
   Comparison beside(far, far.split().fit), without(plant_, plant_.split().fit);
   const double shift_mm = 5.5 * planted::noise_mm;
   for (Comparison* comparison : {&beside, &without})
-    comparison->goCoarse(comparison->predicted(Model{}, Fidelity::coarse).array() - shift_mm, 0.1);
-  EXPECT_EQ(beside.fidelity(), Fidelity::coarse);
+    comparison->goCoarse(comparison->predicted(Model{}, Fidelity::coarsest).array() - shift_mm, Comparison::Purpose::looking);
+  EXPECT_EQ(beside.fidelity(), Fidelity::coarsest);
   EXPECT_EQ(without.fidelity(), Fidelity::fine);
 }
 
