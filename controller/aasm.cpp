@@ -11,7 +11,7 @@ namespace musclesim {
 
 namespace {
 
-constexpr double kLargestActivity = 100.0;
+constexpr double largest_activity = 100.0;
 
 AdaptiveAttractors drawAttractors(const ControllerRequest& request) {
   auto& parameters = request.parameters;
@@ -38,7 +38,7 @@ double AasmActivity::update(double d_mm) {
   const double a = 1.0 / (e + e_min_);
   const double rise = a - mean_a_.meanOr(a);
   mean_a_.add(a);
-  return std::clamp(100.0 * rise + 25.0 * std::exp(-e * e / 2.0), 0.0, kLargestActivity);
+  return std::clamp(100.0 * rise + 25.0 * std::exp(-e * e / 2.0), 0.0, largest_activity);
 }
 
 AdaptiveAttractors::AdaptiveAttractors(AttractorMixture mixture, double rate, int period)
@@ -75,7 +75,7 @@ AasmController::AasmController(const ControllerRequest& request)
 
 Action AasmController::output(const State& state) {
   const double activity = activity_.update(target_.distanceMm(state));
-  adaptive_.update(x_, activity / kLargestActivity);
+  adaptive_.update(x_, activity / largest_activity);
   if (timer_.due()) decide(activity);
   return pressures(x_);
 }

@@ -11,7 +11,7 @@ namespace musclesim {
 
 namespace {
 
-constexpr double kTimeTolerance_s = 1e-6;
+constexpr double time_tolerance_s = 1e-6;
 
 std::string nameOf(const Recording& recording) {
   return recording.file.empty() ? "recording" : recording.file;
@@ -52,7 +52,7 @@ ReplayController::ReplayController(const Recording& recording, int muscle_count)
 }
 
 Action ReplayController::output(const State& state) {
-  const auto later = std::upper_bound(time_s_.begin(), time_s_.end(), state.time_s + kTimeTolerance_s);
+  const auto later = std::upper_bound(time_s_.begin(), time_s_.end(), state.time_s + time_tolerance_s);
   const auto row = std::max<std::ptrdiff_t>(later - time_s_.begin() - 1, 0);
   return rows_[static_cast<std::size_t>(row)];
 }

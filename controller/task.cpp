@@ -10,13 +10,13 @@ namespace musclesim {
 
 namespace {
 
-constexpr double kLargestTarget_mm = 1e5;
-constexpr double kLargestHand_mm = 1e9;
+constexpr double largest_target_mm = 1e5;
+constexpr double largest_hand_mm = 1e9;
 
 /// Declares one coordinate of a target; a value given in the request counts as an override of it.
 double coordinate(const ControllerRequest& request, const std::string& name, double default_mm, int axis, const std::string& meaning) {
   if (request.target_mm) request.parameters.set(name, (*request.target_mm)[axis], "target");
-  return request.parameters.number(name, default_mm, "mm", -kLargestTarget_mm, kLargestTarget_mm, meaning);
+  return request.parameters.number(name, default_mm, "mm", -largest_target_mm, largest_target_mm, meaning);
 }
 
 BadParameter unknownTask(const std::string& task) {
@@ -33,7 +33,7 @@ Vector reportedHand(const State& state) {
         "hold or random");
   const Vector& hand = *state.hand_mm;
   // Written so that NaN fails too.
-  if (!(hand.cwiseAbs().array() <= kLargestHand_mm).all())
+  if (!(hand.cwiseAbs().array() <= largest_hand_mm).all())
     throw Diverged(state.time_s, "hand",
                    fmt::format("position ({}, {}, {}) mm is out of every robot's reach", hand.x(), hand.y(), hand.z()));
   return hand;

@@ -1,6 +1,7 @@
 /// `musclesim diagnose`: from recordings to where the gap lies, which effect causes it and how far it shrinks.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "commands.h"
@@ -85,8 +86,15 @@ void requirePlaces(const std::filesystem::path& folder, const DiagnoseArguments&
   requireWritable(folder);
 }
 
+void requireDifferent(std::vector<std::string> tuned) {
+  std::ranges::sort(tuned);
+  if (const auto twice = std::ranges::adjacent_find(tuned); twice != tuned.end())
+    throw BadParameter("--tune", fmt::format("{},{}", *twice, *twice), "name each number once");
+}
+
 int diagnoseCommand(const ModelOptions& model, const DiagnoseArguments& arguments) {
   const std::filesystem::path folder = folderFor(arguments);
+  requireDifferent(arguments.tune);
   std::vector<Recording> recordings;
   for (const std::string& file : arguments.recordings) {
     recordings.push_back(readRecording(file, {arguments.ignore_columns}));

@@ -60,6 +60,7 @@ TEST_F(DiagnoseCommand, WrongOptionsAreUsageErrors) {
   for (const std::vector<std::string>& options : {std::vector<std::string>{"--candidates", "nonsense"},
                                                   {"--tune", "muscle.model"},
                                                   {"--tune", "rig.lod_kg"},
+                                                  {"--tune", "rig.load_kg,rig.load_kg"},
                                                   {"--max-effects", "0"},
                                                   {"--jobs", "0"}}) {
     std::vector<std::string> arguments = options;
