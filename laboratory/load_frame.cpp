@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "musclesim/error.h"
 #include "musclesim/units.h"
 
 namespace musclesim {
@@ -16,6 +17,7 @@ class Frame {
  public:
   Frame(const FrameSpecimen& specimen, double pressure_ratio, const Parameters& parameters)
       : simulation_(optionsFor(specimen, parameters)), rig_(simulation_.build("rig")), pressure_ratio_(pressure_ratio) {
+    if (!muscle().endJoint()) throw BadParameter("muscle.model", "line", "be chain in the load frame, which holds the muscle's last bead");
     simulation_.start("settled", {pressure_ratio});
     load_ = simulation_.primitives().front()->body().id;
     simulation_.parameters().requireAllKnown();

@@ -115,18 +115,18 @@ class Import {
       if (column->from.empty()) {
         series_.push_back({{clock_.front()}, {column->value}});
       } else if (column->table.empty()) {
-        series_.push_back(scaled(*column, {clock_, first[column->from]}));
+        series_.push_back(scaled(*column, {clock_, first[column->from]}, csv_file_));
       } else {
-        const std::string file = (std::filesystem::path(csv_file_).parent_path() / column->table).string();
+        const std::string file = tableFile(csv_file_, *column);
         const Table other(file, {column->time, column->from});
         if (other.rowCount() == 0) throw BadFile(file, "has no rows");
-        series_.push_back(scaled(*column, {other[column->time], other[column->from]}));
+        series_.push_back(scaled(*column, {other[column->time], other[column->from]}, file));
       }
     }
   }
 
   /// In the recording's unit, with times that increase: of rows with one time the first stays.
-  Series scaled(const ImportColumn& column, const Series& raw) const {
+  static Series scaled(const ImportColumn& column, const Series& raw, const std::string& file) {
     Series result;
     for (std::size_t row = 0; row < raw.values.size(); ++row) {
       if (!result.time_s.empty() && raw.time_s[row] == result.time_s.back()) continue;
@@ -136,7 +136,7 @@ class Import {
     }
     for (std::size_t row = 1; row < result.time_s.size(); ++row)
       if (!(result.time_s[row] > result.time_s[row - 1]))
-        throw BadFile(csv_file_,
+        throw BadFile(file,
                       fmt::format("time runs backwards in data row {}: {} after {}", row + 1, result.time_s[row], result.time_s[row - 1]));
     return result;
   }
@@ -178,7 +178,7 @@ class Import {
     for (std::size_t row = 0; row < clock_.size(); ++row) {
       if (row > 0 && clock_[row] == clock_[row - 1])
         ++repeated_count;
-      else if (row % static_cast<std::size_t>(mapping_.every) == 0)
+      else if ((row - repeated_count) % static_cast<std::size_t>(mapping_.every) == 0)
         addRow(clock_[row], clock_[row], true);
     }
     if (repeated_count > 0) notes_.push_back(fmt::format("{} rows have the time of the row before; they are left out", repeated_count));
@@ -237,6 +237,10 @@ class Import {
 };
 
 }  // namespace
+
+std::string tableFile(const std::string& csv_file, const ImportColumn& column) {
+  return (std::filesystem::path(csv_file).parent_path() / column.table).string();
+}
 
 Recording importTable(const std::string& csv_file, const ImportMapping& mapping) {
   return Import(csv_file, mapping).recording();

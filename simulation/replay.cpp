@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "internal_step.h"
 #include "musclesim/controller/replay.h"
 #include "musclesim/error.h"
 #include "musclesim/version.h"
@@ -23,10 +24,12 @@ void appendRow(Recording& recording, double time_s, const std::vector<double>& v
   for (std::size_t i = 0; i < values.size(); ++i) recording.signals[i].values.push_back(values[i]);
 }
 
-/// The number of internal steps that a run of this program noted in its sidecar; 0 if there is none.
+/// The number of internal steps that was asked of a run of this program by its sidecar; 0 if there is none or it was the automatic one,
+/// which other parameters may change.
 int recordedSubsteps(const RecordingInfo& info) {
   const auto extra = nlohmann::json::parse(info.extra_json, nullptr, false);
   if (!extra.is_object() || !extra.contains("substeps") || !extra["substeps"].is_number_integer()) return 0;
+  if (const auto automatic = extra.find("substeps_automatic"); automatic != extra.end() && *automatic == true) return 0;
   return extra["substeps"].get<int>();
 }
 
@@ -91,6 +94,8 @@ RecordingInfo describeModel(Simulation& simulation, const std::string& initial_s
   nlohmann::json extra;
   extra["stepper"] = simulation.stepper().name();
   extra["substeps"] = simulation.substeps();
+  extra["substeps_automatic"] =
+      simulation.substeps() == automaticSubsteps(simulation.stepS(), simulation.physics(), simulation.joints(), simulation.actuators());
   extra["internal_step_s"] = simulation.internalStepS();
   for (const Parameter& p : simulation.parameters().declared()) extra["parameters"][p.name] = toJson(p.value);
   info.extra_json = extra.dump();

@@ -24,7 +24,11 @@ constexpr double torn_mm = 7.5;            ///< a joint torn further than this e
 constexpr double farthest_mm = 1e5;        ///< a body farther out than 100 m ends the run
 constexpr double fastest_m_per_s = 1000;   ///< in true seconds
 constexpr double settle_duration_s = 0.5;  ///< of `si` time
-constexpr const char* advice = "; try a smaller --step or more --substeps, and look at the last rows of the recording";
+/// What to do about a divergence at a time; before 0 the robot settles, and nothing is recorded.
+std::string advice(double time_s) {
+  return time_s < 0 ? " while it settled under the first command, before the run; try a smaller --step or more --substeps"
+                    : "; try a smaller --step or more --substeps, and look at the last rows of the recording";
+}
 
 /// After a caught fault ODE's world may still be locked; destroying it would raise another. It is kept to the end of the process, in reach,
 /// so that leak checkers do not take it for forgotten.
@@ -186,7 +190,9 @@ void Simulation::start(const std::string& initial_state, const Action& first_com
     stop();
     // In `original` units the same number of true seconds lasts sqrt(1000) times longer.
     const double slowness = std::sqrt(world_force_per_N / physics_.force_per_N);
-    effects_->begin(-settle_duration_s * slowness);
+    start_time_s_ = internal_time_s_ = -settle_duration_s * slowness;
+    step_count_ = 0;
+    effects_->begin(start_time_s_);
     robot().step(first_command);
     advance(settle_duration_s * slowness);
     robot().step(first_command);  // forces at the lengths it has settled to
@@ -275,9 +281,9 @@ void Simulation::internalStep(double h_s) {
     requireFinite();
   } catch (const OdeFault& fault) {
     faulted_ = true;
-    throw Diverged(internal_time_s_, "the solver", std::string(fault.what()) + advice);
+    throw Diverged(internal_time_s_, "the solver", std::string(fault.what()) + advice(internal_time_s_));
   } catch (const BodyOutOfBounds& escaped) {
-    throw Diverged(internal_time_s_ + h_s, labelOf(escaped.body()), std::string(escaped.what()) + advice);
+    throw Diverged(internal_time_s_ + h_s, labelOf(escaped.body()), std::string(escaped.what()) + advice(internal_time_s_));
   }
   solver_message_count_ += messages.count - messages_before;
   internal_time_s_ += h_s;
@@ -318,7 +324,7 @@ void Simulation::requireWhole() {
   const TornJoint torn = known ? *known : tornMost();
   if (!(torn.gap_mm <= worst_gap_.gap_mm)) worst_gap_ = torn;
   if (!(torn.gap_mm <= torn_mm))
-    throw Diverged(internal_time_s_, torn.joint->name(), fmt::format("it is torn by {:.3g} mm{}", torn.gap_mm, advice));
+    throw Diverged(internal_time_s_, torn.joint->name(), fmt::format("it is torn by {:.3g} mm{}", torn.gap_mm, advice(internal_time_s_)));
 }
 
 TornJoint Simulation::tornMost() const {

@@ -17,6 +17,8 @@ namespace musclesim::program {
 
 namespace {
 
+constexpr const char* files[] = {"diagnosis.json", "report.html", "effects.json", "attempt.json", "nominal.toml", "next.csv", "next.json"};
+
 struct DiagnoseArguments {
   std::vector<std::string> recordings, candidates, exclude, ignore_columns, tune;
   std::optional<std::string> out, json;
@@ -62,8 +64,7 @@ void writeSchedule(const Diagnosis& diagnosis, const RecordingInfo& plant, const
 
 void writeAll(const Diagnosis& diagnosis, const std::filesystem::path& folder, const DiagnoseArguments& arguments,
               const std::vector<ActiveEffect>& effects_of_user, const RecordingInfo& plant) {
-  for (const char* of_an_earlier_run : {"attempt.json", "nominal.toml", "next.csv", "next.json"})
-    std::filesystem::remove(folder / of_an_earlier_run);
+  for (const char* of_an_earlier_run : files) std::filesystem::remove(folder / of_an_earlier_run);
   const std::string json = diagnosisJson(diagnosis);
   replaceFile((folder / "diagnosis.json").string(), json);
   replaceFile((folder / "report.html").string(), diagnosisReport(diagnosis));
@@ -74,12 +75,17 @@ void writeAll(const Diagnosis& diagnosis, const std::filesystem::path& folder, c
   if (arguments.json) replaceFile(*arguments.json, json);
 }
 
-/// Before minutes of work: what is written has a place, and it is none of the recordings.
-void requirePlaces(const std::filesystem::path& folder, const DiagnoseArguments& arguments) {
+/// Before minutes of work: what is written has a place, and it is none of the files that are read.
+void requirePlaces(const std::filesystem::path& folder, const ModelOptions& model, const DiagnoseArguments& arguments) {
+  std::vector<std::string> inputs = arguments.recordings;
+  for (const std::string& recording : arguments.recordings) inputs.push_back(sidecarPath(recording));
+  for (const auto& file : {model.config, model.effects})
+    if (file) inputs.push_back(*file);
+  for (const char* file : files) requireOther(folder / file, inputs);
   if (arguments.json) {
     const std::filesystem::path file = *arguments.json;
     if (file.extension() != ".json") throw BadParameter("--json", file.string(), "end in .json (diagnosis.json is written there too)");
-    for (const std::string& recording : arguments.recordings) requireOther(file, {recording, sidecarPath(recording)});
+    requireOther(file, inputs);
     if (file.has_parent_path()) makeFolder(file.parent_path());
   }
   makeFolder(folder);
@@ -100,7 +106,7 @@ int diagnoseCommand(const ModelOptions& model, const DiagnoseArguments& argument
     recordings.push_back(readRecording(file, {arguments.ignore_columns}));
     for (const auto& note : recordings.back().notes) say(model, note);
   }
-  requirePlaces(folder, arguments);
+  requirePlaces(folder, model, arguments);
   DiagnosisOptions options;
   options.model = replayOptionsFrom(model);
   options.candidates = arguments.candidates;
@@ -115,7 +121,7 @@ int diagnoseCommand(const ModelOptions& model, const DiagnoseArguments& argument
   const RecordingInfo plant = recordings.front().info;
   const Diagnosis diagnosis = diagnose(std::move(recordings), options);
   writeAll(diagnosis, folder, arguments, options.model.effects, plant);
-  if (!model.quiet) fmt::print("{}report    {}\n", diagnosisSummary(diagnosis), (folder / "report.html").string());
+  fmt::print("{}report    {}\n", diagnosisSummary(diagnosis), (folder / "report.html").string());
   return diagnosis.partial ? interrupted_base + interruptSignal() : done;
 }
 

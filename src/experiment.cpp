@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 struct ExperimentArguments {
   std::string specimen = "all";
   std::optional<std::string> data, out;
+  PointsOptions points;
 };
 
 /// "all", a name, or MIN/MAX in mm.
@@ -53,9 +54,13 @@ int experiment(const ModelOptions& model, const ExperimentArguments& arguments) 
   endAtInterrupts();
   const auto specimens = specimensOf(arguments.specimen);
   std::optional<StaticPoints> measured;
-  if (arguments.data) measured = readStaticPoints(*arguments.data);
+  if (arguments.data) measured = readStaticPoints(*arguments.data, staticPointsOptions(arguments.points));
+  if (measured)
+    for (const auto& note : measured->notes) say(model, note);
   const Parameters parameters = parametersFrom(model);
   const fs::path folder = outputFolder(arguments.out, "experiment");
+  if (arguments.data)
+    for (const auto& specimen : specimens) requireOther(folder / (specimen.name + ".csv"), {*arguments.data});
   nlohmann::json json = {{"command", "experiment"}, {"status", "done"}, {"out", folder.string()}};
   std::vector<FrameReport> reports;
   for (const auto& specimen : specimens) {
@@ -92,6 +97,7 @@ Action addExperiment(CLI::App& command, ModelOptions& model) {
   command.add_option("--specimen", arguments->specimen, "short (60/200 mm), medium (75/300), long (60/350), all, or MIN/MAX in mm")
       ->capture_default_str();
   command.add_option("--data", arguments->data, "Measured static points to compare with, as for fit");
+  addPointsOptions(command, arguments->points);
   command.add_option("--out", arguments->out, "Folder for points and figures (default: log/runs/<date-time>-experiment)");
   command.add_option("--config", model.config, "TOML file with named parameters, for example a fitted muscle");
   command.add_option("--set", model.set, "name=value: override one named parameter; may be repeated")->allow_extra_args(false);

@@ -20,28 +20,12 @@ namespace fs = std::filesystem;
 
 struct FitArguments {
   std::string data, law = "all";
-  std::vector<std::string> columns, where;
-  std::optional<double> full_scale_kPa, censored_below_N, rest_length_mm;
+  PointsOptions points;
+  std::optional<double> rest_length_mm;
   std::optional<std::string> out;
   std::string minimum_length = "free", maximum_length = "rest";
   bool quiet = false, json = false;
 };
-
-std::pair<std::string, std::string> splitAssignment(const std::string& option, const std::string& assignment) {
-  const auto equals = assignment.find('=');
-  if (equals == std::string::npos || equals == 0 || equals + 1 == assignment.size())
-    throw BadParameter(option, assignment, "have the form name=value");
-  return {assignment.substr(0, equals), assignment.substr(equals + 1)};
-}
-
-StaticPointsOptions pointsOptions(const FitArguments& arguments) {
-  StaticPointsOptions options;
-  for (const auto& column : arguments.columns) options.columns.push_back(splitAssignment("--columns", column));
-  for (const auto& filter : arguments.where) options.where.push_back(splitAssignment("--where", filter));
-  options.full_scale_kPa = arguments.full_scale_kPa;
-  options.censored_below_N = arguments.censored_below_N;
-  return options;
-}
 
 /// A length of Eq. 1 in mm, or nothing where it shall be fitted.
 std::optional<double> lengthMm(const std::string& option, const std::string& written) {
@@ -98,7 +82,7 @@ nlohmann::json verdictOf(const FitArguments& arguments, const StaticPoints& poin
 
 int fit(const FitArguments& arguments) {
   endAtInterrupts();
-  StaticPoints points = readStaticPoints(arguments.data, pointsOptions(arguments));
+  StaticPoints points = readStaticPoints(arguments.data, staticPointsOptions(arguments.points));
   const Specimen specimen = specimenOf(points, arguments.rest_length_mm);
   const BraunLengths lengths = braunLengths(arguments, specimen);
   const std::vector<std::string> names = arguments.law == "all" ? lawModelNames() : std::vector{arguments.law};
@@ -123,15 +107,7 @@ Action addFit(CLI::App& command) {
   command.add_option("data", arguments->data, "Table of static points: pressure or pressure_kPa|bar|MPa, length_mm|cm|m, force_N")
       ->required();
   command.add_option("--law", arguments->law, fmt::format("all, or one of {}", fmt::join(lawModelNames(), ", ")))->capture_default_str();
-  command
-      .add_option("--columns", arguments->columns,
-                  "pressure=NAME,length=NAME,force=NAME: other columns; NAME:unit gives a unit (else fraction, mm, N)")
-      ->delimiter(',');
-  command.add_option("--where", arguments->where, "column=value: only these rows; may be repeated")->delimiter(',');
-  command.add_option("--full-scale-kPa", arguments->full_scale_kPa, "Pressure of fraction 1 (default: the largest of the file)")
-      ->check(CLI::Range(1.0, 1e4));
-  command.add_option("--censored-below", arguments->censored_below_N,
-                     "Force in N at and below which the sensor shows nothing (default: found where the lowest force repeats)");
+  addPointsOptions(command, arguments->points);
   command
       .add_option("--rest-length", arguments->rest_length_mm, "Rest length of the measured muscle in mm (default: the longest measured)")
       ->check(CLI::Range(5.0, 1e4));

@@ -20,9 +20,13 @@ struct ImportArguments {
 };
 
 int importCommand(const ImportArguments& arguments) {
-  requireOther(arguments.out, {arguments.table, arguments.mapping});
-  requireOther(sidecarPath(arguments.out), {arguments.table, arguments.mapping});
-  const Recording recording = importTable(arguments.table, readImportMapping(arguments.mapping));
+  const ImportMapping mapping = readImportMapping(arguments.mapping);
+  std::vector<std::string> inputs = {arguments.table, arguments.mapping};
+  for (const ImportColumn& column : mapping.columns)
+    if (!column.table.empty()) inputs.push_back(tableFile(arguments.table, column));
+  requireOther(arguments.out, inputs);
+  requireOther(sidecarPath(arguments.out), inputs);
+  const Recording recording = importTable(arguments.table, mapping);
   if (!arguments.quiet)
     for (const auto& note : recording.notes) std::fprintf(stderr, "musclesim: %s\n", note.c_str());
   const auto robots = Robot::registered();

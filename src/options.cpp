@@ -4,8 +4,20 @@
 #include <cstdio>
 
 #include "musclesim/effect/effects_file.h"
+#include "musclesim/error.h"
 
 namespace musclesim::program {
+
+namespace {
+
+std::pair<std::string, std::string> splitAssignment(const std::string& option, const std::string& assignment) {
+  const auto equals = assignment.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == assignment.size())
+    throw BadParameter(option, assignment, "have the form name=value");
+  return {assignment.substr(0, equals), assignment.substr(equals + 1)};
+}
+
+}  // namespace
 
 void addModelOptions(CLI::App& command, ModelOptions& options) {
   const std::string model = "Model";
@@ -64,8 +76,34 @@ Parameters parametersFrom(const ModelOptions& options) {
   return parameters;
 }
 
+int substepsFrom(const ModelOptions& options) {
+  if (options.substeps && *options.substeps < 1) throw BadParameter("substeps", std::to_string(*options.substeps), "be at least 1");
+  return options.substeps.value_or(0);
+}
+
 std::vector<ActiveEffect> effectsFrom(const ModelOptions& options) {
   return options.effects ? readEffects(*options.effects) : std::vector<ActiveEffect>();
+}
+
+void addPointsOptions(CLI::App& command, PointsOptions& options) {
+  command
+      .add_option("--columns", options.columns,
+                  "pressure=NAME,length=NAME,force=NAME: other columns; NAME:unit gives a unit (else fraction, mm, N)")
+      ->delimiter(',');
+  command.add_option("--where", options.where, "column=value: only these rows; may be repeated")->delimiter(',');
+  command.add_option("--full-scale-kPa", options.full_scale_kPa, "Pressure of fraction 1 (default: the largest of the file)")
+      ->check(CLI::Range(1.0, 1e4));
+  command.add_option("--censored-below", options.censored_below_N,
+                     "Force in N at and below which the sensor shows nothing (default: found where the lowest force repeats)");
+}
+
+StaticPointsOptions staticPointsOptions(const PointsOptions& given) {
+  StaticPointsOptions options;
+  for (const auto& column : given.columns) options.columns.push_back(splitAssignment("--columns", column));
+  for (const auto& filter : given.where) options.where.push_back(splitAssignment("--where", filter));
+  options.full_scale_kPa = given.full_scale_kPa;
+  options.censored_below_N = given.censored_below_N;
+  return options;
 }
 
 ReplayOptions replayOptionsFrom(const ModelOptions& model) {
@@ -75,7 +113,7 @@ ReplayOptions replayOptionsFrom(const ModelOptions& model) {
   if (model.physics) options.physics = physicsFromName(*model.physics);
   options.step_s = model.step_s;
   options.stepper = stepperFromName(model.stepper);
-  options.substeps = model.substeps.value_or(0);
+  options.substeps = substepsFrom(model);
   options.plane = model.plane;
   options.seed = model.seed;
   options.parameters = parametersFrom(model);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "laboratory/static_points.h"
 #include "musclesim/simulation/replay.h"
 
 namespace musclesim::program {
@@ -31,8 +32,22 @@ void addModelOptions(CLI::App& command, ModelOptions& options);
 /// The named parameters: --config first, then --muscles, --muscle and --joint-friction, then --set.
 Parameters parametersFrom(const ModelOptions& options);
 
+/// --substeps; 0 without it. Throws BadParameter for less than 1.
+int substepsFrom(const ModelOptions& options);
+
 /// The effects of --effects; none without it.
 std::vector<ActiveEffect> effectsFrom(const ModelOptions& options);
+
+/// How static points of a muscle are read from a table.
+struct PointsOptions {
+  std::vector<std::string> columns, where;
+  std::optional<double> full_scale_kPa, censored_below_N;
+};
+
+void addPointsOptions(CLI::App& command, PointsOptions& options);
+
+/// Throws BadParameter unless columns and rows are given as name=value.
+StaticPointsOptions staticPointsOptions(const PointsOptions& options);
 
 /// All of it, for a recording's plant.
 ReplayOptions replayOptionsFrom(const ModelOptions& model);

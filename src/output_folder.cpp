@@ -49,19 +49,22 @@ void prepareRecording(const fs::path& csv) {
 
 /// The sidecar tells: the table of a run that was killed may be torn.
 void requireReplaceable(const fs::path& csv) {
-  if (!fs::exists(csv)) return;
-  std::ifstream sidecar(sidecarPath(csv.string()));
-  const auto json = nlohmann::json::parse(sidecar, nullptr, false);
-  if (json.is_object() && json.contains("program")) return;
-  const char* what = json.is_object() ? "is a recording that musclesim did not simulate" : "is no recording";
-  throw BadParameter(fmt::format("{} exists and {}: choose another name, or remove it", csv.string(), what));
+  const fs::path sidecar = sidecarPath(csv.string());
+  if (!fs::exists(csv) && !fs::exists(sidecar)) return;
+  std::ifstream text(sidecar);
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  const bool is_recording = json.is_object() && json.contains("format");
+  const auto program = is_recording ? json.find("program") : json.end();
+  if (program != json.end() && program->is_string() && program->get<std::string>().starts_with("musclesim ")) return;
+  throw BadParameter(fmt::format("{} exists and {}: choose another name, or remove it", (fs::exists(csv) ? csv : sidecar).string(),
+                                 is_recording ? "is of a recording that musclesim did not simulate" : "is of no recording"));
 }
 
 void requireOther(const fs::path& output, const std::vector<std::string>& inputs) {
   std::error_code ignored;
   for (const std::string& input : inputs)
     if (fs::equivalent(output, input, ignored))
-      throw BadParameter(fmt::format("{} would be written over {}: choose another name", output.string(), input));
+      throw BadParameter(fmt::format("{} is read and would be written over: choose another name or folder for what is written", input));
 }
 
 }  // namespace musclesim::program

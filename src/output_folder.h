@@ -23,7 +23,7 @@ void requireWritable(const std::filesystem::path& folder);
 /// Throws BadParameter unless a recording's file ends in .csv, and makes the folder it is to be in. Throws IoError if that cannot be made.
 void prepareRecording(const std::filesystem::path& csv);
 
-/// Throws BadParameter if a recording of that name would replace one that was not simulated, or another table.
+/// Throws BadParameter if a recording of that name would replace one that was not simulated, another table or another JSON file.
 void requireReplaceable(const std::filesystem::path& csv);
 
 /// Throws BadParameter if a file that is to be written is one of those that are read.

@@ -20,6 +20,13 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, const std::st
       ->group(group);
 }
 
+void PictureOptions::requireUsed(const std::string& why) const {
+  const bool asks_for_view = !camera.empty() || size_px != PictureOptions().size_px;
+  if (asks_for_view && !wanted())
+    throw BadParameter(fmt::format("--camera and --picture-size are those of a window, a --screenshot or a --video, but {}", why));
+  if (speed && !video) throw BadParameter(fmt::format("--speed is that of a window or a video, but {} and there is no --video", why));
+}
+
 double speedRatio(const PictureOptions& options, const PhysicsSettings& physics) {
   constexpr double original = 10;
   const double speed = options.speed.value_or(physics.kind == PhysicsKind::original ? original : 1.0);

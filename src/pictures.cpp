@@ -41,12 +41,14 @@ class Pictures final : public Spectator {
 
   bool see(const State& state) override {
     constexpr double rounding_s = 1e-9;
-    const bool frame_due = video_ && state.time_s + rounding_s >= frameTime(video_->frameCount());
+    if (!start_s_) start_s_ = state.time_s;
+    const double seen_s = state.time_s - *start_s_ + rounding_s;
+    const bool frame_due = video_ && seen_s >= frameTime(video_->frameCount());
     if (!frame_due && !options_.screenshot) return true;
     last_ = snapshots_.take(state);
     if (!frame_due) return true;
     const Image frame = draw(*last_);
-    while (state.time_s + rounding_s >= frameTime(video_->frameCount())) video_->add(frame);
+    while (seen_s >= frameTime(video_->frameCount())) video_->add(frame);
     return true;
   }
 
@@ -76,6 +78,7 @@ class Pictures final : public Spectator {
   Offscreen offscreen_;
   std::unique_ptr<VideoWriter> video_;
   std::optional<Camera> camera_;
+  std::optional<double> start_s_;  ///< of the first state seen: a recording's clock begins anywhere
   std::optional<Snapshot> last_;
 };
 

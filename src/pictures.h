@@ -19,6 +19,8 @@ struct PictureOptions {
   std::vector<float> camera;    ///< azimuth and elevation in degrees, distance in mm; empty: the robot's own view
   std::optional<double> speed;  ///< simulated time over time of the video or of the wall
   bool wanted() const { return screenshot || video; }
+  /// Throws BadParameter for options that would be without effect where no window opens. `why` says why none does.
+  void requireUsed(const std::string& why = "no window opens here") const;
 };
 
 void addPictureOptions(CLI::App& command, PictureOptions& options, const std::string& group);

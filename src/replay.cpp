@@ -30,7 +30,10 @@ std::string unitOf(const std::string& signal) {
 void printTable(const ReplayResult& result) {
   fmt::print("{:<20} {:>12} {:>12} {:>9}\n", "signal", "RMSE", "largest", "samples");
   for (const SignalError& e : result.errors)
-    fmt::print("{:<20} {:>12.4g} {:>12.4g} {:>9}  {}\n", e.name, e.rmse, e.largest, e.sample_count, unitOf(e.name));
+    if (e.sample_count > 0)
+      fmt::print("{:<20} {:>12.4g} {:>12.4g} {:>9}  {}\n", e.name, e.rmse, e.largest, e.sample_count, unitOf(e.name));
+    else
+      fmt::print("{:<20} {:>12} {:>12} {:>9}  nothing to compare\n", e.name, "-", "-", 0);
 }
 
 nlohmann::json verdictOf(const ReplayResult& result, const ReplayArguments& arguments) {
@@ -43,13 +46,20 @@ nlohmann::json verdictOf(const ReplayResult& result, const ReplayArguments& argu
   json["stepper"] = result.stepper;
   json["substeps"] = result.substeps;
   json["worst_joint_gap_mm"] = result.worst_gap.gap_mm;
-  for (const SignalError& e : result.errors)
-    json["signals"][e.name] = {{"rmse", e.rmse}, {"largest", e.largest}, {"samples", e.sample_count}};
+  for (const SignalError& e : result.errors) {
+    const bool is_compared = e.sample_count > 0;
+    json["signals"][e.name] = {{"rmse", is_compared ? nlohmann::json(e.rmse) : nullptr},
+                               {"largest", is_compared ? nlohmann::json(e.largest) : nullptr},
+                               {"samples", e.sample_count}};
+  }
   return json;
 }
 
 int replay(const ModelOptions& model, const ReplayArguments& arguments) {
+  arguments.pictures.requireUsed();
   if (arguments.out) {
+    for (const std::string& written : {*arguments.out, sidecarPath(*arguments.out)})
+      requireOther(written, {arguments.recording, sidecarPath(arguments.recording)});
     requireReplaceable(*arguments.out);
     prepareRecording(*arguments.out);
   }

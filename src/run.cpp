@@ -49,13 +49,9 @@ bool hasWindow(const RunOptions& options) {
 /// Options of what this run does not have would be without effect.
 void requireUsedOptions(const RunOptions& options) {
   if (hasWindow(options)) return;
-  const bool asks_for_view = !options.pictures.camera.empty() || options.pictures.size_px != PictureOptions().size_px;
-  if (asks_for_view && !options.pictures.wanted())
-    throw BadParameter("--camera and --picture-size are those of a window, a --screenshot or a --video, and with --simple there is none");
   const char* without_window = options.simple ? "--simple opens no window" : "--screenshot and --video open no window";
   if (options.window_log) throw BadParameter(fmt::format("--window-log logs what is done in a window, but {}", without_window));
-  if (options.pictures.speed && !options.pictures.video)
-    throw BadParameter(fmt::format("--speed is that of a window or a video, but {} and there is no --video", without_window));
+  options.pictures.requireUsed(without_window);
 }
 
 /// Without --duration: the published 300 s; as much as makes a video worth looking at; with a window until it is closed.
@@ -98,6 +94,8 @@ class Run {
                             nameOf(simulation_.physics().kind), simulation_.stepper().name(), simulation_.substeps(),
                             simulation_.internalStepS(), simulation_.stepS(), simulation_.seed()));
     if (!simulation_.stepper().message().empty()) say(model_, simulation_.stepper().message());
+    if (!options_.target_mm.empty() && !controller_->targetMm())
+      say(model_, fmt::format("warning: controller {} has no target; --target changes nothing", options_.controller));
     std::optional<Diverged> divergence;
     Progress progress(duration_s_, model_.quiet || hands_);
     try {
@@ -155,8 +153,7 @@ class Run {
     options.physics = physicsFromName(model.physics.value_or("si"));
     options.stepper = stepperFromName(model.stepper);
     options.step_s = model.step_s.value_or(options.step_s);
-    options.substeps = model.substeps.value_or(0);
-    if (model.substeps && *model.substeps < 1) throw BadParameter("substeps", std::to_string(*model.substeps), "be at least 1");
+    options.substeps = substepsFrom(model);
     options.plane = model.plane;
     options.seed = model.seed.value_or(1);
     options.interrupted = [] { return interruptSignal() != 0; };
@@ -266,7 +263,7 @@ class Run {
     nlohmann::json verdict = score_.verdict();
     verdict["status"] = ending.status;
     if (!ending.error.empty()) verdict["message"] = ending.error;
-    verdict["simulated_s"] = simulation_.time_s();
+    verdict["simulated_s"] = std::max(0.0, simulation_.time_s());
     verdict["worst_joint_gap_mm"] = simulation_.worstGap().gap_mm;
     verdict["worst_joint"] = simulation_.worstGap().joint;
     verdict["unsolved_steps"] = simulation_.stepper().unsolvedSteps();

@@ -27,9 +27,10 @@ std::string PlanReader::text(const toml::node& node, const std::string& name) co
 
 double PlanReader::number(const toml::node& node, const std::string& name) const {
   if (!node.is_number()) refuse(node, name + ": must be a number");
-  const double number = *node.value<double>();
-  if (!std::isfinite(number)) refuse(node, name + ": must be finite");
-  return number;
+  const auto number = node.value<double>();
+  if (!number) refuse(node, name + ": must be at most 2^53, beyond which not every whole number is one of double precision");
+  if (!std::isfinite(*number)) refuse(node, name + ": must be finite");
+  return *number;
 }
 
 std::size_t PlanReader::count(const toml::node& node, const std::string& name) const {

@@ -60,4 +60,10 @@ std::string lastLine(const std::string& text) {
   return text.substr(begin == std::string::npos ? 0 : begin + 1, end - (begin == std::string::npos ? 0 : begin + 1) + 1);
 }
 
+std::string errorLine(const std::string& messages) {
+  const auto begin = messages.rfind("musclesim: error:");
+  if (begin == std::string::npos || (begin > 0 && messages[begin - 1] != '\n')) return lastLine(messages);
+  return messages.substr(begin, messages.find_first_of("\r\n", begin) - begin);
+}
+
 }  // namespace musclesim

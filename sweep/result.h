@@ -25,5 +25,7 @@ bool hasResult(const std::string& folder, std::size_t row);
 
 /// The last line of a text that is not empty.
 std::string lastLine(const std::string& text);
+/// The last line of messages that tells of an error of this program ("musclesim: error: ..."), or else the last one that is not empty.
+std::string errorLine(const std::string& messages);
 
 }  // namespace musclesim

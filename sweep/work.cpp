@@ -163,7 +163,7 @@ class Worker {
     });
     longest_row_s_ = std::max(longest_row_s_, end.wall_s);
     summary_.child_wall_s += end.wall_s;
-    const std::string last_words = lastLine(readTextFile(absolute_out + "/stderr.txt", output_limit_bytes));
+    const std::string last_words = errorLine(readTextFile(absolute_out + "/stderr.txt", output_limit_bytes));
     if (const auto without = withoutResult(end, stop, out_of_time, last_words)) {
       fs::remove_all(absolute_out);
       claims_.end(row, attempt, without->first, without->second);

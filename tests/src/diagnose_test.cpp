@@ -55,6 +55,22 @@ TEST_F(DiagnoseCommand, BadRecordingsAreBadFiles) {
   EXPECT_EQ(diagnose({"good.csv", "good.csv"}).status, 3);
 }
 
+TEST_F(DiagnoseCommand, WhatIsReadIsNotWrittenOver) {
+  fs::create_directories(folder_ / "out");
+  write("out/next", 60, 1);
+  std::ofstream(folder_ / "out" / "nominal.toml") << "[muscle]\nslider_friction_N = 0.9\n";
+  write("good", 60, 1);
+  for (const std::vector<std::string>& options :
+       {std::vector<std::string>{"good.csv", "out/next.csv"}, {"good.csv", "--config", "out/nominal.toml"}}) {
+    std::vector<std::string> arguments = options;
+    arguments.insert(arguments.end(), {"--out", "out"});
+    const ProgramResult result = diagnose(arguments);
+    EXPECT_EQ(result.status, 2) << options[1];
+    EXPECT_TRUE(contains(result.err, "is read and would be written over")) << result.err;
+  }
+  EXPECT_TRUE(fs::exists(folder_ / "out" / "next.csv") && fs::exists(folder_ / "out" / "nominal.toml"));
+}
+
 TEST_F(DiagnoseCommand, WrongOptionsAreUsageErrors) {
   write("good", 60, 1);
   for (const std::vector<std::string>& options : {std::vector<std::string>{"--candidates", "nonsense"},

@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "src/program.h"
@@ -39,6 +40,26 @@ TEST(ExperimentCommand, UnknownSpecimensAreRefused) {
     EXPECT_EQ(result.status, 2) << specimen;
     EXPECT_NE(result.err.find("short, medium, long, or MIN/MAX"), std::string::npos) << result.err;
   }
+}
+
+TEST(ExperimentCommand, LineMusclesHaveNoPlaceInTheFrame) {
+  const ProgramResult result = runProgram({"experiment", "--specimen", "60/200", "--set", "muscle.model=line"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("must be chain"), std::string::npos) << result.err;
+}
+
+TEST(ExperimentCommand, MeasuredPointsAreReadAsByFitAndNotWrittenOver) {
+  const fs::path folder = fs::temp_directory_path() / ("musclesim_experiment_data_test_" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  std::ofstream points(folder / "custom.csv");
+  points << "pressure_kPa,length_mm,force_N\n";
+  for (const int pressure : {0, 200, 400})
+    for (const int length : {140, 160, 180}) points << pressure << ',' << length << ',' << (pressure / 10.0 + length - 135) << '\n';
+  points.close();
+  EXPECT_EQ(runProgram({"experiment", "--specimen", "60/200", "--data", "custom.csv", "--out", "."}, folder).status, 2);
+  EXPECT_EQ(
+      runProgram({"experiment", "--specimen", "60/200", "--data", "custom.csv", "--columns", "pressure", "--out", "o"}, folder).status, 2);
+  fs::remove_all(folder);
 }
 
 }  // namespace

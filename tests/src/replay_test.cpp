@@ -81,9 +81,42 @@ TEST_F(ReplayCommand, WritesOverNothingThatWasNotSimulated) {
   write("measured.json", R"({"format": "musclesim-recording-1", "robot": "elbow"})");
   const ProgramResult refused = runProgram({"replay", "measured.csv", "--out", "measured.csv"}, folder_);
   EXPECT_EQ(refused.status, 2);
-  EXPECT_NE(refused.err.find("did not simulate"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("would be written over"), std::string::npos) << refused.err;
   EXPECT_EQ(runProgram({"--simple", "--robot", "elbow", "--duration", "0.1", "--record", "measured.csv"}, folder_).status, 2);
-  EXPECT_EQ(runProgram({"replay", "run.csv", "--out", "run.csv", "--quiet"}, folder_).status, 0) << "a simulated one may be made anew";
+  EXPECT_EQ(runProgram({"replay", "run.csv", "--out", "run.csv"}, folder_).status, 2) << "what is read is not written over";
+  EXPECT_EQ(runProgram({"replay", "run.csv", "--out", "sim.csv", "--quiet"}, folder_).status, 0);
+  EXPECT_EQ(runProgram({"replay", "run.csv", "--out", "sim.csv", "--quiet"}, folder_).status, 0) << "a simulated one may be made anew";
+  write("logged.csv", "time_s,command_0,command_1\n0,0.5,0.5\n0.1,0.5,0.5\n");
+  write("logged.json", R"({"format": "musclesim-recording-1", "robot": "elbow", "program": "another logger 3"})");
+  const ProgramResult logged = runProgram({"replay", "run.csv", "--out", "logged.csv"}, folder_);
+  EXPECT_EQ(logged.status, 2);
+  EXPECT_NE(logged.err.find("did not simulate"), std::string::npos) << logged.err;
+  const std::string effects = R"({"format": "musclesim-effects-1", "effects": []})";
+  write("machine.json", effects);
+  const ProgramResult sidecar = runProgram({"replay", "run.csv", "--out", "machine.csv"}, folder_);
+  EXPECT_EQ(sidecar.status, 2);
+  EXPECT_NE(sidecar.err.find("machine.json exists"), std::string::npos) << sidecar.err;
+}
+
+/// Other muscles need other internal steps; a number that was asked for stays.
+TEST_F(ReplayCommand, AutomaticInternalStepsFollowTheModel) {
+  record({"--muscle", "line"});
+  const int of_lines = replay({}).at("substeps"), of_chains = replay({"--muscle", "chain"}).at("substeps");
+  EXPECT_GT(of_chains, of_lines);
+  record({"--muscle", "line", "--substeps", "7"});
+  EXPECT_EQ(replay({"--muscle", "chain"}).at("substeps"), 7);
+}
+
+TEST_F(ReplayCommand, ASignalWithoutReadingsHasNoError) {
+  write("run.csv", "time_s,command_0,command_1,angle_elbow_deg\n0,0.5,0.5,\n0.1,0.5,0.5,\n");
+  write("run.json", R"({"format": "musclesim-recording-1", "robot": "elbow"})");
+  EXPECT_TRUE(replay({}).at("signals").at("angle_elbow_deg").at("rmse").is_null());
+}
+
+TEST_F(ReplayCommand, RefusesOptionsOfPicturesWithoutOne) {
+  record({});
+  for (const auto& [option, value] : {std::pair("--speed", "2"), std::pair("--camera", "20,10,800"), std::pair("--substeps", "0")})
+    EXPECT_EQ(runProgram({"replay", "run.csv", option, value}, folder_).status, 2) << option;
 }
 
 /// Contract: the order of arguments is free.

@@ -196,7 +196,7 @@ TEST_F(RunCommand, RefusesPicturesThatCannotBe) {
   expectRefused({"--screenshot", "a.jpg", "--robot", "rig", "--controller", "hold"}, 2, {"screenshot"});
   expectRefused({"--video", "a.avi", "--robot", "rig", "--controller", "hold"}, 2, {"video"});
   for (const std::vector<std::string>& view : {std::vector<std::string>{"--camera", "20,10,800"}, {"--picture-size", "160x120"}})
-    expectRefused({"--simple", "--robot", "rig", view[0], view[1]}, 2, {"with --simple there is none"});
+    expectRefused({"--simple", "--robot", "rig", view[0], view[1]}, 2, {"--simple opens no window"});
   expectRefused({"--screenshot", "a.png", "--picture-size", "5x5", "--robot", "rig", "--controller", "hold"}, 2, {"5", "16"});
   expectRefused({"--video", "a.mp4", "--speed", "-1", "--robot", "rig", "--controller", "hold"}, 2, {"speed"});
 }

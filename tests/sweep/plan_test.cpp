@@ -64,6 +64,8 @@ TEST(Plan, SeedsThatTheCommandDoesNotUseAreRefusedIfPlannedAndElseNotListed) {
   EXPECT_TRUE(contains(messageOf<BadParameter>([&] { argumentsOf(planned, 0, "out"); }), "parameter seed: the command does not use it"));
   const Sweep used = parsePlan(head_with_seed + "[grid]\nseed = [5, 6]\n", "p.toml");
   EXPECT_EQ(argumentsOf(used, 1, "out"), (std::vector<std::string>{"run", "--seed=6"}));
+  EXPECT_TRUE(
+      contains(messageOf<BadFile>([&] { parsePlan(head_with_seed + "[grid]\nseed = [10000000000000001, 3]\n", "p.toml"); }), "2^53"));
   const Sweep unused = parsePlan("seed = 9\n" + head, "p.toml");
   for (const auto& [name, value] : unused.rows.at(0).parameters) EXPECT_NE(name, "seed");
 }

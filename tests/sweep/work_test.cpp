@@ -86,10 +86,11 @@ TEST_F(Working, ARunThatIsTerminatedShortlyBeforeItsWorkerIsGivenBack) {
 
 TEST_F(Working, TellsDivergedAndFailedRowsApart) {
   const std::string sweep = sweepOf(3);
-  const WorkSummary summary = workWith(script("echo words >&2; case $1 in 0) exit 4;; 1) exit 2;; esac; " + good_end), sweep);
+  const WorkSummary summary =
+      workWith(script("echo musclesim: error: words >&2; echo more >&2; case $1 in 0) exit 4;; 1) exit 2;; esac; " + good_end), sweep);
   EXPECT_EQ(summary.diverged_count, 1u);
   EXPECT_EQ(summary.failed_count, 1u);
-  EXPECT_EQ(readResult(sweep, 1).message, "words");
+  EXPECT_EQ(readResult(sweep, 1).message, "musclesim: error: words");
   const Collected collected = collect(sweep);
   EXPECT_EQ(collected.diverged, std::vector<std::size_t>{0});
   EXPECT_EQ(collected.failed, std::vector<std::size_t>{1});

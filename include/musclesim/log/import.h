@@ -33,7 +33,7 @@ struct ImportColumn {
 ///     step_s = 0.02                    # even steps in place of the table's times
 ///     from_s = 4.0                     # rows from there on; that time becomes 0
 ///     until_s = 7.6                    # rows up to there
-///     every = 5                        # every fifth row of the table (without step_s)
+///     every = 5                        # every fifth row of the table, not counting rows that repeat a time (without step_s)
 ///     before_s = 1.0                   # before the first row the plant rested that long ...
 ///     before = { command_0_MPa = 0 }   # ... under these commands, the others as in the first row
 struct ImportMapping {
@@ -47,6 +47,9 @@ struct ImportMapping {
 
 /// Throws BadFile with line and column for what is not such a mapping; IoError if it cannot be read.
 ImportMapping readImportMapping(const std::string& toml_file);
+
+/// The file of a column's own table, which lies relative to the first one.
+std::string tableFile(const std::string& csv_file, const ImportColumn& column);
 
 /// The table as a recording. Rows whose time does not increase because the clock is coarse (the same time again) are left out with a note.
 /// Throws BadFile for a table without a column that the mapping names, and as readRecording for what is not a recording then.
