@@ -8,15 +8,12 @@
 #include <numeric>
 #include <set>
 
-#include "data_checks.h"
 #include "parallel.h"
 
 namespace musclesim {
 
 namespace {
 
-constexpr int look_rows = 1200;              ///< the look's stretches have that many rows together
-constexpr std::size_t look_count = 3;        ///< recordings that are looked at
 constexpr std::size_t many_suspects = 200;   ///< with more, most are looked at on the first stretch of the look only
 constexpr std::size_t nearest_count = 80;    ///< suspects that are looked at on all of it then
 constexpr std::size_t per_effect_count = 3;  ///< and at least so many of every effect
@@ -32,27 +29,13 @@ constexpr int first_rounds = 2, last_rounds = 2;
 constexpr int many_rounds = 12;  ///< in place of the last rounds where many effects act together
 constexpr Reach single_reach = {0.8, 0.4}, pair_reach = {0.25, 0.1};
 
-/// The beginnings of the first recordings with different commands.
-std::vector<Stretch> lookStretches(const Plant& plant) {
-  std::vector<Stretch> result;
-  for (const Stretch& stretch : plant.split().fit) {
-    auto recordingOf = [&](const Stretch& s) -> const Recording& { return plant.recordings()[static_cast<std::size_t>(s.recording)]; };
-    const bool repeated =
-        std::ranges::any_of(result, [&](const Stretch& other) { return sameCommands(recordingOf(stretch), recordingOf(other)); });
-    if (!repeated && result.size() < look_count) result.push_back(stretch);
-  }
-  for (Stretch& stretch : result)
-    stretch.end_row = std::min(stretch.end_row, stretch.first_row + look_rows / static_cast<int>(result.size()));
-  return result;
-}
-
 }  // namespace
 
 Attributor::Attributor(const Plant& plant, const DiagnosisOptions& options, OnSimulation on_simulation)
     : plant_(plant),
       options_(options),
       on_simulation_(std::move(on_simulation)),
-      look_(plant, lookStretches(plant), Comparison::Averages::with),
+      look_(plant, plant.lookStretches(), Comparison::Averages::with),
       fit_(plant, plant.split().fit, Comparison::Averages::with) {}
 
 Comparison Attributor::firstOfLook() const {
@@ -134,6 +117,26 @@ void Attributor::lookAtSuspects(const Eigen::VectorXd& nominal) {
   result_.looked_at_count = chosen.size();
 }
 
+/// What shows nothing in the stretches of the look may show in the rest of the recordings.
+void Attributor::lookForExcitation(const std::vector<Suspect>& typical) {
+  const std::vector<Stretch>&looked = look_.stretches(), &fitted = fit_.stretches();
+  const bool is_all = looked.size() == fitted.size() && std::ranges::equal(looked, fitted, {}, &Stretch::end_row, &Stretch::end_row);
+  if (is_all) return;
+  const Eigen::VectorXd nominal = fit_.measured() - nominal_residual_;
+  std::vector<std::size_t> hidden;
+  for (std::size_t i = 0; i < typical.size(); ++i)
+    if (result_.allowed[i] && result_.signatures[i].excitation_ratio.value_or(1) < 1) hidden.push_back(i);
+  parallelFor(static_cast<int>(hidden.size()), options_.job_count, [&](int i) {
+    const std::size_t index = hidden[static_cast<std::size_t>(i)];
+    if (plant_.interrupted()) return;
+    const Suspect& suspect = typical[index];
+    const Eigen::VectorXd predicted = fit_.predicted(Model{{suspect.at(suspect.typical())}, {}});
+    if (predicted.size() == nominal.size() && predicted.allFinite())
+      result_.signatures[index].excitation_ratio = excitationOf(fit_, {predicted - nominal});
+    on_simulation_();
+  });
+}
+
 void Attributor::look() {
   const Eigen::VectorXd nominal = look_.predicted(Model{});
   if (!nominal.size()) throw Diverged(0, plant_.robot(), "the model without further effects cannot follow the recordings");
@@ -145,7 +148,9 @@ void Attributor::look() {
   result_.suspects = suspects(plant_, DiagnosisOptions{});
   keepNearestVariants();
   for (const Suspect& suspect : result_.suspects) result_.allowed.push_back(allows(options_, suspect.info().id));
+  const std::vector<Suspect> typical = result_.suspects;
   lookAtSuspects(nominal);
+  lookForExcitation(typical);
 }
 
 Model Attributor::modelOf(const Explanation& explanation) const {

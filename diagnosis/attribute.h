@@ -65,6 +65,7 @@ class Attributor {
   void keepNearestVariants();
   std::vector<std::size_t> worthLookingAt() const;
   void lookAtSuspects(const Eigen::VectorXd& nominal);
+  void lookForExcitation(const std::vector<Suspect>& typical);
   void weakenStart(Candidate& candidate) const;
   bool gainsOnLook(const Candidate& candidate) const;
   bool mayBeBelieved(const Explanation& explanation) const;

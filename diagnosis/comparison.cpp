@@ -14,7 +14,7 @@ Comparison::Comparison(const Plant& plant, std::vector<Stretch> stretches, Avera
     for (std::size_t s = 0; s < plant.signals().size(); ++s) {
       const std::vector<double>& y = plant.measured(stretches_[k].recording, static_cast<int>(s));
       Cell cell{k, static_cast<int>(s), {}, size_, plant.signals()[s].floor.value};
-      for (int row = stretches_[k].first_row; row < std::min(stretches_[k].end_row, static_cast<int>(y.size())); ++row)
+      for (int row = stretches_[k].first_row; row < std::min(stretches_[k].end_row, static_cast<int>(y.size())); row += stretches_[k].every)
         if (std::isfinite(y[static_cast<std::size_t>(row)])) cell.rows.push_back(row);
       if (cell.rows.size() < fewest_rows) continue;
       size_ += static_cast<Eigen::Index>(cell.rows.size());
@@ -31,14 +31,20 @@ Comparison::Comparison(const Plant& plant, std::vector<Stretch> stretches, Avera
   average(measured_);
 }
 
-/// floor^2 = floor^2 (1 / block + share^2). What repeats differ by need not be white: it is not averaged.
+/// floor^2 = floor^2 (1 / n + share^2), n readings per block: a reading that is held in the next rows is one. What repeats differ by need
+/// not be white: it is not averaged.
 void Comparison::addAverages() {
   const std::size_t plain_count = cells_.size();
   for (std::size_t i = 0; i < plain_count; ++i) {
     const Cell& plain = cells_[i];
     const NoiseFloor& floor = plant_.signals()[static_cast<std::size_t>(plain.signal)].floor;
     if (floor.source == NoiseFloor::Source::repeats || plain.rows.size() < 4 * block_rows) continue;
-    Cell cell{plain.stretch, plain.signal, {}, size_, plain.floor * std::sqrt(1.0 / block_rows + steady_share * steady_share),
+    const std::vector<double>& y = plant_.measured(stretches_[plain.stretch].recording, plain.signal);
+    std::size_t readings = 1;
+    for (std::size_t k = 1; k < plain.rows.size(); ++k)
+      readings += y[static_cast<std::size_t>(plain.rows[k])] != y[static_cast<std::size_t>(plain.rows[k - 1])] ? 1 : 0;
+    const double per_block = std::max(1.0, static_cast<double>(block_rows * readings) / static_cast<double>(plain.rows.size()));
+    Cell cell{plain.stretch, plain.signal, {}, size_, plain.floor * std::sqrt(1.0 / per_block + steady_share * steady_share),
               block_rows,    plain.first};
     for (std::size_t row = 0; row + block_rows <= plain.rows.size(); row += block_rows) cell.rows.push_back(plain.rows[row]);
     size_ += cell.count();
@@ -162,6 +168,23 @@ int Comparison::affectedCells(const Eigen::VectorXd& residual) const {
   const auto count =
       std::ranges::count_if(cells_, [&](const Cell& cell) { return std::sqrt(meanSquare(cell, residual)) > out_of_floor * cell.floor; });
   return std::max(1, static_cast<int>(count));
+}
+
+bool isWithinFloor(const Comparison& comparison, const Eigen::VectorXd& residual) {
+  constexpr Eigen::Index enough_rows = 200;
+  constexpr double known = 1.15, estimated = 1.3, known_in_one = 1.3, estimated_in_one = 1.5;
+  const Gap gap = comparison.gap(residual);
+  const auto& signals = comparison.plant().signals();
+  const bool all = std::ranges::all_of(signals, [&](const ComparedSignal& signal) {
+    const auto found = gap.per_signal.find(signal.name);
+    return found == gap.per_signal.end() ||
+           found->second.rmse < (signal.floor.isEstimated() ? estimated : known) * found->second.noise_floor;
+  });
+  return all && std::ranges::all_of(comparison.cells(), [&](const Comparison::Cell& cell) {
+           const bool is_estimated = signals[static_cast<std::size_t>(cell.signal)].floor.isEstimated();
+           const double rms = std::sqrt(comparison.meanSquare(cell, residual));
+           return cell.count() < enough_rows || rms < (is_estimated ? estimated_in_one : known_in_one) * cell.floor;
+         });
 }
 
 }  // namespace musclesim

@@ -78,4 +78,8 @@ class Comparison {
   Eigen::VectorXd measured_;
 };
 
+/// No signal stands out of its floor: RMS below 1.15 floors, or 1.3 where the floor itself had to be estimated; nor in a single stretch of
+/// 200 rows or more by 1.3 or 1.5.
+bool isWithinFloor(const Comparison& comparison, const Eigen::VectorXd& residual);
+
 }  // namespace musclesim

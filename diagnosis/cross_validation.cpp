@@ -129,7 +129,7 @@ std::set<std::size_t> Attributor::sameCommandsAs(std::size_t stretch) const {
   };
   std::set<std::size_t> result = {stretch};
   for (std::size_t k = 0; k < fit_.stretches().size(); ++k)
-    if (sameCommands(recordingOf(k), recordingOf(stretch))) result.insert(k);
+    if (isRepeat(recordingOf(k), recordingOf(stretch))) result.insert(k);
   return result;
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <map>
 
@@ -53,6 +54,17 @@ bool commandsMove(const std::vector<Recording>& recordings) {
   return false;
 }
 
+int firstChange(const Recording& recording) {
+  auto first = static_cast<std::ptrdiff_t>(recording.time_s.size());
+  for (const Signal& signal : recording.signals) {
+    if (!signal.name.starts_with("command_")) continue;
+    const auto changed =
+        std::ranges::find_if(signal.values, [&](double value) { return std::abs(value - signal.values.front()) > least_change; });
+    first = std::min(first, changed - signal.values.begin());
+  }
+  return first < static_cast<std::ptrdiff_t>(recording.time_s.size()) ? static_cast<int>(first) : 0;
+}
+
 bool neverChanges(const std::vector<Recording>& recordings, const std::string& name) {
   double first = std::numeric_limits<double>::quiet_NaN();
   for (const Recording& recording : recordings) {
@@ -89,6 +101,13 @@ bool sameCommands(const Recording& a, const Recording& b) {
     if (a.find(name)->values != b.find(name)->values) return false;
   }
   return true;
+}
+
+bool isRepeat(const Recording& a, const Recording& b) {
+  const auto names = [](const Recording& one, const Recording& other) {
+    return !one.info.repeat_of.empty() && one.info.repeat_of == std::filesystem::path(other.file).stem().string();
+  };
+  return sameCommands(a, b) || names(a, b) || names(b, a);
 }
 
 void requireDifferentMeasurements(const std::vector<Recording>& recordings) {

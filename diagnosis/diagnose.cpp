@@ -29,25 +29,23 @@ constexpr double named = 0.5;     ///< least probability of none_of_these that m
 constexpr double as_good = 0.05;  ///< share of the best explanation's probability from which on one cannot be told from it
 constexpr double excited = 1;     ///< a typical effect must change some signal by that many floors
 
-/// Of the program, for a model of the recordings' robot. Without a hand there is no task.
-std::string modelOptions(const RecordingInfo& info, bool has_hand) {
-  std::string options = "--robot " + info.robot;
-  if (!has_hand) options += " --controller hold";
-  if (info.physics && *info.physics != nameOf(PhysicsKind::si)) options += " --physics " + *info.physics;
-  if (info.initial_state) options += " --initial-state " + *info.initial_state;
-  if (info.robot_parameters.contains("world.plane_height_mm")) options += " --plane";
-  for (const auto& [name, value] : info.robot_parameters) {
-    options += " --set " + (name.find('.') == std::string::npos ? info.robot + "." : "") + name + "=";
-    options += std::visit(
-        [](const auto& any) {
-          if constexpr (std::is_same_v<std::decay_t<decltype(any)>, double>)
-            return fmt::format("{}", any);
-          else
-            return std::string(any);
-        },
-        value);
+/// Of the program, for the model that is diagnosed. Without a hand there is no task.
+std::string modelOptions(const Plant& plant, const std::optional<std::string>& initial_state) {
+  std::string options = "--robot " + plant.robot();
+  if (!plant.hasHand()) options += " --controller hold";
+  if (const PhysicsKind kind = plant.model().physics().kind; kind != PhysicsKind::si) options += " --physics " + nameOf(kind);
+  if (initial_state) options += " --initial-state " + *initial_state;
+  for (const Parameter& parameter : plant.model().parameters().declared()) {
+    if (parameter.name == "world.plane_height_mm") options += " --plane";
+    if (parameter.value == parameter.default_value) continue;
+    options += fmt::format(" --set {}=", parameter.name);
+    options += std::visit([](const auto& any) { return fmt::format("{}", any); }, parameter.value);
   }
   return options;
+}
+
+double secondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 /// Counts simulations and tells the caller.
@@ -76,15 +74,6 @@ class Monitor {
   DiagnosisProgress progress_;
 };
 
-/// No signal stands out of its floor: RMS below 1.15 floors, or 1.3 where the floor itself had to be estimated from quiet rows.
-bool withinFloor(const Plant& plant, const Gap& gap) {
-  return std::ranges::all_of(plant.signals(), [&](const ComparedSignal& signal) {
-    const auto found = gap.per_signal.find(signal.name);
-    const double ratio = signal.floor.source == NoiseFloor::Source::quiet_rows ? 1.3 : 1.15;
-    return found == gap.per_signal.end() || found->second.rmse < ratio * found->second.noise_floor;
-  });
-}
-
 class Run {
  public:
   Run(std::vector<Recording> recordings, const DiagnosisOptions& options)
@@ -103,7 +92,7 @@ class Run {
     finish();
     diagnosis_.simulation_count = plant_.simulationCount();
     diagnosis_.simulated_s = plant_.simulatedS();
-    diagnosis_.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    diagnosis_.wall_s = secondsSince(start);
     diagnosis_.partial = plant_.interrupted();
     return std::move(diagnosis_);
   }
@@ -111,7 +100,8 @@ class Run {
  private:
   void describe() {
     diagnosis_.robot = plant_.robot();
-    diagnosis_.model_options = modelOptions(plant_.recordings().front().info, plant_.hasHand());
+    const auto& given = options_.model.initial_state;
+    diagnosis_.model_options = modelOptions(plant_, given ? given : plant_.recordings().front().info.initial_state);
     for (const Recording& recording : plant_.recordings()) {
       diagnosis_.recordings.push_back(recording.file);
       for (const std::string& note : recording.notes) diagnosis_.notes.push_back(note);
@@ -120,12 +110,16 @@ class Run {
     for (const auto& [name, value] : plant_.nominalParameters()) diagnosis_.refitted.push_back(name);
     diagnosis_.held_out = plant_.split().held_out_words;
     describeCandidates();
-    std::vector<std::string> estimated;
+    noteEstimated(NoiseFloor::Source::quiet_rows, "the noise floor was estimated from quiet rows");
+    noteEstimated(NoiseFloor::Source::range,
+                  "the readings do not show their noise either, so a thousandth of their range was taken for the noise floor");
+  }
+
+  void noteEstimated(NoiseFloor::Source source, const std::string& how) {
+    std::vector<std::string> names;
     for (const ComparedSignal& signal : plant_.signals())
-      if (signal.floor.source == NoiseFloor::Source::quiet_rows) estimated.push_back(signal.name);
-    if (!estimated.empty())
-      diagnosis_.notes.push_back(
-          fmt::format("no repeats and no noise_std of {}: the noise floor was estimated from quiet rows", fmt::join(estimated, ", ")));
+      if (signal.floor.source == source) names.push_back(signal.name);
+    if (!names.empty()) diagnosis_.notes.push_back(fmt::format("no repeats and no noise_std of {}: {}", fmt::join(names, ", "), how));
   }
 
   /// Throws BadParameter if nothing could be an answer.
@@ -152,7 +146,12 @@ class Run {
       throw Diverged(0, plant_.robot(), "the model without further effects cannot follow the recordings");
     before_residual_ = held_out_.measured() - held;
     diagnosis_.before = diagnosis_.after = held_out_.gap(before_residual_);
-    const bool small = withinFloor(plant_, all.gap(all.measured() - predicted));
+    const Eigen::VectorXd residual = all.measured() - predicted;
+    const bool small = isWithinFloor(all, residual);
+    if (!small && isWithinFloor(held_out_, before_residual_))
+      diagnosis_.notes.push_back(
+          fmt::format("there is no gap in {}: no cause can be confirmed there; put a recording that shows the gap last",
+                      plant_.recordings().size() > 1 ? plant_.recordings().back().file : diagnosis_.held_out));
     diagnosis_.verdict = small ? (commandsMove(plant_.recordings()) ? Verdict::no_gap : Verdict::not_excited) : Verdict::unexplained;
     if (diagnosis_.verdict == Verdict::no_gap) diagnosis_.explanations.push_back({{}, 1});
   }
@@ -169,8 +168,9 @@ class Run {
     if (attribution.looked_at_count < attribution.suspects.size())
       diagnosis_.notes.push_back(fmt::format("of {} possible causes the {} nearest on the first recording were looked at on the others too",
                                              attribution.suspects.size(), attribution.looked_at_count));
-    const Location location =
-        locate(attributor_.lookComparison(), attribution.suspects, attribution.signatures, attributor_.lookResidual());
+    if (plant_.interrupted()) return;
+    const Location location = locate(attributor_.fitComparison(), attributor_.nominalResidual(), attributor_.lookComparison(),
+                                     attribution.suspects, attribution.signatures, attributor_.lookResidual());
     diagnosis_.where = location.places;
     diagnosis_.where_method = location.method;
     monitor_.phase("fitting the likely ones", 600);
@@ -187,8 +187,10 @@ class Run {
     std::set<std::string> shown = attribution.thinned;
     for (std::size_t i = 0; i < attribution.suspects.size(); ++i)
       if (!(attribution.signatures[i].excitation_ratio.value_or(excited) < excited)) shown.insert(labelOf(i));
-    for (std::size_t i = 0; i < attribution.suspects.size(); ++i)
-      if (attribution.allowed[i] && shown.insert(labelOf(i)).second) diagnosis_.not_excited.push_back(labelOf(i));
+    for (std::size_t i = 0; i < attribution.suspects.size(); ++i) {
+      const bool would_be_seen = attribution.suspects[i].info().id == held_effect;
+      if (attribution.allowed[i] && !would_be_seen && shown.insert(labelOf(i)).second) diagnosis_.not_excited.push_back(labelOf(i));
+    }
   }
 
   void choose() {
@@ -211,6 +213,7 @@ class Run {
       else
         sham = shamResidual(fitted, held_out_, static_cast<int>(best.z.size()), options_.seed, count);
     });
+    if (plant_.interrupted()) return;
     auto shrinkOf = [&](const Eigen::VectorXd& residual) {
       return residual.size() ? shrinkPercent(diagnosis_.before, held_out_.gap(residual)) : 0.0;
     };
@@ -459,6 +462,7 @@ std::string nameOf(Verdict verdict) {
 
 Diagnosis diagnose(std::vector<Recording> recordings, const DiagnosisOptions& options) {
   if (options.tune.empty()) return Run(std::move(recordings), options).diagnose();
+  const auto start = std::chrono::steady_clock::now();
   DiagnosisOptions with_tuned = options;
   const Tuning tuning = tune(recordings, with_tuned);
   Diagnosis diagnosis = Run(std::move(recordings), with_tuned).diagnose();
@@ -471,6 +475,7 @@ Diagnosis diagnose(std::vector<Recording> recordings, const DiagnosisOptions& op
   diagnosis.tuned = with_all;
   diagnosis.simulation_count += tuning.simulation_count;
   diagnosis.simulated_s += tuning.simulated_s;
+  diagnosis.wall_s = secondsSince(start);
   return diagnosis;
 }
 

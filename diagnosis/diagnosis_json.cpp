@@ -49,9 +49,10 @@ Json toJson(const TunedParameter& parameter) {
           {"unit", parameter.unit},
           {"start", parameter.start},
           {"value", parameter.fitted.value},
-          {"ci95", {parameter.fitted.low, parameter.fitted.high}},
+          {"ci95", {toJson(parameter.fitted.low), toJson(parameter.fitted.high)}},
           {"value_with_effects", parameter.with_effects.value},
-          {"ci95_with_effects", {parameter.with_effects.low, parameter.with_effects.high}}};
+          {"ci95_with_effects", {toJson(parameter.with_effects.low), toJson(parameter.with_effects.high)}},
+          {"determined", parameter.with_effects.is_determined}};
 }
 
 template <class Value>

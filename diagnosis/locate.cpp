@@ -27,20 +27,19 @@ std::size_t indexOf(Stage stage) {
   return static_cast<std::size_t>(stage);
 }
 
-/// Whether a suspect is the fault of one sensor of motion.
-bool isOneMotionSensor(const Suspect& suspect) {
-  const std::string& component = suspect.component();
-  return suspect.info().stage == Stage::sensor &&
-         (component.starts_with("signal_angle") || component.starts_with("signal_length") || component.starts_with("signal_hand"));
+/// Whether a suspect is the fault of the sensor of one of these signals.
+bool isSensorOf(const Suspect& suspect, const std::vector<std::string>& signals) {
+  return suspect.info().stage == Stage::sensor && suspect.component() != "all" &&
+         std::ranges::any_of(signals, [&](const std::string& signal) { return Plant::isComponentOf(suspect.component(), signal); });
 }
 
-/// Shares of the stages by likeness alone.
+/// Shares of the stages by likeness alone; the sensors of some signals are acquitted.
 StageWeights byLikeness(const Comparison& comparison, const std::vector<Suspect>& suspects, const std::vector<Signature>& signatures,
-                        const Eigen::VectorXd& residual, bool motion_sensors_acquitted) {
+                        const Eigen::VectorXd& residual, const std::vector<std::string>& acquitted) {
   StageWeights best;
   best.fill(std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < suspects.size(); ++i) {
-    if (motion_sensors_acquitted && isOneMotionSensor(suspects[i])) continue;
+    if (isSensorOf(suspects[i], acquitted)) continue;
     double& misfit = best[indexOf(suspects[i].info().stage)];
     const double further = std::max(0.0, static_cast<double>(suspects[i].strengths().size()) - 1);
     misfit = std::min(misfit, signatures[i].log_misfit / comparison.affectedCells(residual) + per_further_strength / per_misfit * further);
@@ -96,11 +95,12 @@ class Evidence {
  public:
   Evidence(const Comparison& comparison, const Eigen::VectorXd& residual) : comparison_(comparison), residual_(residual) {
     askMotion();
-    if (allPressuresMeasured(comparison.plant())) askPressures();
+    if (allPressuresMeasured(comparison)) askPressures();
     askTensions();
   }
   bool speaksAgainst(Stage stage) const { return against_.contains(stage) && against_.size() < stage_count; }
-  bool acquitsMotionSensors() const { return motion_sensors_acquitted_; }
+  /// Signals whose sensors read right.
+  const std::vector<std::string>& acquittedSignals() const { return acquitted_signals_; }
   /// The signal that reads wrong, where that is what was found; empty otherwise.
   const std::string& wrongSignal() const { return wrong_signal_; }
   std::string words() const {
@@ -132,15 +132,26 @@ class Evidence {
     else if (!motion->odd.empty())
       say(contradicts + ": its sensor, or where something is mounted", {Stage::command, Stage::pressure, Stage::force});
     else if (motion->agree) {
-      motion_sensors_acquitted_ = true;
-      say("the signals of motion agree with each other, so none of them alone reads wrong", {});
+      acquitted_signals_ = motion->compared;
+      say(motion->compared_all
+              ? "the signals of motion agree with each other, so none of them alone reads wrong"
+              : fmt::format("{} agree with each other, so none of them alone reads wrong", fmt::join(motion->compared, ", ")),
+          {});
     }
   }
 
   void askPressures() {
-    const double ratio = ratioOf(comparison_, residual_, "pressure_").value_or(1);
-    if (ratio < agrees) {
+    const std::optional<double> ratio = ratioOf(comparison_, residual_, "pressure_");
+    if (!ratio) return;
+    if (*ratio < agrees) {
       say("measured pressures are as predicted, so the gap arises behind the pressure stage", {Stage::command, Stage::pressure});
+      return;
+    }
+    const Plant& plant = comparison_.plant();
+    if (plant.holds(Stage::command) || plant.holds(Stage::pressure) || plant.holds(Stage::sensor)) {
+      say("pressures differ from the predicted ones; the model holds effects on them beforehand, so they cannot be put in the place of "
+          "commands: shares say how much typical disturbances of each stage resemble the gap",
+          {});
       return;
     }
     const auto test = testPressures(comparison_, residual_);
@@ -177,13 +188,18 @@ class Evidence {
   void askTensions() {
     const auto tension = testTension(comparison_, residual_);
     if (!tension) return;
-    const std::string at =
-        tension->commanded ? "at the commanded pressures and the measured lengths" : "at the measured pressures and lengths";
+    const std::string at = tension->all_commanded    ? "at the commanded pressures and the measured lengths"
+                           : tension->some_commanded ? "at the measured lengths and the pressures, measured or commanded"
+                                                     : "at the measured pressures and lengths";
     const bool agreed = tension->found < agrees;
     if (agreed && tension->expected > disagrees) {
+      if (!tension->of_all_muscles) {
+        say("the tensions that are measured follow the force law " + at, {});
+        return;
+      }
       say("tensions follow the force law " + at, {Stage::force});
-      if (tension->commanded) against_.insert({Stage::command, Stage::pressure});
-    } else if (agreed && !tension->commanded) {
+      if (tension->all_commanded) against_.insert({Stage::command, Stage::pressure});
+    } else if (agreed && !tension->some_commanded) {
       say("the gap is too small to show in tensions against the force law " + at, {});
     } else if (tension->found > disagrees && restIsAsPredicted()) {
       sayItIsTheSensor(
@@ -202,21 +218,21 @@ class Evidence {
   const Comparison& comparison_;
   const Eigen::VectorXd& residual_;
   std::set<Stage> against_;
-  bool motion_sensors_acquitted_ = false;
+  std::vector<std::string> acquitted_signals_;
   std::string wrong_signal_;
   std::vector<std::string> reasons_;
 };
 
 }  // namespace
 
-Location locate(const Comparison& comparison, const std::vector<Suspect>& suspects, const std::vector<Signature>& signatures,
-                const Eigen::VectorXd& residual) {
-  const Evidence evidence(comparison, residual);
-  StageWeights weights = byLikeness(comparison, suspects, signatures, residual, evidence.acquitsMotionSensors());
+Location locate(const Comparison& whole, const Eigen::VectorXd& residual_of_all, const Comparison& comparison,
+                const std::vector<Suspect>& suspects, const std::vector<Signature>& signatures, const Eigen::VectorXd& residual) {
+  const Evidence evidence(whole, residual_of_all);
+  StageWeights weights = byLikeness(comparison, suspects, signatures, residual, evidence.acquittedSignals());
   for (std::size_t i = 0; i < stage_count; ++i)
     if (evidence.speaksAgainst(static_cast<Stage>(i))) weights[i] *= hardly;
   normalise(weights);
-  const std::string regime = regimeOf(comparison, residual);
+  const std::string regime = regimeOf(whole, residual_of_all);
   Location location{{}, evidence.words()};
   for (std::size_t i = 0; i < stage_count; ++i) {
     const auto stage = static_cast<Stage>(i);

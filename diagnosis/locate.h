@@ -18,8 +18,9 @@ struct Location {
 /// Stages are told apart by substitution where the signals are there:
 ///   measured pressures as commands of the model: what vanishes was made by command or pressure stage
 ///   measured pressure and length into the force law, against the measured tension: force stage
-/// and, for what substitution leaves open, by how well a small typical disturbance of each stage (`signatures`) resembles the residual.
-Location locate(const Comparison& comparison, const std::vector<Suspect>& suspects, const std::vector<Signature>& signatures,
-                const Eigen::VectorXd& residual);
+/// on all that is fitted (`whole`), and, for what substitution leaves open, by how well a small typical disturbance of each stage
+/// (`signatures`) resembles the residual on the first look.
+Location locate(const Comparison& whole, const Eigen::VectorXd& residual_of_all, const Comparison& look,
+                const std::vector<Suspect>& suspects, const std::vector<Signature>& signatures, const Eigen::VectorXd& residual_of_look);
 
 }  // namespace musclesim

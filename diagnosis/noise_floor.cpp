@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
+#include <limits>
 #include <optional>
 
 #include "data_checks.h"
@@ -31,14 +31,6 @@ struct Differences {
   }
 };
 
-/// Whether a sidecar calls one the repeat of the other.
-bool isCalledRepeat(const Recording& a, const Recording& b) {
-  const auto names = [](const Recording& one, const Recording& other) {
-    return !one.info.repeat_of.empty() && one.info.repeat_of == std::filesystem::path(other.file).stem().string();
-  };
-  return names(a, b) || names(b, a);
-}
-
 struct Interpolated {
   double value, noise_share;  ///< noise_share: of the variance of one row's noise, less between two rows
 };
@@ -61,7 +53,7 @@ std::optional<double> fromRepeats(const std::vector<Recording>& recordings, cons
     for (std::size_t j = i + 1; j < recordings.size(); ++j) {
       const Recording &first = recordings[i], &second = recordings[j];
       const Signal *a = first.find(name), *b = second.find(name);
-      if (!a || !b || !(sameCommands(first, second) || isCalledRepeat(first, second))) continue;
+      if (!a || !b || !isRepeat(first, second)) continue;
       for (std::size_t row = 0; row < a->values.size(); ++row) {
         const Interpolated other = interpolated(second.time_s, b->values, first.time_s[row]);
         differences.add((a->values[row] - other.value) * std::sqrt(2 / (1 + other.noise_share)));
@@ -85,13 +77,14 @@ std::optional<double> fromSidecars(const std::vector<Recording>& recordings, con
 }
 
 /// Second differences of the rows whose neighbourhood moves least: a straight line leaves only the noise. Rows without a number are passed
-/// over: a signal may have been read less often than others.
-std::vector<double> quietSecondDifferences(const Recording& recording, const std::string& name) {
+/// over: a signal may have been read less often than others. So are, if that is asked, rows that repeat the value before.
+std::vector<double> quietSecondDifferences(const Recording& recording, const std::string& name, bool without_held) {
   constexpr std::size_t reach = 10;
   const Signal* signal = recording.find(name);
   if (!signal) return {};
   std::vector<double> y = signal->values;
   std::erase_if(y, [](double value) { return !std::isfinite(value); });
+  if (without_held) y.erase(std::ranges::unique(y).begin(), y.end());
   std::vector<std::pair<double, double>> by_speed;
   for (std::size_t i = reach; i + reach < y.size(); ++i) {
     const double difference = y[i - 1] - 2 * y[i] + y[i + 1], speed = std::abs(y[i + reach] - y[i - reach]);
@@ -103,15 +96,24 @@ std::vector<double> quietSecondDifferences(const Recording& recording, const std
   return result;
 }
 
-double fromQuietRows(const std::vector<Recording>& recordings, const std::string& name) {
+double fromQuietRows(const std::vector<Recording>& recordings, const std::string& name, bool without_held) {
   std::vector<double> all;
   for (const Recording& recording : recordings) {
-    const auto some = quietSecondDifferences(recording, name);
+    const auto some = quietSecondDifferences(recording, name, without_held);
     all.insert(all.end(), some.begin(), some.end());
   }
   const double middle = median(all);
   for (double& value : all) value = std::abs(value - middle);
   return normal_per_median * median(all) / std::sqrt(6.0);
+}
+
+double rangeOf(const std::vector<Recording>& recordings, const std::string& name) {
+  double least = std::numeric_limits<double>::infinity(), largest = -least;
+  for (const Recording& recording : recordings)
+    if (const Signal* signal = recording.find(name))
+      for (const double value : signal->values)
+        if (std::isfinite(value)) least = std::min(least, value), largest = std::max(largest, value);
+  return largest > least ? largest - least : 0;
 }
 
 double finestLattice(const std::vector<Recording>& recordings, const std::string& name) {
@@ -145,10 +147,16 @@ double latticeStep(const std::vector<double>& values) {
 }
 
 NoiseFloor noiseFloor(const std::vector<Recording>& recordings, const std::string& name) {
-  const double least = std::max(finestLattice(recordings, name) / std::sqrt(12.0), 1e-9);
+  constexpr double imperceptible = 1e-9, usual_share = 1e-3;
+  const double least = std::max(finestLattice(recordings, name) / std::sqrt(12.0), imperceptible);
   if (const auto repeats = fromRepeats(recordings, name)) return {std::max(*repeats, least), NoiseFloor::Source::repeats};
   if (const auto sidecar = fromSidecars(recordings, name)) return {std::max(*sidecar, least), NoiseFloor::Source::sidecar};
-  return {std::max(fromQuietRows(recordings, name), least), NoiseFloor::Source::quiet_rows};
+  const double quiet = std::max(fromQuietRows(recordings, name, false), least);
+  if (quiet > imperceptible) return {quiet, NoiseFloor::Source::quiet_rows};
+  // Most quiet rows repeat the value before, though the values lie on no lattice: the sensor is read less often than it is logged.
+  const double changed = fromQuietRows(recordings, name, true);
+  if (changed > imperceptible) return {changed, NoiseFloor::Source::quiet_rows};
+  return {std::max(usual_share * rangeOf(recordings, name), least), NoiseFloor::Source::range};
 }
 
 }  // namespace musclesim

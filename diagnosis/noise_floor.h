@@ -11,11 +11,15 @@ namespace musclesim {
 ///   repeats      RMS difference of recordings under identical commands / sqrt(2), or of one and what its sidecar calls its repeat_of,
 ///                interpolated to the other's times (which takes noise away; the difference is scaled up for it)
 ///   sidecar      noise_std
-///   quiet rows   1.4826 median |d - median d| / sqrt(6) of the second differences d over the quieter half of the rows
+///   quiet rows   1.4826 median |d - median d| / sqrt(6) of the second differences d over the quieter half of the rows; of those
+///                that differ from the row before, where most repeat its value (a sensor that is read less often than it is logged)
+///   range        a thousandth of the range of all values: what can be told of fewer than 21 readings per recording, or without noise
 /// and never less than the step of the lattice on which the values lie / sqrt(12). Never the residual of a fit.
 struct NoiseFloor {
   double value = 0;
-  enum class Source { repeats, sidecar, quiet_rows } source = Source::quiet_rows;
+  enum class Source { repeats, sidecar, quiet_rows, range } source = Source::quiet_rows;
+  /// Neither repeats nor a sidecar tell it.
+  bool isEstimated() const { return source == Source::quiet_rows || source == Source::range; }
 };
 
 NoiseFloor noiseFloor(const std::vector<Recording>& recordings, const std::string& signal_name);

@@ -19,7 +19,6 @@ namespace {
 
 constexpr int fewest_to_coarsen = 8;  ///< with fewer internal steps than that a simulation is cheap and as coarse as it can be
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr const char* held_effect = "sensor_dropout";
 /// Friction within the muscles and the curvature of Eq. 1.
 constexpr const char* hinge_friction = "muscle.hinge_friction_Nm";
 constexpr const char* nominal_names[] = {"muscle.slider_friction_N", hinge_friction, "force_law.b"};
@@ -127,9 +126,25 @@ void Plant::requireNumbers(const std::vector<Stretch>& part) const {
                             Comparison::fewest_rows));
 }
 
+/// A sensor that shows one value throughout a recording in which commands change, but not in all: there it is dead.
+void Plant::dropDeadStretches() {
+  for (Recording& recording : recordings_) {
+    const std::vector<Recording> one = {recording};
+    if (!commandsMove(one)) continue;
+    for (Signal& signal : recording.signals) {
+      if (signal.name.starts_with("command_") || !hasNumbers(signal)) continue;
+      if (!neverChanges(one, signal.name) || neverChanges(recordings_, signal.name)) continue;
+      std::ranges::fill(signal.values, nan);
+      notes_.push_back(fmt::format("{}: {} has the same value in every row although commands change: a dead sensor, left out there",
+                                   recording.file, signal.name));
+    }
+  }
+}
+
 void Plant::compareSignals() {
   measured_.resize(recordings_.size());
   notes_ = dataNotes(recordings_);
+  dropDeadStretches();
   const bool moves = commandsMove(recordings_);
   for (const std::string& name : reference_->robot().signalNames()) {
     if (name.starts_with("command_")) continue;
@@ -158,6 +173,36 @@ void Plant::compareSignals() {
 
 const std::vector<double>& Plant::measured(int recording, int signal) const {
   return measured_[static_cast<std::size_t>(recording)][static_cast<std::size_t>(signal)];
+}
+
+std::vector<Stretch> Plant::lookStretches() const {
+  constexpr std::size_t most_recordings = 3;
+  constexpr int row_count = 1200;
+  constexpr double duration_s = 12, rounding_s = 1e-9;
+  std::vector<Stretch> result;
+  auto recordingOf = [&](const Stretch& s) -> const Recording& { return recordings_[static_cast<std::size_t>(s.recording)]; };
+  for (const Stretch& stretch : split_.fit) {
+    const bool repeated =
+        std::ranges::any_of(result, [&](const Stretch& other) { return isRepeat(recordingOf(stretch), recordingOf(other)); });
+    if (!repeated && result.size() < most_recordings) result.push_back(stretch);
+  }
+  const auto count = static_cast<int>(result.size());
+  for (Stretch& stretch : result) {
+    const std::vector<double>& time_s = recordingOf(stretch).time_s;
+    const int from = firstChange(recordingOf(stretch));
+    const double until_s = time_s[static_cast<std::size_t>(from)] + duration_s / count - rounding_s;
+    const auto in_time = static_cast<int>(std::ranges::lower_bound(time_s, until_s) - time_s.begin());
+    stretch.end_row = std::min(stretch.end_row, std::max(from + row_count / count, in_time));
+    stretch.every = std::max(1, (stretch.end_row - from) * count / row_count);
+  }
+  return result;
+}
+
+bool Plant::holds(Stage stage) const {
+  const auto acts = [stage](const ActiveEffect& effect) { return effectInfo(effect.id).stage == stage; };
+  return std::ranges::any_of(options_.model.effects, acts) || std::ranges::any_of(recordings_, [&](const Recording& recording) {
+           return std::ranges::any_of(recording.info.active_effects, acts);
+         });
 }
 
 std::vector<std::string> Plant::componentsFor(const EffectInfo& info) const {

@@ -21,11 +21,16 @@ struct ComparedSignal {
   NoiseFloor floor;
 };
 
-/// A stretch of one recording. Simulations always begin at the recording's first row; only rows of the stretch are compared.
+/// A stretch of one recording. Simulations always begin at the recording's first row; only rows of the stretch are compared, or every n-th
+/// of them.
 struct Stretch {
   int recording = 0;
   int first_row = 0, end_row = 0;
+  int every = 1;
 };
+
+/// Which samples were held is chance that no model predicts, but the recording shows it.
+inline constexpr const char* held_effect = "sensor_dropout";
 
 /// Which stretches parameters are fitted to and explanations are chosen on, and which only measure the result.
 struct Split {
@@ -33,9 +38,8 @@ struct Split {
   std::string held_out_words;
 };
 
-/// How finely a simulation steps. A coarse one takes steps that are four times as long, a medium one twice, the coarsest eight times, which
-/// costs little; what it differs by is nearly the same for all models of one plant, so that differences between coarse predictions hold
-/// (Comparison corrects for the rest).
+/// How finely a simulation steps: each takes steps twice as long as the one before, which costs less. What it differs by is nearly the same
+/// for all models of one plant, so that differences between coarse predictions hold (Comparison corrects for the rest).
 enum class Fidelity { fine, medium, coarse, coarsest };
 
 /// A model: further effects and changed parameters beside the user's own.
@@ -54,10 +58,14 @@ class Plant {
   /// What is odd about the recordings and what was done about it.
   const std::vector<std::string>& notes() const { return notes_; }
   const Split& split() const { return split_; }
+  /// Stretches that a first look is content with: of up to three recordings with different commands, from the beginning to 4 s after the
+  /// commands first change (12 s of one recording, 6 s of two) and 400 rows after that at least (1200, 600); of rows that follow more
+  /// closely than 100 per second only as many.
+  std::vector<Stretch> lookStretches() const;
   const std::string& robot() const { return recordings_.front().info.robot; }
   int muscleCount() const { return recordings_.front().muscleCount(); }
-  /// The model holds no effects beforehand, neither by options nor by a sidecar: a command is the pressure.
-  bool isClean() const { return options_.model.effects.empty() && recordings_.front().info.active_effects.empty(); }
+  /// Whether the model holds effects of a stage beforehand, by options or by a sidecar.
+  bool holds(Stage stage) const;
   /// The measured values of a compared signal; empty if this recording does not have it.
   const std::vector<double>& measured(int recording, int signal) const;
   /// All components of the robot on which an effect can act.
@@ -93,6 +101,8 @@ class Plant {
     return replay(schedule, model, 0, fidelity);
   }
 
+  /// The model as built, to be asked, never to be stepped.
+  Simulation& model() const { return *reference_; }
   /// The robot as built.
   RobotDrawing drawing() const;
   bool hasHand() const;
@@ -107,6 +117,7 @@ class Plant {
  private:
   static constexpr double farthest_tuning = 4;  ///< bound of |ln(value / value in force)|
 
+  void dropDeadStretches();
   void compareSignals();
   void requireNumbers(const std::vector<Stretch>& part) const;
   Parameter numberNamed(const std::string& name) const;

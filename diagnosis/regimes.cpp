@@ -39,7 +39,8 @@ RegimeSums regimeSums(const Comparison& comparison, const Eigen::VectorXd& resid
     for (std::size_t i = 0; i < cell.rows.size(); ++i) {
       const auto row = static_cast<std::size_t>(cell.rows[i]);
       while (recording.time_s[before] < recording.time_s[row] - reach_s - rounding_s) ++before;
-      const auto regime = static_cast<std::size_t>(regimeAt(recording, row, before));
+      const std::size_t from = row > 0 ? std::min(before, row - 1) : 0;  // rows may lie further apart than that
+      const auto regime = static_cast<std::size_t>(regimeAt(recording, row, from));
       const double r = residual[cell.first + static_cast<Eigen::Index>(i)] / cell.floor;
       sums.square[regime] += r * r;
       sums.rows[regime] += 1;

@@ -66,15 +66,6 @@ Eigen::VectorXd only(const Comparison& comparison, const Eigen::VectorXd& values
   return result;
 }
 
-double excitationOf(const Comparison& comparison, const std::vector<Eigen::VectorXd>& columns) {
-  double largest = 0;
-  for (const Eigen::VectorXd& column : columns)
-    if (column.size())
-      for (const Comparison::Cell& cell : comparison.cells())
-        if (cell.block == 0) largest = std::max(largest, std::sqrt(comparison.meanSquare(cell, column)) / cell.floor);
-  return largest;
-}
-
 /// Smallest x^T N x / 2 - s^T x for least <= x <= largest_amount, one x after the other (N positive definite): strengths that act alike do
 /// not drive each other against the bounds.
 Eigen::VectorXd boundedSolution(const Eigen::MatrixXd& normal, const Eigen::VectorXd& slope, const Eigen::VectorXd& least) {
@@ -87,6 +78,15 @@ Eigen::VectorXd boundedSolution(const Eigen::MatrixXd& normal, const Eigen::Vect
 }
 
 }  // namespace
+
+double excitationOf(const Comparison& comparison, const std::vector<Eigen::VectorXd>& changes) {
+  double largest = 0;
+  for (const Eigen::VectorXd& change : changes)
+    if (change.size())
+      for (const Comparison::Cell& cell : comparison.cells())
+        if (cell.block == 0) largest = std::max(largest, std::sqrt(comparison.meanSquare(cell, change)) / cell.floor);
+  return largest;
+}
 
 void explain(const Comparison& comparison, const Suspect& suspect, const Eigen::VectorXd& residual, Signature& signature) {
   const auto count = static_cast<Eigen::Index>(signature.per_strength.size());

@@ -36,6 +36,9 @@ enum class Strengths { adapted, kept };
 std::vector<Signature> screen(const Comparison& comparison, std::vector<Suspect>& suspects, const Eigen::VectorXd& nominal,
                               const Model& base, Strengths strengths, int job_count, const OnSimulation& on_simulation);
 
+/// The largest RMS of some changes in any cell, over that cell's floor.
+double excitationOf(const Comparison& comparison, const std::vector<Eigen::VectorXd>& changes);
+
 /// The amounts of a signature that remove most of a residual, by least squares weighted anew three times. Amounts of unsigned strengths
 /// stay positive. Sets amount and log_misfit.
 void explain(const Comparison& comparison, const Suspect& suspect, const Eigen::VectorXd& residual, Signature& signature);

@@ -15,6 +15,7 @@ namespace musclesim {
 namespace {
 
 constexpr double stands_out = 2;      ///< floors
+constexpr double no_gap = 1.15;       ///< floors up to which there is none
 constexpr double nearly_all = 99.95;  ///< percent; what is above must not read as 100.0
 
 /// "a = 1.0 (0.9 to 1.1), b = 2 (1 to 3)", without what the data left out.
@@ -117,7 +118,7 @@ bool isBeforeTheForce(const std::string& stage) {
 }  // namespace
 
 bool isLocated(const std::vector<Place>& where) {
-  if (!isTold(where)) return false;
+  if (!isTold(where) || where.front().is_ruled_out) return false;
   const std::vector<std::string> others = othersPossible(where);
   // A pressure is commanded: what is before the force is one place.
   return isBeforeTheForce(where.front().stage) ? std::ranges::all_of(others, isBeforeTheForce) : others.empty();
@@ -156,8 +157,9 @@ std::string whereSentence(const Diagnosis& d) {
     return fmt::format("The gap arises before the force, in command or pressure ({}; by its shape rather {}, {} likely){}", component,
                        place.stage, probabilityWords(place.share), regime);
   constexpr std::size_t all_others = 4;
-  return fmt::format("By its shape the gap is of the {} stage ({}, {:.0f} %){}; these signals do not rule out {}", place.stage, component,
-                     percent, regime, others.size() == all_others ? "any other" : fmt::format("{}", fmt::join(others, " or ")));
+  const std::string against = place.is_ruled_out ? ", though what the signals say of each other speaks against it" : "";
+  return fmt::format("By its shape the gap is of the {} stage ({}, {:.0f} %){}{}; these signals do not rule out {}", place.stage, component,
+                     percent, regime, against, others.size() == all_others ? "any other" : fmt::format("{}", fmt::join(others, " or ")));
 }
 
 namespace {
@@ -284,6 +286,14 @@ std::string shape(const Diagnosis& d) {
 
 std::vector<std::string> unexplainedSentences(const Diagnosis& d) {
   if (d.partial) return {"There is a gap; the search for its cause was interrupted."};
+  const bool is_small = std::ranges::all_of(d.before.per_signal, [](const auto& entry) { return overFloor(entry.second) < no_gap; });
+  if (is_small && !d.before.per_signal.empty()) {
+    std::vector<std::string> sentences = {
+        "I cannot tell: there is a gap in the recordings that were fitted, but none in the data held back, so no cause can be confirmed "
+        "there; put a recording that shows the gap last."};
+    if (!d.effects.empty()) sentences.push_back("In what was fitted" + mostProbable(d).substr(1) + ".");
+    return sentences;
+  }
   std::string text = "There is a gap that I cannot explain";
   if (!d.effects.empty()) text += d.effects.front().probability > likely ? notConfirmed(d) : mostProbable(d);
   std::vector<std::string> sentences = {text + ".", noneWords(d), d.where.empty() ? "" : whereSentence(d) + ".", shape(d)};

@@ -52,7 +52,7 @@ struct Pressures {
 
 std::optional<Pressures> pressuresOf(const Plant& plant, int recording, int muscle) {
   if (const int p = signalNumber(plant, fmt::format("pressure_{}", muscle)); p >= 0) return Pressures{p, &plant.measured(recording, p)};
-  if (!plant.isClean()) return std::nullopt;
+  if (plant.holds(Stage::command) || plant.holds(Stage::pressure)) return std::nullopt;
   return Pressures{-1, &plant.recordings()[static_cast<std::size_t>(recording)].find(fmt::format("command_{}", muscle))->values};
 }
 
@@ -83,7 +83,7 @@ std::optional<TensionTest> testTensionOf(const Comparison& comparison, const Eig
     }
   }
   if (found.isEmpty()) return std::nullopt;
-  return TensionTest{found.largestRms(), expected.largestRms(), commanded};
+  return TensionTest{found.largestRms(), expected.largestRms(), commanded, commanded, true};
 }
 
 /// A signal of motion in all stretches, row by row; NaN where it is not measured.
@@ -256,9 +256,14 @@ double largestMotionRatio(const Comparison& comparison, const Eigen::VectorXd& r
   return largest;
 }
 
-bool allPressuresMeasured(const Plant& plant) {
-  for (int muscle = 0; muscle < plant.muscleCount(); ++muscle)
-    if (signalNumber(plant, fmt::format("pressure_{}", muscle)) < 0) return false;
+bool allPressuresMeasured(const Comparison& comparison) {
+  for (std::size_t stretch = 0; stretch < comparison.stretches().size(); ++stretch)
+    for (int muscle = 0; muscle < comparison.plant().muscleCount(); ++muscle) {
+      const std::string name = fmt::format("pressure_{}", muscle);
+      if (std::ranges::none_of(comparison.cells(),
+                               [&](const auto& cell) { return cell.stretch == stretch && nameOf(comparison, cell) == name; }))
+        return false;
+    }
   return true;
 }
 
@@ -301,11 +306,18 @@ std::optional<PressureTest> testPressures(const Comparison& comparison, const Ei
 }
 
 std::optional<TensionTest> testTension(const Comparison& comparison, const Eigen::VectorXd& residual) {
+  const Plant& plant = comparison.plant();
+  if (plant.holds(Stage::force) || plant.holds(Stage::sensor)) return std::nullopt;
   std::optional<TensionTest> largest;
-  for (int muscle = 0; muscle < comparison.plant().muscleCount(); ++muscle) {
+  bool some_commanded = false, all_commanded = true, of_all = true;
+  for (int muscle = 0; muscle < plant.muscleCount(); ++muscle) {
     const auto one = testTensionOf(comparison, residual, muscle);
+    some_commanded = some_commanded || (one && one->some_commanded);
+    all_commanded = all_commanded && one && one->all_commanded;
+    of_all = of_all && one;
     if (one && (!largest || one->found > largest->found)) largest = one;
   }
+  if (largest) *largest = {largest->found, largest->expected, some_commanded, all_commanded, of_all};
   return largest;
 }
 
@@ -327,8 +339,14 @@ std::optional<MotionTest> testMotion(const Comparison& comparison, const Eigen::
         if (pairs[i][j] && !holds(i, j, *pairs[i][j])) return false;
     return true;
   };
-  const auto visible = std::ranges::count_if(motions, [](const Motion& motion) { return motion.ratio > disagrees; });
-  test.agree = visible > 1 && all([](std::size_t, std::size_t, double ratio) { return ratio < agrees; });
+  int visible_count = 0;
+  for (std::size_t s = 0; s < motions.size(); ++s) {
+    if (std::ranges::none_of(pairs[s], [](const auto& ratio) { return ratio.has_value(); })) continue;
+    test.compared.push_back(comparison.plant().signals()[static_cast<std::size_t>(motions[s].signal)].name);
+    visible_count += motions[s].ratio > disagrees ? 1 : 0;
+  }
+  test.compared_all = test.compared.size() == motions.size();
+  test.agree = visible_count > 1 && all([](std::size_t, std::size_t, double ratio) { return ratio < agrees; });
   for (std::size_t s = 0; s < motions.size(); ++s) {
     const bool contradicted =
         std::ranges::any_of(pairs[s], [](const auto& ratio) { return ratio.has_value(); }) &&

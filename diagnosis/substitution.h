@@ -23,9 +23,10 @@ double largestMotionRatio(const Comparison& comparison, const Eigen::VectorXd& r
 /// The signal whose name begins with a word that stands out of its floor most; empty if there is none.
 std::string mostAffected(const Comparison& comparison, const Eigen::VectorXd& residual, const std::string& beginning);
 
-bool allPressuresMeasured(const Plant& plant);
+/// Whether every muscle's pressure is there to compare in every stretch.
+bool allPressuresMeasured(const Comparison& comparison);
 
-/// What the clean model does with the measured pressures as its commands; of motion and tension.
+/// What the model does with the measured pressures as its commands; of motion and tension.
 struct PressureTest {
   double share = 0;            ///< of their gap that goes with the pressures: 1 if all of it arose before or in these, 0 if none did
   double share_deviation = 0;  ///< its standard deviation by the noise of the pressures
@@ -45,20 +46,24 @@ std::optional<PressureTest> testPressures(const Comparison& comparison, const Ei
 /// Of measured tension minus that of the law at measured pressure and length, over what noise of all three gives; of the muscle in which it
 /// is largest.
 struct TensionTest {
-  double found = 0;        ///< RMS ratio
-  double expected = 0;     ///< if all of the gap in the length arose in the law
-  bool commanded = false;  ///< pressures are not measured: those that were commanded stand for them
+  double found = 0;                                    ///< RMS ratio
+  double expected = 0;                                 ///< if all of the gap in the length arose in the law
+  bool some_commanded = false, all_commanded = false;  ///< pressures are not measured: those that were commanded stand for them
+  bool of_all_muscles = false;                         ///< and not only of those whose length and tension are measured
 };
-/// Nothing if length or tension is missing. Commanded pressures are taken where the model makes them pressures as they are.
+/// Nothing if length or tension is missing, or if the model holds effects on tensions or sensors beforehand: the law alone is not what it
+/// predicts then. Commanded pressures are taken where the model makes them pressures as they are.
 std::optional<TensionTest> testTension(const Comparison& comparison, const Eigen::VectorXd& residual);
 
 /// Whether signals of motion agree with each other as in the model, whatever the motion: on a plant with one degree of freedom each is a
 /// function of any other.
 struct MotionTest {
-  bool agree = false;         ///< all that could be compared agree, though a fault of one of them would show
-  std::string odd;            ///< the one signal that does not fit the others; empty if there is none
-  double odd_ratio = 0;       ///< by how many times the noise
-  bool others_right = false;  ///< the others are as predicted
+  bool agree = false;                 ///< all that could be compared agree, though a fault of one of them would show
+  std::vector<std::string> compared;  ///< signals of which one other at least is a function
+  bool compared_all = false;          ///< those are all signals of motion
+  std::string odd;                    ///< the one signal that does not fit the others; empty if there is none
+  double odd_ratio = 0;               ///< by how many times the noise
+  bool others_right = false;          ///< the others are as predicted
 };
 /// Nothing if there are no two signals of motion of which one is a function of the other.
 std::optional<MotionTest> testMotion(const Comparison& comparison, const Eigen::VectorXd& residual);

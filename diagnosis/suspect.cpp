@@ -64,6 +64,33 @@ Suspect::Suspect(EffectInfo info, std::string component, const Plant& plant) : i
     coordinates_.push_back(c);
   }
   if (info_.id == "force_law") useCorrectedLaw(plant);
+  if (info_.id == held_effect) countHeld(plant);
+}
+
+/// How many samples are held, and how many in a row, is counted, not fitted.
+void Suspect::countHeld(const Plant& plant) {
+  double samples = 0, held = 0, runs = 0;
+  for (std::size_t s = 0; s < plant.signals().size(); ++s) {
+    if (component_ != "all" && !Plant::isComponentOf(component_, plant.signals()[s].name)) continue;
+    for (std::size_t r = 0; r < plant.recordings().size(); ++r) {
+      const std::vector<double>& y = plant.measured(static_cast<int>(r), static_cast<int>(s));
+      bool before = false;
+      for (std::size_t row = 1; row < y.size(); ++row) {
+        const bool is_held = y[row] == y[row - 1];
+        samples += std::isfinite(y[row]) ? 1 : 0;
+        held += is_held ? 1 : 0;
+        runs += is_held && !before ? 1 : 0;
+        before = is_held;
+      }
+    }
+  }
+  coordinates_.clear();
+  strengths_.clear();
+  for (std::size_t i = 0; i < info_.parameters.size(); ++i) {
+    const EffectParameter& p = info_.parameters[i];
+    if (p.name == "fraction" && samples > 0) base_[i] = std::clamp(held / samples, p.minimum, p.maximum);
+    if (p.name == "mean_gap_samples" && runs > 0) base_[i] = std::clamp(held / runs, p.minimum, p.maximum);
+  }
 }
 
 /// Another law has many constants and no neutral ones: the terms of Chou and Hannaford are added to the law of the model, where 0 is
@@ -214,7 +241,7 @@ Eigen::VectorXd Suspect::typical() const {
 /// Levels are a matter of one or the other: whole numbers of bits are tried, rounded and truncated, with full scale at the highest level
 /// and one beyond it; nothing is fitted.
 std::vector<Suspect> Suspect::numbersOfBits() const {
-  constexpr int fewest = 4, most = 10;
+  constexpr int fewest = 3, most = 10;
   std::vector<Suspect> result;
   for (int bits = fewest; bits <= most; ++bits)
     for (const double rounding_point : {0.5, 1.0})

@@ -65,6 +65,7 @@ class Suspect {
   double valueOf(const Coordinate& coordinate, double z) const;
   double coordinateOf(const Coordinate& coordinate, double value) const;
   void useCorrectedLaw(const Plant& plant);
+  void countHeld(const Plant& plant);
   std::vector<Suspect> numbersOfBits() const;
   std::vector<Suspect> smallAndLarge() const;
 

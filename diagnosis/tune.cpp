@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <mutex>
 
 #include "comparison.h"
 #include "musclesim/error.h"
@@ -19,13 +20,17 @@ constexpr int round_count = 20;
 Tuning tune(const std::vector<Recording>& recordings, DiagnosisOptions& options) {
   const Plant plant(recordings, options);
   const Comparison fitted(plant, plant.split().fit);
+  std::mutex mutex;  // derivatives are simulated by several threads
   DiagnosisProgress progress{"fitting the model's own numbers", 0, round_count * static_cast<long>(plant.tunedCount() + 2)};
   FitProblem problem;
   problem.start = Eigen::VectorXd::Zero(plant.tunedCount());
   problem.clamped = Plant::clampedTuning;
   problem.predicted = [&](const Eigen::VectorXd& z) {
-    ++progress.done;
-    if (options.progress) options.progress(progress);
+    {
+      const std::lock_guard lock(mutex);
+      ++progress.done;
+      if (options.progress) options.progress(progress);
+    }
     Model model;
     model.parameters = plant.tunedAt(z);
     return fitted.predicted(model);

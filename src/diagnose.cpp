@@ -49,14 +49,25 @@ void writeWith(const std::vector<ActiveEffect>& found, std::vector<ActiveEffect>
   writeEffects(effects, file.string());
 }
 
+/// What a sidecar says of the model that is diagnosed, but for the effects of --effects: those are no part of what is recorded.
+RecordingInfo modelOf(const Recording& recording, const ReplayOptions& options) {
+  RecordingInfo given = recording.info;
+  replaceRobot(given, options.robot);
+  Simulation simulation(simulationOptionsFor(given, sidecarPath(recording.file), options));
+  const Robot& robot = simulation.build(given.robot);
+  RecordingInfo model = describeModel(simulation, options.initial_state.value_or(given.initial_state.value_or(robot.initialState())));
+  model.active_effects = given.active_effects;
+  return model;
+}
+
 /// The proposed commands as a recording of the plant that has no readings yet.
-void writeSchedule(const Diagnosis& diagnosis, const RecordingInfo& plant, const std::filesystem::path& folder) {
+void writeSchedule(const Diagnosis& diagnosis, const RecordingInfo& model, const std::filesystem::path& folder) {
   RecordingInfo info;
-  info.robot = plant.robot;
-  info.physics = plant.physics;
-  info.initial_state = plant.initial_state;
-  info.robot_parameters = plant.robot_parameters;
-  info.active_effects = plant.active_effects;
+  info.robot = model.robot;
+  info.physics = model.physics;
+  info.initial_state = model.initial_state;
+  info.robot_parameters = model.robot_parameters;
+  info.active_effects = model.active_effects;
   info.description = "commands proposed by a diagnosis";
   replaceFile((folder / "next.csv").string(), scheduleText(diagnosis.next_experiment));
   replaceFile((folder / "next.json").string(), sidecarText(info));
@@ -118,7 +129,7 @@ int diagnoseCommand(const ModelOptions& model, const DiagnoseArguments& argument
   options.interrupted = [] { return interruptSignal() != 0; };
   PhaseProgress progress(model.quiet);
   options.progress = [&](const DiagnosisProgress& now) { progress.show(now.phase, now.done, now.expected); };
-  const RecordingInfo plant = recordings.front().info;
+  const RecordingInfo plant = modelOf(recordings.front(), options.model);
   const Diagnosis diagnosis = diagnose(std::move(recordings), options);
   writeAll(diagnosis, folder, arguments, options.model.effects, plant);
   fmt::print("{}report    {}\n", diagnosisSummary(diagnosis), (folder / "report.html").string());

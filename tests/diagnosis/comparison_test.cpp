@@ -79,6 +79,25 @@ TEST_F(Rig, RegimesFollowTheCommand) {
   for (const Regime regime : {Regime::filling, Regime::venting, Regime::holding}) EXPECT_NEAR(sums.meanSquare(regime), 4, 1e-9);
 }
 
+/// Where rows lie further apart than a step is remembered, the row before counts.
+TEST(Regimes, FollowTheCommandInSparseRows) {
+  Recording sparse;
+  sparse.file = "sparse.csv";
+  sparse.info.robot = "rig";
+  sparse.signals = {{"command_0", {}}, {"length_0_mm", {}}};
+  for (int row = 0; row < 100; ++row) {
+    sparse.time_s.push_back(0.2 * row);
+    sparse.signals[0].values.push_back(0.3 + 0.2 * std::sin(0.2 * row));
+    sparse.signals[1].values.push_back(230 + std::sqrt(row));
+  }
+  const DiagnosisOptions options;
+  const Plant plant({sparse}, options);
+  const Comparison comparison(plant, {{0, 0, 100}});
+  const RegimeSums sums = regimeSums(comparison, Eigen::VectorXd::Ones(100));
+  EXPECT_GT(sums.rows[static_cast<std::size_t>(Regime::filling)], 30);
+  EXPECT_GT(sums.rows[static_cast<std::size_t>(Regime::venting)], 30);
+}
+
 /// A problem without a simulation: the measured values are reached at z = (2, -1) along two directions, one of them bent.
 TEST_F(Rig, FitFindsTheBottomOfABentValley) {
   Eigen::VectorXd first(300), second(300);

@@ -66,6 +66,32 @@ TEST(NoiseFloor, OfASignalThatIsReadInEveryOtherRowIsThatOfItsReadings) {
   EXPECT_NEAR(noiseFloor(recordings, "length_0_mm").value, std_mm, 0.15 * std_mm);
 }
 
+/// A sensor that is read five times less often than it is logged.
+TEST(NoiseFloor, OfReadingsThatAreHeldIsThatOfWhatWasRead) {
+  double mean = 0;
+  constexpr int count = 8;
+  for (int seed = 1; seed <= count; ++seed) {
+    Recording recording = noisyWave(static_cast<std::uint64_t>(seed));
+    std::vector<double>& y = recording.signals[1].values;
+    for (std::size_t row = 0; row < y.size(); ++row) y[row] = y[row - row % 5];
+    const NoiseFloor floor = noiseFloor({recording}, "length_0_mm");
+    EXPECT_EQ(floor.source, NoiseFloor::Source::quiet_rows);
+    mean += floor.value / count;
+  }
+  EXPECT_NEAR(mean, std_mm, 0.15 * std_mm);
+}
+
+TEST(NoiseFloor, IsAThousandthOfTheRangeWhereNothingElseTellsIt) {
+  Recording few = noisyWave(3);
+  few.time_s.resize(15);
+  for (Signal& signal : few.signals) signal.values.resize(15);
+  for (std::size_t row = 0; row < 15; ++row) few.signals[1].values[row] = 200 + std::sqrt(static_cast<double>(row));
+  const NoiseFloor floor = noiseFloor({few}, "length_0_mm");
+  EXPECT_EQ(floor.source, NoiseFloor::Source::range);
+  EXPECT_NEAR(floor.value, 1e-3 * std::sqrt(14.0), 1e-9);
+  EXPECT_TRUE(floor.isEstimated());
+}
+
 TEST(NoiseFloor, IsNeverBelowTheResolutionOfTheValues) {
   Recording recording = noisyWave(4);
   for (double& value : recording.signals[1].values) value = 0.5 * std::round(value / 0.5);

@@ -52,6 +52,24 @@ TEST(VerdictSentence, DoesNotNameAStageThatIsHardlyAheadOfTheNext) {
             "nearest");
 }
 
+TEST(VerdictSentence, SaysWhereSignalsSpeakAgainstWhatTheGapLooksLike) {
+  Diagnosis d = lagFound();
+  d.where = {{"body", "hand", "", 0.9, true}, {"force", "muscle_0", "", 0.1}};
+  EXPECT_FALSE(isLocated(d.where));
+  EXPECT_EQ(whereSentence(d),
+            "By its shape the gap is of the body stage (hand, 90 %), though what the signals say of each other speaks against it; these "
+            "signals do not rule out force");
+}
+
+TEST(VerdictSentence, ConfirmsNothingOnDataWithoutAGap) {
+  Diagnosis d = lagFound();
+  d.verdict = Verdict::unexplained;
+  d.before.per_signal = {{"length_0_mm", {0.05, 0.05}}};
+  EXPECT_TRUE(contains(verdictSentence(d), "none in the data held back")) << verdictSentence(d);
+  d.before.per_signal = {{"length_0_mm", {0.5, 0.05}}};
+  EXPECT_TRUE(contains(verdictSentence(d), "There is a gap that I cannot explain")) << verdictSentence(d);
+}
+
 TEST(VerdictSentence, TellsWhatSignalsShowFromWhatTheGapLooksLike) {
   Diagnosis d = lagFound();
   d.where = {{"force", "muscle_0", "", 0.95}, {"body", "hand", "", 0.04}, {"sensor", "all", "", 0.01}, {"pressure", "all", "", 0, true}};

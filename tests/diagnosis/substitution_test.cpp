@@ -77,6 +77,10 @@ std::function<void(Recording&)> hum(const std::string& name, double amplitude) {
 const std::vector<std::string> motion = {"length_0_mm", "length_1_mm", "angle_elbow_deg"};
 const ActiveEffect pull{"external_force", "hand", {{"force_x_N", 1.0}}};
 
+bool isRuledOut(const Location& location, const std::string& stage) {
+  return std::ranges::any_of(location.places, [&](const Place& place) { return place.stage == stage && place.is_ruled_out; });
+}
+
 TEST(MotionTest, FindsTheSensorThatTheOthersContradict) {
   const Compared elbow("elbow", motion, {}, hum("length_1_mm", 0.5));
   const auto test = testMotion(elbow.comparison, elbow.residual);
@@ -135,7 +139,7 @@ TEST(TensionTest, TellsTheLawFromTheBody) {
     EXPECT_LT(by_pull->found, agrees);
     EXPECT_GT(by_pull->expected, disagrees);
     EXPECT_GT(by_weakness->found, disagrees);
-    EXPECT_EQ(by_pull->commanded, !measured);
+    EXPECT_EQ(by_pull->all_commanded, !measured);
   }
 }
 
@@ -150,10 +154,56 @@ TEST(TensionTest, TakesNoCommandForAPressureThatAnEffectMakes) {
   EXPECT_FALSE(testTension(comparison, comparison.measured() - comparison.predicted(Model{})));
 }
 
+/// The tension of a muscle whose pressure is not measured tells nothing of the other one's valve.
+TEST(TensionTest, OfACommandedPressureAcquitsNoOtherMuscle) {
+  const ActiveEffect lag{"valve_lag", "muscle_1", {{"fill_time_constant_s", 0.15}, {"vent_time_constant_s", 0.15}}};
+  const Compared elbow("elbow", {"length_0_mm", "length_1_mm", "force_0_N", "force_1_N", "pressure_1"}, {lag});
+  const auto test = testTension(elbow.comparison, elbow.residual);
+  ASSERT_TRUE(test);
+  EXPECT_LT(test->found, agrees);
+  EXPECT_TRUE(test->some_commanded && !test->all_commanded && test->of_all_muscles);
+  const Location location = locate(elbow.comparison, elbow.residual, elbow.comparison, {}, {}, elbow.residual);
+  for (const char* stage : {"command", "pressure"}) EXPECT_FALSE(isRuledOut(location, stage)) << location.method;
+  EXPECT_TRUE(isRuledOut(location, "force")) << location.method;
+}
+
+TEST(TensionTest, OfSomeMusclesRulesNothingOut) {
+  const ActiveEffect strong_pull{"external_force", "hand", {{"force_x_N", 4.0}}};
+  const Compared elbow("elbow", {"length_0_mm", "length_1_mm", "force_0_N"}, {strong_pull});
+  const Location location = locate(elbow.comparison, elbow.residual, elbow.comparison, {}, {}, elbow.residual);
+  EXPECT_FALSE(isRuledOut(location, "force")) << location.method;
+}
+
+/// The law alone is not what a model predicts that holds a weak muscle beforehand.
+TEST(TensionTest, IsNotMadeWhereTheModelChangesTensionsOrReadings) {
+  for (const ActiveEffect& held :
+       {ActiveEffect{"force_gain", "muscle_0", {{"gain", 0.9}}}, ActiveEffect{"sensor_gain", "signal_length_0", {{"gain", 1.1}}}}) {
+    DiagnosisOptions options;
+    options.model.effects = {held};
+    auto nothing = [](Recording&) {};
+    const Plant plant(
+        {recorded("rig", {"length_0_mm", "force_0_N"}, {}, 1, nothing), recorded("rig", {"length_0_mm", "force_0_N"}, {}, 2, nothing)},
+        options);
+    const Comparison comparison(plant, {{0, 0, 300}});
+    EXPECT_FALSE(testTension(comparison, comparison.measured() - comparison.predicted(Model{}))) << held.id;
+  }
+}
+
+TEST(Pressures, ThatAreNotThereInOneRecordingAreNotAsPredicted) {
+  const Compared lag("rig", {"pressure_0", "length_0_mm"},
+                     {{"valve_lag", "muscle_0", {{"fill_time_constant_s", 0.1}, {"vent_time_constant_s", 0.1}}}}, [](Recording& recording) {
+                       if (recording.file == "rig1.csv")
+                         std::erase_if(recording.signals, [](const Signal& s) { return s.name == "pressure_0"; });
+                     });
+  EXPECT_FALSE(allPressuresMeasured(lag.comparison));
+  const Location location = locate(lag.comparison, lag.residual, lag.comparison, {}, {}, lag.residual);
+  EXPECT_FALSE(isRuledOut(location, "pressure")) << location.method;
+}
+
 TEST(Pressures, ThatReadWrongWouldMoveWhatDoesNotMove) {
   const std::vector<std::string> signals = {"pressure_0", "length_0_mm"};
   const Compared wrong("rig", signals, {}, hum("pressure_0", 0.05));
-  EXPECT_TRUE(allPressuresMeasured(wrong.plant));
+  EXPECT_TRUE(allPressuresMeasured(wrong.comparison));
   EXPECT_GT(*ratioOf(wrong.comparison, wrong.residual, "pressure_"), disagrees);
   EXPECT_LT(largestMotionRatio(wrong.comparison, wrong.residual), disagrees);
   EXPECT_EQ(mostAffected(wrong.comparison, wrong.residual, "pressure_"), "pressure_0");
@@ -168,10 +218,6 @@ TEST(Pressures, ThatReadWrongWouldMoveWhatDoesNotMove) {
   EXPECT_LT(by_lag->misfit_increase, -0.5 * by_lag->misfit);
 }
 
-bool isRuledOut(const Location& location, const std::string& stage) {
-  return std::ranges::any_of(location.places, [&](const Place& place) { return place.stage == stage && place.is_ruled_out; });
-}
-
 /// The noise of measured pressures moves the model about as much as this short lag of the valve does.
 TEST(Pressures, ThatAreNoisyStillTellWhereAWeakGapArises) {
   const Compared lag("rig", {"pressure_0", "length_0_mm"},
@@ -180,7 +226,7 @@ TEST(Pressures, ThatAreNoisyStillTellWhereAWeakGapArises) {
   ASSERT_TRUE(test);
   EXPECT_NEAR(test->share, 1, 0.25);
   EXPECT_GT(test->share_deviation, 0.02);
-  const Location location = locate(lag.comparison, {}, {}, lag.residual);
+  const Location location = locate(lag.comparison, lag.residual, lag.comparison, {}, {}, lag.residual);
   for (const char* stage : {"force", "body", "sensor"}) EXPECT_TRUE(isRuledOut(location, stage)) << location.method;
   for (const char* stage : {"command", "pressure"}) EXPECT_FALSE(isRuledOut(location, stage)) << location.method;
 }
@@ -192,7 +238,7 @@ TEST(Pressures, MakeNothingOfAGapBehindThem) {
   const auto test = testPressures(weak.comparison, weak.residual);
   ASSERT_TRUE(test);
   EXPECT_NEAR(test->share, 0, 0.1);
-  EXPECT_FALSE(isRuledOut(locate(weak.comparison, {}, {}, weak.residual), "force"));
+  EXPECT_FALSE(isRuledOut(locate(weak.comparison, weak.residual, weak.comparison, {}, {}, weak.residual), "force"));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 
 #include "diagnosis/comparison.h"
 #include "planted.h"
@@ -50,6 +51,21 @@ TEST_F(PlantedRig, BoundsAreThoseOfTheUsualRange) {
   }
 }
 
+TEST_F(PlantedRig, HeldSamplesAreCountedNotFitted) {
+  std::vector<Recording> recordings = planted::plant({});
+  for (Recording& recording : recordings) {
+    std::vector<double>& y = recording.signals[1].values;
+    for (std::size_t row = 0; row < y.size(); ++row) y[row] = y[row - row % 5];  // four of five
+  }
+  const Plant plant(recordings, options_);
+  const Suspect dropout(effectInfo("sensor_dropout"), "signal_length_0", plant);
+  EXPECT_EQ(dropout.coordinateCount(), 0);
+  std::map<std::string, double> values;
+  for (const auto& [name, value] : dropout.valuesAt({})) values[name] = value;
+  EXPECT_NEAR(values.at("fraction"), 0.8, 0.01);
+  EXPECT_NEAR(values.at("mean_gap_samples"), 4, 0.05);
+}
+
 TEST_F(PlantedRig, WhatHasNoUsualRangeHasNoExcess) {
   const Suspect bias = suspect("sensor_bias", "signal_length_0");
   EXPECT_EQ(bias.excess(Eigen::VectorXd::Constant(bias.coordinateCount(), 40)), 0);
@@ -76,7 +92,7 @@ TEST_F(PlantedRig, AnotherForceLawBeginsAtTheLawOfTheModel) {
 
 TEST_F(PlantedRig, BitsAreRoundedAndTruncated) {
   const std::vector<Suspect> variants = suspect("command_quantisation", "muscle_0").variants(plant_);
-  EXPECT_EQ(variants.size(), 28U);
+  EXPECT_EQ(variants.size(), 32U);
   for (const Suspect& variant : variants) EXPECT_EQ(variant.coordinateCount(), 0);
   EXPECT_NE(variants[0].at({}), variants[1].at({}));
 }
