@@ -205,7 +205,7 @@ class Run {
     const Gap gap_after = held_out_.gap(after);
     monitor_.phase("asking what simpler changes would gain", 60);
     auto count = [this] { monitor_.count(); };
-    const Comparison& fitted = attributor_.lookComparison();
+    const Comparison& fitted = attributor_.fitComparison();
     Eigen::VectorXd nominal, sham;
     parallelFor(2, options_.job_count, [&](int i) {
       if (i == 0)
