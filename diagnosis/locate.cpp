@@ -225,10 +225,10 @@ class Evidence {
 
 }  // namespace
 
-Location locate(const Comparison& whole, const Eigen::VectorXd& residual_of_all, const Comparison& comparison,
-                const std::vector<Suspect>& suspects, const std::vector<Signature>& signatures, const Eigen::VectorXd& residual) {
+Location locate(const Comparison& whole, const Eigen::VectorXd& residual_of_all, const Comparison& look,
+                const std::vector<Suspect>& suspects, const std::vector<Signature>& signatures, const Eigen::VectorXd& residual_of_look) {
   const Evidence evidence(whole, residual_of_all);
-  StageWeights weights = byLikeness(comparison, suspects, signatures, residual, evidence.acquittedSignals());
+  StageWeights weights = byLikeness(look, suspects, signatures, residual_of_look, evidence.acquittedSignals());
   for (std::size_t i = 0; i < stage_count; ++i)
     if (evidence.speaksAgainst(static_cast<Stage>(i))) weights[i] *= hardly;
   normalise(weights);

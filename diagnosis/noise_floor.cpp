@@ -84,7 +84,7 @@ std::vector<double> quietSecondDifferences(const Recording& recording, const std
   if (!signal) return {};
   std::vector<double> y = signal->values;
   std::erase_if(y, [](double value) { return !std::isfinite(value); });
-  if (without_held) y.erase(std::ranges::unique(y).begin(), y.end());
+  if (without_held) y.erase(std::unique(y.begin(), y.end()), y.end());
   std::vector<std::pair<double, double>> by_speed;
   for (std::size_t i = reach; i + reach < y.size(); ++i) {
     const double difference = y[i - 1] - 2 * y[i] + y[i + 1], speed = std::abs(y[i + reach] - y[i - reach]);

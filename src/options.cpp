@@ -97,13 +97,13 @@ void addPointsOptions(CLI::App& command, PointsOptions& options) {
                      "Force in N at and below which the sensor shows nothing (default: found where the lowest force repeats)");
 }
 
-StaticPointsOptions staticPointsOptions(const PointsOptions& given) {
-  StaticPointsOptions options;
-  for (const auto& column : given.columns) options.columns.push_back(splitAssignment("--columns", column));
-  for (const auto& filter : given.where) options.where.push_back(splitAssignment("--where", filter));
-  options.full_scale_kPa = given.full_scale_kPa;
-  options.censored_below_N = given.censored_below_N;
-  return options;
+StaticPointsOptions staticPointsOptions(const PointsOptions& options) {
+  StaticPointsOptions result;
+  for (const auto& column : options.columns) result.columns.push_back(splitAssignment("--columns", column));
+  for (const auto& filter : options.where) result.where.push_back(splitAssignment("--where", filter));
+  result.full_scale_kPa = options.full_scale_kPa;
+  result.censored_below_N = options.censored_below_N;
+  return result;
 }
 
 ReplayOptions replayOptionsFrom(const ModelOptions& model) {
