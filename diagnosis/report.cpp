@@ -27,6 +27,8 @@ body{overflow-wrap:break-word}table{border-collapse:collapse;width:100%}td,th{te
 td.number,th.number{text-align:right;font-variant-numeric:tabular-nums}
 svg{max-width:100%;height:auto;display:block;margin:.5rem 0}code{font-size:.9em}
 .scroll,.trace{overflow-x:auto}.scroll svg{min-width:32rem}.trace svg{min-width:36rem}.trace h3{font-size:1rem;margin:.8rem 0 0;position:sticky;left:0}.lead{break-after:avoid}
+.bars{margin:.7rem 0}.bar{display:grid;grid-template-columns:19rem 1fr;gap:.5rem;align-items:center;margin:.15rem 0;font-size:.9rem;break-inside:avoid}.bar>:first-child{text-align:right}
+.length{display:flex;align-items:center;gap:.5rem}.fill{border-top:.9rem solid #8a8a8a;min-width:1px}.strong{border-top-color:#222}@media screen and (max-width:44rem){.bar{display:block}.bar>:first-child{text-align:left}}
 .place{display:flex;gap:1.5rem}.place>:first-child{flex:1}.robot{flex:0 0 17rem}@media screen and (max-width:44rem){.place{display:block}}
 @media print{.screen{display:none}.scroll,.trace{overflow:visible}.scroll svg,.trace svg{min-width:0}body{max-width:none;font-size:14px}h2,h3{break-after:avoid}svg,tr,.trace{break-inside:avoid}tr:first-child{break-after:avoid}})";
 
@@ -184,8 +186,7 @@ std::string shrinkFigure(const Diagnosis& d) {
     add("after adding what was found", d.unexplained_percent, true);
   else
     add("after adding what comes nearest", 100 - d.attempt.shrink_percent, true);
-  return sliding(barsFigure("What is left of the gap", all,
-                            std::max({100.0, 100 - d.nominal_refit_shrink_percent, 100 - d.sham_shrink_percent}))) +
+  return barsFigure("What is left of the gap", all, std::max({100.0, 100 - d.nominal_refit_shrink_percent, 100 - d.sham_shrink_percent})) +
          small(fmt::format("The nominal refit re-tunes numbers of the model without any effect ({}); the sham is a disturbance without "
                            "physical meaning with as many parameters.",
                            fmt::join(d.refitted, ", ")));
@@ -203,7 +204,7 @@ std::string regimeFigure(const Diagnosis& d) {
   return lead(
              "Residual in units of the noise floor (1 is as good as it gets), while the commands rise (filling), fall (venting) and rest "
              "(holding):") +
-         sliding(barsFigure("Residual by regime", all, full));
+         barsFigure("Residual by regime", all, full);
 }
 
 /// Of what comes nearest; the table of effects may not list it.
@@ -309,7 +310,7 @@ std::string looks(const Diagnosis& d) {
                           "were proportional to its strength; a fit, which follows the response, may remove more{}:",
                           counted(places.size(), "effect on a component was", "effects on components were"), which,
                           some_not_fitted ? "; the dark ones were fitted" : "")) +
-         sliding(barsFigure("First look", all, 1));
+         barsFigure("First look", all, 1);
 }
 
 /// "leak (all components, muscle 0), creep (muscle 0)" from labels in this order.

@@ -42,16 +42,14 @@ std::string withoutPrefix(const std::string& component) {
 }  // namespace
 
 std::string barsFigure(const std::string& title, const std::vector<Bar>& bars, double full) {
-  constexpr double width = 700, row = 26, left = 260, right = 90;
-  Svg svg(width, row * static_cast<double>(bars.size()) + 8, title);
-  for (std::size_t i = 0; i < bars.size(); ++i) {
-    const double y = 4 + row * static_cast<double>(i) + row / 2;
-    const double length = full > 0 ? (width - left - right) * std::clamp(bars[i].value / full, 0.0, 1.0) : 0;
-    svg.text({left - 8, y + 5}, bars[i].label, {14, SvgAnchor::end, "#222222"});
-    svg.line({left, y}, {left + std::max(1.0, length), y}, bars[i].strong ? "#222222" : "#8a8a8a", row * 0.55);
-    svg.text({left + length + 8, y + 5}, bars[i].number, {14, SvgAnchor::start, "#222222"});
-  }
-  return svg.document();
+  std::string rows;
+  for (const Bar& bar : bars)
+    rows += fmt::format(
+        "<div class=bar><span>{}</span><span class=length><span class=\"fill{}\" style=\"width:calc((100% - 5rem)*{:.4f})\"></span>"
+        "<span>{}</span></span></div>\n",
+        escapedXml(bar.label), bar.strong ? " strong" : "", full > 0 ? std::clamp(bar.value / full, 0.0, 1.0) : 0.0,
+        escapedXml(bar.number));
+  return fmt::format("<div class=bars role=group aria-label=\"{}\">\n{}</div>\n", escapedXml(title), rows);
 }
 
 std::string stagesFigure(const std::vector<Place>& where) {

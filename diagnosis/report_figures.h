@@ -1,4 +1,4 @@
-/// The drawings of report.html. All of them read in black and white as well: what matters is darker, thicker or labelled.
+/// The figures of report.html. All of them read in black and white as well: what matters is darker, thicker or labelled.
 #pragma once
 
 #include <string>
@@ -8,7 +8,8 @@
 
 namespace musclesim {
 
-/// Bars with a label on the left and a number on the right; `full` is the value of a bar over the whole width.
+/// Bars with a label on the left, or above where the page is narrow, and a number on the right; `full` is the value of a bar over the whole
+/// width.
 struct Bar {
   std::string label;
   double value;
