@@ -38,7 +38,10 @@ std::vector<StaticPoint> readRows(CsvReader& reader, const PointColumns& columns
 }
 
 void scalePressures(StaticPoints& points, const PointColumns& columns, const StaticPointsOptions& options) {
-  if (!columns.pressureHasUnit()) return;
+  if (!columns.pressureHasUnit()) {
+    if (options.full_scale_kPa) points.notes.push_back("pressures are fractions already; --full-scale-kPa changes nothing");
+    return;
+  }
   double largest_kPa = 0;
   for (const auto& point : points.points) largest_kPa = std::max(largest_kPa, point.pressure_ratio);
   points.full_scale_kPa = options.full_scale_kPa.value_or(largest_kPa);

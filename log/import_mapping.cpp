@@ -96,6 +96,10 @@ void readRows(const toml::table& table, ImportMapping& mapping) {
   rows.know("before");
   rows.requireAllKnown();
   if (mapping.every < 1) rows.refuse(*table.get("every"), "rows.every: must be at least 1");
+  if (const toml::node* before = table.get("before"); before && !mapping.before_s)
+    rows.refuse(*before, "rows.before: needs rows.before_s, how long the plant rested");
+  if (const toml::node* before = table.get("before"); before && !before->is_table())
+    rows.refuse(*before, "rows.before: must be a table like { command_0 = 0 }");
   if (const toml::table* before = table["before"].as_table())
     for (const auto& [key, node] : *before) {
       const auto value = node.value<double>();
@@ -123,7 +127,12 @@ ImportMapping readImportMapping(const std::string& toml_file) {
   const toml::table* columns = table["columns"].as_table();
   if (!columns) throw BadFile(toml_file, "has no table [columns] that says which column of the recording comes from which of the table");
   for (const auto& [key, node] : *columns) mapping.columns.push_back(readColumn(std::string(key.str()), node, toml_file));
-  if (const toml::table* rows = table["rows"].as_table()) readRows(*rows, mapping);
+  if (const toml::node* rows = table.get("rows")) {
+    if (!rows->is_table())
+      throw BadFile(toml_file, static_cast<int>(rows->source().begin.line), static_cast<int>(rows->source().begin.column),
+                    "rows: must be a table, [rows]");
+    readRows(*rows->as_table(), mapping);
+  }
   mapping.sidecar_json = sidecarJson(table);
   return mapping;
 }

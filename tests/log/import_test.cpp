@@ -87,12 +87,23 @@ TEST_F(ImportTest, ColumnsMayComeFromATableWithAClockOfItsOwn) {
   EXPECT_EQ(r.find("command_0")->values, (std::vector<double>{0, 0.5, 1}));
 }
 
+TEST_F(ImportTest, NamesTheTableWhoseClockRunsBackwards) {
+  write("commands.csv", "when,u\n2,0\n0,1\n");
+  const std::string mapping = std::string(head) +
+                              "[columns]\ntime_s = \"t\"\nlength_0_mm = \"l\"\n[columns.command_0]\nfrom = \"u\"\n"
+                              "table = \"commands.csv\"\ntime = \"when\"\n";
+  EXPECT_TRUE(contains(messageOf<BadFile>([&] { import("t,l\n0,200\n1,190\n", mapping); }), "commands.csv: time runs backwards"));
+}
+
 TEST_F(ImportTest, RowsWithTheTimeOfTheRowBeforeAreLeftOutAndSaid) {
   const Recording r =
       import("t,u\n0,0\n0.001,0.1\n0.001,0.2\n0.002,0.3\n", std::string(head) + "[columns]\ntime_s = \"t\"\ncommand_0 = \"u\"\n");
   EXPECT_EQ(r.find("command_0")->values, (std::vector<double>{0, 0.1, 0.3}));
   ASSERT_FALSE(r.notes.empty());
   EXPECT_TRUE(contains(r.notes.front(), "1 rows have the time of the row before"));
+  const Recording other = import("t,u\n0,0\n0.001,0.1\n0.001,0.2\n0.002,0.3\n0.003,0.4\n",
+                                 std::string(head) + "[columns]\ntime_s = \"t\"\ncommand_0 = \"u\"\n[rows]\nevery = 2\n");
+  EXPECT_EQ(other.find("command_0")->values, (std::vector<double>{0, 0.3})) << "every second of those that are left";
 }
 
 TEST_F(ImportTest, RefusesWhatIsNoMapping) {
@@ -105,6 +116,9 @@ TEST_F(ImportTest, RefusesWhatIsNoMapping) {
   EXPECT_TRUE(contains(refused("[columns]\ntime_s = \"t\"\ncommand_0 = {}\n"), "needs either from or value"));
   EXPECT_TRUE(contains(refused("[columns]\ntime_s = \"t\"\ncommand_0 = \"u\"\n[rows]\nstep_s = -1\n"), "larger than 0"));
   EXPECT_TRUE(contains(refused("[columns]\ntime_s = \"t\"\ncommand_0_psi = \"u\"\n"), "command_0_psi"));
+  EXPECT_TRUE(contains(refused("rows = 5\n[columns]\ntime_s = \"t\"\ncommand_0 = \"u\"\n"), "rows: must be a table"));
+  EXPECT_TRUE(
+      contains(refused("[columns]\ntime_s = \"t\"\ncommand_0 = \"u\"\n[rows]\nbefore = { command_0 = 0 }\n"), "needs rows.before_s"));
   EXPECT_TRUE(
       contains(messageOf<BadFile>([&] { import("t,u\n1,0\n0,1\n", std::string(head) + "[columns]\ntime_s = \"t\"\ncommand_0 = \"u\"\n"); }),
                "backwards"));

@@ -43,6 +43,15 @@ TEST_F(ImportCommand, MakesTheFolderAndWantsATable) {
   EXPECT_FALSE(fs::exists(folder_ / "out.txt"));
 }
 
+TEST_F(ImportCommand, DoesNotWriteOverATableOfTheMapping) {
+  std::ofstream(folder_ / "other.csv") << "when,x\n0,0.2\n1,0.6\n";
+  std::ofstream(folder_ / "map.toml") << "robot = \"rig\"\n[columns]\ntime_s = \"t\"\nlength_0_mm = \"l\"\n[columns.command_0]\nfrom = "
+                                         "\"x\"\ntable = \"other.csv\"\ntime = \"when\"\n";
+  const ProgramResult made = runProgram({"import", "table.csv", "map.toml", "other.csv"}, folder_);
+  EXPECT_EQ(made.status, 2);
+  EXPECT_TRUE(contains(made.err, "other.csv is read and would be written over")) << made.err;
+}
+
 TEST_F(ImportCommand, SaysThatARobotIsUnknown) {
   std::ofstream(folder_ / "map.toml") << "robot = \"rigg\"\n[columns]\ntime_s = \"t\"\ncommand_0 = \"u\"\nlength_0_mm = \"l\"\n";
   const ProgramResult made = runProgram({"import", "table.csv", "map.toml", "out.csv"}, folder_);
