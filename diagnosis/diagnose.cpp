@@ -29,7 +29,7 @@ constexpr double named = 0.5;     ///< least probability of none_of_these that m
 constexpr double as_good = 0.05;  ///< share of the best explanation's probability from which on one cannot be told from it
 constexpr double excited = 1;     ///< a typical effect must change some signal by that many floors
 
-/// Of the program, for the model that is diagnosed. Without a hand there is no task.
+/// Of the program, for the model that is diagnosed, without what nominal.toml holds. Without a hand there is no task.
 std::string modelOptions(const Plant& plant, const std::optional<std::string>& initial_state) {
   std::string options = "--robot " + plant.robot();
   if (!plant.hasHand()) options += " --controller hold";
@@ -37,7 +37,8 @@ std::string modelOptions(const Plant& plant, const std::optional<std::string>& i
   if (initial_state) options += " --initial-state " + *initial_state;
   for (const Parameter& parameter : plant.model().parameters().declared()) {
     if (parameter.name == "world.plane_height_mm") options += " --plane";
-    if (parameter.value == parameter.default_value) continue;
+    const bool is_tuned = std::ranges::find(plant.tuned(), parameter.name, &Parameter::name) != plant.tuned().end();
+    if (parameter.value == parameter.default_value || is_tuned) continue;
     options += fmt::format(" --set {}=", parameter.name);
     options += std::visit([](const auto& any) { return fmt::format("{}", any); }, parameter.value);
   }

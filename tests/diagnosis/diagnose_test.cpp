@@ -158,6 +158,7 @@ TEST(Diagnose, FitsNumbersNobodyMeasuredTogetherWithTheEffect) {
   // A load of 2.2 kg in place of 2 kg, and a valve that lags.
   DiagnosisOptions options = few({"valve_lag", "transport_delay"});
   options.tune = {"rig.load_kg"};
+  options.model.parameters.set("physics.contact_friction_N", 1.0, "test");  // nothing touches anything
   const Diagnosis found = diagnose(plant({{"payload", "hand", {{"mass_kg", 0.2}}},
                                           {"valve_lag", "all", {{"fill_time_constant_s", 0.1}, {"vent_time_constant_s", 0.1}}}}),
                                    options);
@@ -169,6 +170,8 @@ TEST(Diagnose, FitsNumbersNobodyMeasuredTogetherWithTheEffect) {
   EXPECT_LE(found.tuned[0].with_effects.low, found.tuned[0].with_effects.value);
   EXPECT_TRUE(contains(tunedToml(found.tuned), "rig.load_kg = 2."));
   EXPECT_TRUE(contains(diagnosisReport(found), "rig.<wbr>load_<wbr>kg"));
+  EXPECT_TRUE(contains(found.model_options, "--set physics.contact_friction_N=1")) << "as it was diagnosed";
+  EXPECT_FALSE(contains(found.model_options, "rig.load_kg")) << "nominal.toml holds that";
 }
 
 TEST(Diagnose, RefusesToTuneWhatIsNoNumberOfTheModel) {
