@@ -17,7 +17,8 @@ namespace musclesim::program {
 
 namespace {
 
-constexpr const char* files[] = {"diagnosis.json", "report.html", "effects.json", "attempt.json", "nominal.toml", "next.csv", "next.json"};
+constexpr const char* files_of_all_answers[] = {"diagnosis.json", "report.html", "effects.json"};
+constexpr const char* files_of_some_answers[] = {"attempt.json", "nominal.toml", "next.csv", "next.json"};
 
 struct DiagnoseArguments {
   std::vector<std::string> recordings, candidates, exclude, ignore_columns, tune;
@@ -75,7 +76,7 @@ void writeSchedule(const Diagnosis& diagnosis, const RecordingInfo& model, const
 
 void writeAll(const Diagnosis& diagnosis, const std::filesystem::path& folder, const DiagnoseArguments& arguments,
               const std::vector<ActiveEffect>& effects_of_user, const RecordingInfo& plant) {
-  for (const char* of_an_earlier_run : files) std::filesystem::remove(folder / of_an_earlier_run);
+  for (const char* of_an_earlier_run : files_of_some_answers) std::filesystem::remove(folder / of_an_earlier_run);
   const std::string json = diagnosisJson(diagnosis);
   replaceFile((folder / "diagnosis.json").string(), json);
   replaceFile((folder / "report.html").string(), diagnosisReport(diagnosis));
@@ -92,7 +93,8 @@ void requirePlaces(const std::filesystem::path& folder, const ModelOptions& mode
   for (const std::string& recording : arguments.recordings) inputs.push_back(sidecarPath(recording));
   for (const auto& file : {model.config, model.effects})
     if (file) inputs.push_back(*file);
-  for (const char* file : files) requireOther(folder / file, inputs);
+  for (const char* file : files_of_all_answers) requireOther(folder / file, inputs);
+  for (const char* file : files_of_some_answers) requireOther(folder / file, inputs);
   if (arguments.json) {
     const std::filesystem::path file = *arguments.json;
     if (file.extension() != ".json") throw BadParameter("--json", file.string(), "end in .json (diagnosis.json is written there too)");

@@ -57,7 +57,7 @@ void requireReplaceable(const fs::path& csv) {
   const auto program = is_recording ? json.find("program") : json.end();
   if (program != json.end() && program->is_string() && program->get<std::string>().starts_with("musclesim ")) return;
   throw BadParameter(fmt::format("{} exists and {}: choose another name, or remove it", (fs::exists(csv) ? csv : sidecar).string(),
-                                 is_recording ? "is of a recording that musclesim did not simulate" : "is of no recording"));
+                                 is_recording ? "belongs to a recording that musclesim did not simulate" : "belongs to no recording"));
 }
 
 void requireOther(const fs::path& output, const std::vector<std::string>& inputs) {

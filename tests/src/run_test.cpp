@@ -192,6 +192,15 @@ TEST_F(RunCommand, PicturesAreDrawnWithoutADisplayAndChangeNothing) {
   EXPECT_GT(fs::file_size(folder_ / "again.png"), 300u);
 }
 
+TEST_F(RunCommand, ADivergenceWhileSettlingIsNoneOfTheRun) {
+  const ProgramResult result = run({"--simple", "--robot", "elbow", "--controller", "hold", "--duration", "2", "--step", "0.2",
+                                    "--substeps", "1", "--stepper", "quick", "--json"});
+  EXPECT_EQ(result.status, 4) << result.err;
+  EXPECT_NE(result.err.find("while it settled"), std::string::npos) << result.err;
+  EXPECT_EQ(result.err.find("last rows of the recording"), std::string::npos) << result.err;
+  EXPECT_NE(result.out.find("\"simulated_s\":0.0"), std::string::npos) << result.out;
+}
+
 TEST_F(RunCommand, RefusesPicturesThatCannotBe) {
   expectRefused({"--screenshot", "a.jpg", "--robot", "rig", "--controller", "hold"}, 2, {"screenshot"});
   expectRefused({"--video", "a.avi", "--robot", "rig", "--controller", "hold"}, 2, {"video"});
