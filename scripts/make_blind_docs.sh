@@ -8,6 +8,8 @@
 #     CASES          folder for the cases; new, or of a call that was stopped
 #     KEYS           folder for the key, out of reach of the diagnosis: not in CASES, beside it or in the project
 #     build folder   default: build/release; holds musclesim
+# KEEP=FILE.tar.xz keeps seal, answers and follow-ups in an archive too, whenever the call ends, and takes them from there where CASES has
+# none: a check can go on on another machine, and anybody can score it again. docs/blind_answers.tar.xz is that of docs/blind.md.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 usage='usage: scripts/make_blind_docs.sh SEED CASES KEYS [build folder] [options of `blind make`]'
@@ -23,6 +25,22 @@ if [[ ! -e "$cases/seal.json" ]]; then
 fi
 sealed_seed="$(sed -n 's/.*"seed": \([0-9]*\).*/\1/p' "$cases/seal.json")"
 [[ "$sealed_seed" == "$seed" ]] || { echo "make_blind_docs.sh: $cases holds cases of seed $sealed_seed, not $seed" >&2; exit 2; }
+
+keep() {
+  [[ -n "${KEEP:-}" && -d "$cases/answers" ]] || return 0
+  local parts=(seal.json answers)
+  for part in answers.json follow_up; do [[ ! -e "$cases/$part" ]] || parts+=("$part"); done
+  tar --sort=name --mtime=@0 --owner=0 --group=0 --numeric-owner --mode=u=rwX,go=rX -C "$cases" -cJf "$KEEP.partial" "${parts[@]}"
+  mv "$KEEP.partial" "$KEEP"
+}
+trap keep EXIT
+if [[ -n "${KEEP:-}" && -e "$KEEP" && ! -d "$cases/answers" ]]; then
+  # The key's name is drawn anew whenever cases are made.
+  cmp -s <(tar -xJf "$KEEP" -O seal.json | grep -v '"key_file"') <(grep -v '"key_file"' "$cases/seal.json") ||
+    { echo "make_blind_docs.sh: $KEEP holds answers to other cases or of another program than $cases/seal.json names" >&2; exit 2; }
+  tar -xJf "$KEEP" -C "$cases" --exclude=seal.json
+fi
+
 key_file="$(sed -n 's/.*"key_file": "\([0-9a-f]*\.json\)".*/\1/p' "$cases/seal.json")"
 "$program" blind run "$cases" "${noted[@]}"
 [[ ${FOLLOW:-yes} == no ]] || "$program" blind follow "$cases" --keys "$keys/$key_file"
