@@ -79,14 +79,18 @@ double Odds::ofNoEffect() const {
 }
 
 double Odds::ofNoneOfThese(const std::vector<Explanation>& explanations) const {
-  double best = ofNoEffect(), share_left = 1;
+  double best = ofNoEffect(), share_left = 1, further_strengths = 0;
   const double gap = misfitBeyond(weighing_.law_mismatch, nominal_residual_);
   for (const Explanation& explanation : explanations)
     if (const double odds = ofExplanation(explanation); odds > best) {
       best = odds;
       share_left = gap > 0 ? misfitBeyond(weighing_.law_mismatch, explanation.judged()) / gap : 1;
+      further_strengths = 0;
+      for (const std::size_t index : explanation.suspects)
+        further_strengths += std::max(0.0, static_cast<double>(suspects_[index].strengths().size()) - 1);
     }
-  const double of_unknown = best + weighing_.per_share_left * (share_left - weighing_.share_of_unknown);
+  const double of_unknown =
+      best + weighing_.per_share_left * (share_left - weighing_.share_of_unknown) + weighing_.per_further_strength * further_strengths;
   return std::min(of_unknown, -weighing_.per_parameter);
 }
 

@@ -28,17 +28,19 @@ struct Explanation {
 
 /// How answers are weighed; docs/diagnosing.md says on which cases the numbers were found.
 struct Weighing {
-  double per_misfit = 16;            ///< ln of the odds per unit of log misfit per affected cell, beyond what a law not quite ours leaves
-  double per_closer_misfit = 2;      ///< the same beyond what a law close to ours leaves
-  double per_parameter = 1.25;       ///< ln of the odds that a further parameter costs
-  double per_effect = 7;             ///< ln of the odds that a further effect costs
-  double per_same_place = 3;         ///< the same besides, where it acts on a component of an effect before it and may only mend its law
-  double per_excess = 1.5;           ///< ln of the odds per e-fold by which a parameter is beyond its usual range
-  double shared_sensor = 3;          ///< ln of the odds of one sensor's fault against one that all sensors share
-  double law_mismatch = 0.1;         ///< share of the gap that the right cause may leave since its law is not quite ours
-  double close_law_mismatch = 0.01;  ///< and where the law is close to ours
-  double per_share_left = 12;        ///< ln of the odds of "none of these" per share of the log misfit that the best explanation leaves
-  double share_of_unknown = 0.3;     ///< share left with which "none of these" is as likely as the best explanation
+  double per_misfit = 16;             ///< ln of the odds per unit of log misfit per affected cell, beyond what a law not quite ours leaves
+  double per_closer_misfit = 2;       ///< the same beyond what a law close to ours leaves
+  double per_parameter = 1.25;        ///< ln of the odds that a further parameter costs
+  double per_effect = 7;              ///< ln of the odds that a further effect costs
+  double per_same_place = 3;          ///< the same besides, where it acts on a component of an effect before it and may only mend its law
+  double per_excess = 1.5;            ///< ln of the odds per e-fold by which a parameter is beyond its usual range
+  double shared_sensor = 3;           ///< ln of the odds of one sensor's fault against one that all sensors share
+  double law_mismatch = 0.1;          ///< share of the gap that the right cause may leave since its law is not quite ours
+  double close_law_mismatch = 0.01;   ///< and where the law is close to ours
+  double per_share_left = 12;         ///< ln of the odds of "none of these" per share of the log misfit that the best explanation leaves
+  double share_of_unknown = 0.3;      ///< share left with which "none of these" is as likely as the best explanation
+  double per_further_strength = 0.6;  ///< ln of the odds of "none of these" per strength beyond the first that an effect of the best
+                                      ///< explanation has: a law with many resembles causes that it is not
 };
 
 class Odds {
@@ -52,8 +54,8 @@ class Odds {
   /// The same of no effect at all.
   double ofNoEffect() const;
   /// The same of a cause that the catalogue does not hold, beside the likeliest of some explanations and no effect: a cause that the
-  /// catalogue holds leaves a small share of the log misfit, what only resembles the cause a larger one. No more than the odds of a cause
-  /// with one parameter that leaves nothing.
+  /// catalogue holds leaves a small share of the log misfit, what only resembles the cause a larger one or has many strengths. No more than
+  /// the odds of a cause with one parameter that leaves nothing.
   double ofNoneOfThese(const std::vector<Explanation>& explanations) const;
   /// ln of the odds of one more effect that would leave nothing against the explanation without it.
   double hopeBeyond(const Explanation& explanation) const;

@@ -43,7 +43,8 @@ std::vector<Block> blocksOf(const BeforeAndAfter& both) {
   return result;
 }
 
-double shrinkOf(const Comparison& comparison, const std::vector<const Block*>& blocks) {
+/// Normalised gaps before and after, per signal.
+std::pair<double, double> gapsOf(const Comparison& comparison, const std::vector<const Block*>& blocks) {
   std::map<int, std::array<double, 3>> sums;
   for (const Block* block : blocks)
     for (const auto& [signal, sum] : block->sums)
@@ -51,16 +52,22 @@ double shrinkOf(const Comparison& comparison, const std::vector<const Block*>& b
   double before = 0, after = 0;
   for (const auto& [signal, sum] : sums) {
     const double floor = comparison.plant().signals()[static_cast<std::size_t>(signal)].floor.value, square = floor * floor;
-    before += std::max(0.0, sum[0] / sum[2] - square) / square;
-    after += std::max(0.0, sum[1] / sum[2] - square) / square;
+    before += std::max(0.0, sum[0] / sum[2] - square) / square / static_cast<double>(sums.size());
+    after += std::max(0.0, sum[1] / sum[2] - square) / square / static_cast<double>(sums.size());
   }
+  return {before, after};
+}
+
+double shrinkOf(const Comparison& comparison, const std::vector<const Block*>& blocks) {
+  const auto [before, after] = gapsOf(comparison, blocks);
   return before > 0 ? 100 * (1 - after / before) : 0;
 }
 
-/// ln(after / before) of the normalised gaps of each recording. What is left counts at least as much as the gap of noise alone is uncertain
-/// by with some hundred rows.
+/// Normalised gap by which that of noise alone is uncertain with some hundred rows.
+constexpr double noise_alone = 0.07;
+
+/// ln(after / before) of the normalised gaps of each recording. What is left counts at least as much as noise alone.
 std::vector<double> logRests(const BeforeAndAfter& both) {
-  constexpr double least = 0.07;
   std::map<int, std::map<int, std::array<double, 3>>> sums;  // recording, signal: before, after, rows
   for (const Comparison::Cell& cell : both.comparison.cells()) {
     if (cell.block > 0) continue;
@@ -78,7 +85,7 @@ std::vector<double> logRests(const BeforeAndAfter& both) {
       before += std::max(0.0, sum[0] / sum[2] / square - 1) / static_cast<double>(signals.size());
       after += std::max(0.0, sum[1] / sum[2] / square - 1) / static_cast<double>(signals.size());
     }
-    if (before > least) result.push_back(std::log(std::max(least, after) / before));
+    if (before > noise_alone) result.push_back(std::log(std::max(noise_alone, after) / before));
   }
   return result;
 }
@@ -146,6 +153,8 @@ Estimate shrinkInterval(const BeforeAndAfter& held_out, const BeforeAndAfter& fi
     shrink.low = std::min(shrink.low, other->first);
     shrink.high = std::max(shrink.high, other->second);
   }
+  // Where noise alone may leave as much as the best of these does, nothing may be left.
+  if ((1 - shrink.high / 100) * gapsOf(held_out.comparison, all).first <= noise_alone) shrink.high = 100;
   return shrink;
 }
 

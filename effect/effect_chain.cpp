@@ -212,11 +212,9 @@ Vector EffectChain::startOffsetMm(int muscle, const Vector& lever) const {
   Vector sum = Vector::Zero();
   const Vector up = Vector::UnitY() - lever.y() * lever;
   for (const Planned& planned : planned_) {
-    if (!planned.info.start_turn_deg || (planned.component != "all" && planned.component != fmt::format("muscle_{}", muscle))) continue;
-    const double turn_rad = *planned.info.start_turn_deg * rad_per_deg, norm = up.norm();
-    Vector direction = lever;
-    if (turn_rad != 0 && norm > 0) direction = std::cos(turn_rad) * lever + std::sin(turn_rad) / norm * up;
-    sum += EffectValues(planned.info.parameters, planned.values)["offset_mm"] * direction;
+    if (!planned.info.start_offset_mm || (planned.component != "all" && planned.component != fmt::format("muscle_{}", muscle))) continue;
+    const Eigen::Vector2d offset_mm = planned.info.start_offset_mm(EffectValues(planned.info.parameters, planned.values));
+    sum += offset_mm.x() * lever + offset_mm.y() * up.stableNormalized();
   }
   return sum;
 }

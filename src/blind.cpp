@@ -47,6 +47,7 @@ Action addMake(CLI::App& command) {
   command.add_option("--seed", arguments->make.seed, "Of all draws (default 1)");
   command.add_option("--duration-s", arguments->make.duration_s, "Of each recording (default 6); half of it on the arm");
   command.add_option("--kinds", arguments->make.kinds, "Only these: single, double, open, null")->delimiter(',');
+  command.add_option("--causes", arguments->make.causes, "Only these effects of the catalogue (default: all in turn)")->delimiter(',');
   command.add_option("--jobs", arguments->make.job_count, "Threads (default: one per core); the cases do not depend on it")
       ->check(CLI::Range(1, 1024));
   command.add_option("--commit", arguments->make.commit, "Version of the sources, noted in the seal");

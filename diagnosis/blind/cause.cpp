@@ -93,10 +93,20 @@ std::vector<std::string> componentsOf(const ForeignEffect& law, const Robot& rob
   return components;
 }
 
-std::vector<ForeignEffect> lawsFor(const Robot& robot, const std::vector<std::string>& signals, bool open) {
+std::vector<ForeignEffect> lawsInTurn(const Robot& robot, const std::vector<std::string>& signals, bool open,
+                                      const std::vector<std::string>& causes, std::uint64_t seed, std::size_t turn) {
+  std::vector<ForeignEffect> all = foreignEffects();
+  std::erase_if(all, [&](const ForeignEffect& law) {
+    const bool wanted = open || causes.empty() || std::ranges::find(causes, law.stands_for) != causes.end();
+    return law.stands_for.empty() != open || !wanted;
+  });
+  RandomStream order(seed, "blind.order");
+  for (std::size_t left = all.size(); left > 1; --left) std::swap(all[left - 1], all[indexBelow(order, left)]);
   std::vector<ForeignEffect> laws;
-  for (const ForeignEffect& law : foreignEffects())
-    if (law.stands_for.empty() == open && !componentsOf(law, robot, signals).empty()) laws.push_back(law);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const ForeignEffect& law = all[(turn + i) % all.size()];
+    if (!componentsOf(law, robot, signals).empty()) laws.push_back(law);
+  }
   return laws;
 }
 

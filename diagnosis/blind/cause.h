@@ -33,8 +33,11 @@ struct Cause {
   double gap_over_noise = 0;  ///< that it alone makes
 };
 
-/// The laws that can act on this robot and on what is measured: of the catalogue's causes, or of others.
-std::vector<ForeignEffect> lawsFor(const Robot& robot, const std::vector<std::string>& signals, bool open);
+/// The laws that can act on this robot and on what is measured, in an order that the seed gives, from the `turn`-th on: over many turns all
+/// come equally often. `open`: laws of causes that the catalogue does not have; otherwise those of `causes`, ids of the catalogue, or of
+/// all if that is empty.
+std::vector<ForeignEffect> lawsInTurn(const Robot& robot, const std::vector<std::string>& signals, bool open,
+                                      const std::vector<std::string>& causes, std::uint64_t seed, std::size_t turn);
 
 /// The components of a law: those of the robot on which the cause that it stands for does something; of sensors only those that are read.
 std::vector<std::string> componentsOf(const ForeignEffect& law, const Robot& robot, const std::vector<std::string>& signals);

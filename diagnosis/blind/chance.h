@@ -19,11 +19,15 @@ inline double logUniform(RandomStream& random, double low, double high) {
   return low * std::pow(high / low, random.uniform());
 }
 
+/// One of 0 .. count - 1 with equal odds; count must not be 0.
+inline std::size_t indexBelow(RandomStream& random, std::size_t count) {
+  return std::min(static_cast<std::size_t>(random.uniform() * static_cast<double>(count)), count - 1);
+}
+
 /// One of several with equal odds; the list must not be empty.
 template <class Item>
 const Item& oneOf(RandomStream& random, const std::vector<Item>& items) {
-  const auto index = static_cast<std::size_t>(random.uniform() * static_cast<double>(items.size()));
-  return items[std::min(index, items.size() - 1)];
+  return items[indexBelow(random, items.size())];
 }
 
 /// To a whole multiple of 1 / per_unit.

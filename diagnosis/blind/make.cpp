@@ -109,13 +109,13 @@ Plan drawPlan(const std::string& name, const std::string& robot_name, const Robo
   return plan;
 }
 
-/// Draws laws until one reaches its band; `redrawn` takes the names of those that do not. None if interrupted.
-std::optional<Cause> drawCause(const Plan& plan, const std::vector<Cause>& others, const Robot& robot, const Truth& truth,
-                               const std::function<bool()>& interrupted, RandomStream& random, json& redrawn) {
-  constexpr int most_draws = 60;
-  const std::vector<ForeignEffect> laws = lawsFor(robot, plan.signals, plan.kind == "open");
-  for (int draw = 0; draw < most_draws; ++draw) {
-    const ForeignEffect& law = oneOf(random, laws);
+/// Tries laws until one reaches its band; `redrawn` takes the names of those that do not. None if interrupted.
+std::optional<Cause> drawCause(const Plan& plan, const std::vector<ForeignEffect>& laws, const std::vector<Cause>& others,
+                               const Robot& robot, const Truth& truth, const std::function<bool()>& interrupted, RandomStream& random,
+                               json& redrawn) {
+  constexpr std::size_t most_draws = 60, draws_in_a_row = 3;
+  for (std::size_t draw = 0; draw < most_draws && !laws.empty(); ++draw) {
+    const ForeignEffect& law = laws[draw / draws_in_a_row % laws.size()];
     if (std::ranges::any_of(others, [&](const Cause& other) { return other.stage == law.info.stage; })) continue;
     const std::string component = oneOf(random, componentsOf(law, robot, plan.signals));
     if (interrupted()) return {};
@@ -123,7 +123,7 @@ std::optional<Cause> drawCause(const Plan& plan, const std::vector<Cause>& other
     redrawn.push_back(law.info.id + "@" + component);
   }
   throw BadParameter(plan.name + ": size of the gap", plan.size,
-                     fmt::format("be reached by one of {} drawn causes; take another seed", most_draws));
+                     fmt::format("be reached by one of {} drawn causes; take another seed, or other --causes", most_draws));
 }
 
 json causeJson(const Cause& cause) {
@@ -198,7 +198,8 @@ Plant drawPlant(const std::string& name, const std::string& robot_name, const Ro
 }
 
 /// Draws, simulates and writes one case. Returns its key; none if it was interrupted.
-std::optional<json> makeCase(const std::string& name, const std::string& robot_name, const fs::path& folder, const MakeOptions& options) {
+std::optional<json> makeCase(const std::string& name, const std::string& robot_name, std::size_t turn, const fs::path& folder,
+                             const MakeOptions& options) {
   RandomStream random(options.seed, "blind." + name);
   Simulation probe;
   const Robot& robot = probe.build(robot_name);
@@ -207,7 +208,9 @@ std::optional<json> makeCase(const std::string& name, const std::string& robot_n
   json redrawn = json::array();
   const std::size_t cause_count = plan.kind == "null" ? 0 : plan.kind == "double" ? 2 : 1;
   while (causes.size() < cause_count) {
-    auto cause = drawCause(plan, causes, robot, truth, options.interrupted, random, redrawn);
+    constexpr std::size_t far_apart = 10;  // laws between the first of two causes and the second
+    const auto laws = lawsInTurn(robot, plan.signals, plan.kind == "open", options.causes, options.seed, turn + far_apart * causes.size());
+    auto cause = drawCause(plan, laws, causes, robot, truth, options.interrupted, random, redrawn);
     if (!cause) return {};
     causes.push_back(std::move(*cause));
   }
@@ -237,6 +240,7 @@ void requireApart(const fs::path& folder, const fs::path& key_folder, const Make
   for (const std::string& kind : options.kinds)
     if (std::ranges::find(kindNames(), kind) == kindNames().end())
       throw BadParameter("--kinds", kind, fmt::format("be one of {}", fmt::join(kindNames(), ", ")));
+  for (const std::string& id : options.causes) effectInfo(id);  // throws for an unknown one
   if (options.count < 0 || options.arm_count < 0 || options.count + options.arm_count < 1)
     throw BadParameter("--count", fmt::format("{} + {}", options.count, options.arm_count), "be at least 1 in all");
   if (!(options.duration_s >= 1)) throw BadParameter("--duration-s", fmt::format("{}", options.duration_s), "be at least 1");
@@ -267,7 +271,8 @@ std::optional<json> keptOrMade(int index, const fs::path& folder, const Unsealed
   if (auto kept = unsealed.keyOf(name)) return kept;
   const std::string robot = index >= options.count ? "arm" : index % 2 == 0 ? "rig" : "elbow";
   fs::remove_all(folder / name);
-  auto key = makeCase(name, robot, folder, options);
+  const int turn = index >= options.count ? index - options.count : index / 2;
+  auto key = makeCase(name, robot, static_cast<std::size_t>(turn), folder, options);
   if (key) unsealed.keep(name, *key);
   return key;
 }
@@ -281,6 +286,7 @@ fs::path make(const fs::path& folder, const fs::path& key_folder, const MakeOpti
   json call = callOf(options);
   call["folder"] = fs::weakly_canonical(folder).string();
   call["kinds"] = options.kinds;
+  call["causes"] = options.causes;
   const UnsealedCases unsealed(key_folder, call);
   if (!fs::is_empty(folder) && !unsealed.exist())
     throw BadParameter("folder", folder.string(), "be new or empty, or hold what the same call had made when it was stopped");

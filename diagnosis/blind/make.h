@@ -13,10 +13,11 @@ struct MakeOptions {
   int count = 120;     ///< cases on rig and elbow in turn
   int arm_count = 12;  ///< further cases on the arm
   std::uint64_t seed = 1;
-  double duration_s = 6;           ///< of each recording; half of it on the arm
-  std::vector<std::string> kinds;  ///< of single, double, open, null; empty: 70, 10, 10 and 10 %
-  int job_count = 0;               ///< threads; 0: one per core. The cases do not depend on it
-  std::string commit;              ///< of the sources, for the seal; may be empty
+  double duration_s = 6;            ///< of each recording; half of it on the arm
+  std::vector<std::string> kinds;   ///< of single, double, open, null; empty: 70, 10, 10 and 10 %
+  std::vector<std::string> causes;  ///< ids of the catalogue that plants may have; empty: all. Those of open plants are not among them
+  int job_count = 0;                ///< threads; 0: one per core. The cases do not depend on it
+  std::string commit;               ///< of the sources, for the seal; may be empty
   std::function<void(int done, int count)> progress = [](int, int) {};
   std::function<bool()> interrupted = [] { return false; };
 };

@@ -1,9 +1,9 @@
 /// Body stage: a muscle starts beside the place where the model has it.
-///     start' = start + d e
-/// d = offset_mm, e unit vector along the lever arm: perpendicular to the muscle's line in the pose as built, in the plane of the line and
-/// the joint that the muscle spans, away from the joint (rig: along x). The robot builds the muscle there; robots that do not ask for the
-/// offset (Robot::mountedStart) refuse the effect.
-/// Neutral: d = 0. Range -200 .. 200 mm, usually -8 .. 8.  Source: definition.
+///     start' = start + d (e + s v)
+/// d = offset_mm, s = slope, v unit vector upward and perpendicular to e, e unit vector along the lever arm: perpendicular to the
+/// muscle's line in the pose as built, in the plane of the line and the joint that the muscle spans, away from the joint (rig: along x).
+/// The robot builds the muscle there; robots that do not ask for the offset (Robot::mountedStart) refuse the effect. Neutral: d = 0. Range
+/// -200 .. 200 mm, usually -8 .. 8; of s -1 .. 1, usually -0.4 .. 0.4.  Source: definition.
 #pragma once
 
 #include "musclesim/effect/catalogue.h"

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "musclesim/robot/actuator.h"
+
 namespace musclesim {
 
 EffectInfo BraidHysteresis::info() {
@@ -10,14 +12,22 @@ EffectInfo BraidHysteresis::info() {
           .stage = Stage::force,
           .acts_on = {ComponentKind::muscle},
           .summary = "the threads of the braid rub on each other",
-          .equation = "F' = F - w |F| z, dz = -dl / s within -1 <= z <= 1    F tension, l length, w = relative_width, s = presliding_mm",
+          .equation =
+              "F' = F - w ((1 - c) |F| + c p F_0) z, dz = -dl / s within -1 <= z <= 1    F tension, p pressure, F_0 tension at full "
+              "pressure and length, l length, w = relative_width, s = presliding_mm, c = pressure_share",
           .signature = "loop of pressure over length whose width grows with pressure and does not depend on speed",
-          .source = "Maxwell slip element, Iwan 1966; friction of braid muscles, Chou and Hannaford 1996",
-          .parameters = {{"relative_width", "", 0, 0, 1, 0.01, 0.12, "w, half the loop's width as a share of the tension"},
-                         {"presliding_mm", "mm", 1, 0.01, 50, 0.5, 3, "s, displacement until the threads slide", true}},
+          .source = "Maxwell slip element, Iwan 1966; friction between threads, Tondu and Lopez 2000",
+          .parameters = {{"relative_width", "", 0, 0, 1, 0.01, 0.12, "w, half the loop's width as a share of the tension, or of p F_0"},
+                         {"presliding_mm", "mm", 1, 0.01, 50, 0.5, 3, "s, displacement until the threads slide", true},
+                         {"pressure_share", "", 0, 0, 1, 0, 1, "c; 0: friction goes with the tension, 1: with the pressure alone", true}},
           .make = [](const EffectValues& values) {
-            return std::make_unique<BraidHysteresis>(values["relative_width"], values["presliding_mm"]);
+            return std::make_unique<BraidHysteresis>(values["relative_width"], values["presliding_mm"], values["pressure_share"]);
           }};
+}
+
+void BraidHysteresis::attach(const EffectPlace& place) {
+  ForceEffect::attach(place);
+  full_tension_N_ = actuator().forceLaw().tensionN(1, actuator().maximumLengthMm());
 }
 
 double BraidHysteresis::playAt(double length_mm) const {
@@ -26,7 +36,10 @@ double BraidHysteresis::playAt(double length_mm) const {
 
 double BraidHysteresis::tensionN(const MuscleInput& input, const ForceBelow& below) const {
   const double tension_N = below(input);
-  return tension_N - width_ * std::abs(tension_N) * playAt(input.length_mm);
+  if (pressure_share_ == 0) return tension_N - width_ * std::abs(tension_N) * playAt(input.length_mm);
+  const double pressed_N = std::max(0.0, input.pressure_ratio) * full_tension_N_;
+  const double friction_N = width_ * ((1 - pressure_share_) * std::abs(tension_N) + pressure_share_ * pressed_N);
+  return std::max(tension_N - friction_N * playAt(input.length_mm), std::min(0.0, tension_N));
 }
 
 void BraidHysteresis::advance(const MuscleInput& input) {

@@ -1,9 +1,11 @@
 /// Force stage: the threads of the braid rub on each other and on the bladder.
-///     F' = F - w |F| z,    dz = -dl / s within -1 <= z <= 1
-/// F tension in N, l length in mm, w = relative_width, s = presliding_mm. z is a play: +1 after the muscle has shortened by 2 s, -1 after
-/// it has got longer by 2 s, whatever the speed (Coulomb friction with presliding, one Maxwell slip element). The loop of tension over
-/// length is 2 w F wide. At the start z = 0. Neutral: w = 0. Range 0 .. 1, usually 0.01 .. 0.12; of s 0.01 .. 50 mm, usually 0.5 .. 3.
-/// Source: Maxwell slip, Iwan 1966; friction of braid muscles in proportion to pressure, Chou and Hannaford 1996.
+///     F' = F - w ((1 - c) |F| + c p F_0) z,    dz = -dl / s within -1 <= z <= 1
+/// F tension in N, p pressure ratio, F_0 tension at full pressure and full length in N, l length in mm, w = relative_width,
+/// s = presliding_mm, c = pressure_share. z is a play: +1 after the muscle has shortened by 2 s, -1 after it has got longer by 2 s,
+/// whatever the speed (Coulomb friction with presliding, one Maxwell slip element). The loop of tension over length is 2 w F wide for c =
+/// 0; with c = 1 its width depends on the pressure alone. Friction does not push: F' >= 0 where F is. At the start z = 0. Neutral: w = 0.
+/// Range 0 .. 1, usually 0.01 .. 0.12; of s 0.01 .. 50 mm, usually 0.5 .. 3; of c 0 .. 1. Source: Maxwell slip, Iwan 1966; friction between
+/// threads in proportion to pressure, Tondu and Lopez 2000.
 #pragma once
 
 #include "musclesim/effect/catalogue.h"
@@ -12,9 +14,11 @@ namespace musclesim {
 
 class BraidHysteresis final : public ForceEffect {
  public:
-  BraidHysteresis(double relative_width, double presliding_mm) : width_(relative_width), presliding_mm_(presliding_mm) {}
+  BraidHysteresis(double relative_width, double presliding_mm, double pressure_share)
+      : width_(relative_width), presliding_mm_(presliding_mm), pressure_share_(pressure_share) {}
   static EffectInfo info();
 
+  void attach(const EffectPlace& place) override;
   double tensionN(const MuscleInput& input, const ForceBelow& below) const override;
   void advance(const MuscleInput& input) override;
   void settle(const MuscleInput& input) override;
@@ -22,7 +26,8 @@ class BraidHysteresis final : public ForceEffect {
  private:
   double playAt(double length_mm) const;
 
-  double width_, presliding_mm_;
+  double width_, presliding_mm_, pressure_share_;
+  double full_tension_N_ = 0;        ///< F_0
   double play_ = 0, length_mm_ = 0;  ///< z, and the length for which it holds
 };
 

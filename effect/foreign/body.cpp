@@ -160,12 +160,15 @@ class HuntCrossley final : public JointEffect {
   double stiffness_, plane_deg_;
 };
 
-/// The start beside its place in a direction between the lever arm and the muscle's line.
+/// The start beside its place in a direction between the lever arm and the muscle's line: any, as brackets are mounted.
 EffectInfo turnedAttachment() {
-  EffectInfo info =
-      entry("turned_attachment", Stage::body, {ComponentKind::muscle}, "start' = start + d (e cos 4 deg + up sin 4 deg)",
-            {{"offset_mm", "mm", 0, -200, 200, -8, 8, "d"}}, [](const EffectValues&) { return std::make_unique<AttachmentOffset>(); });
-  info.start_turn_deg = 4;
+  EffectInfo info = entry("turned_attachment", Stage::body, {ComponentKind::muscle}, "start' = start + d (e cos a + up sin a)",
+                          {{"offset_mm", "mm", 0, -200, 200, -8, 8, "d"}, {"turn_deg", "deg", 4, -90, 90, -25, 25, "a", true}},
+                          [](const EffectValues&) { return std::make_unique<AttachmentOffset>(); });
+  info.start_offset_mm = [](const EffectValues& values) -> Eigen::Vector2d {
+    const double turn_rad = values["turn_deg"] * rad_per_deg;
+    return values["offset_mm"] * Eigen::Vector2d(std::cos(turn_rad), std::sin(turn_rad));
+  };
   return info;
 }
 

@@ -12,12 +12,15 @@ namespace musclesim::foreign {
 
 namespace {
 
-/// F' = F (1 + w z),  dz = dl / s (1 - (0.5 + 0.5 sign(z dl)) |z|^n)
+/// F' = F + w ((1 - c) F + c p F_0) z,  F_0 tension at full pressure and length,  dz = dl / s (1 - (0.5 + 0.5 sign(z dl)) |z|^n)
 class BoucWen final : public ForceEffect {
  public:
-  explicit BoucWen(const EffectValues& v) : width_(v["relative_width"]), scale_mm_(v["scale_mm"]), exponent_(v["exponent"]) {}
+  explicit BoucWen(const EffectValues& v)
+      : width_(v["relative_width"]), scale_mm_(v["scale_mm"]), exponent_(v["exponent"]), share_(v["pressure_share"]) {}
   double tensionN(const MuscleInput& input, const ForceBelow& below) const override {
-    return below(input) * (1 + width_ * stateAt(input.length_mm));
+    const double tension_N = below(input), full_N = actuator().forceLaw().tensionN(1, actuator().maximumLengthMm());
+    const double friction_N = width_ * ((1 - share_) * tension_N + share_ * std::max(0.0, input.pressure_ratio) * full_N);
+    return std::max(0.0, tension_N + friction_N * stateAt(input.length_mm));
   }
   void advance(const MuscleInput& input) override {
     state_ = stateAt(input.length_mm);
@@ -34,7 +37,7 @@ class BoucWen final : public ForceEffect {
     const double slope = 1 - (state_ * dl > 0 ? std::pow(std::abs(state_), exponent_) : 0);
     return std::clamp(state_ + dl / scale_mm_ * slope, -1.0, 1.0);
   }
-  double width_, scale_mm_, exponent_, state_ = 0, length_mm_ = 0;
+  double width_, scale_mm_, exponent_, share_, state_ = 0, length_mm_ = 0;
 };
 
 /// F' = F + D,  D -> c sign(v) |v|^0.7 within 2 ms
@@ -169,10 +172,11 @@ class WarmUp final : public ForceEffect {
 std::vector<ForeignEffect> forceLaws() {
   const std::vector<ComponentKind> muscle = {ComponentKind::muscle};
   return {
-      {entry("bouc_wen", Stage::force, muscle, "F' = F (1 + w z), dz = dl / s (1 - |z|^n) away from 0, dl / s towards it",
+      {entry("bouc_wen", Stage::force, muscle, "F' = F + w ((1 - c) F + c p F_0) z, dz = dl / s (1 - |z|^n) away from 0, dl / s towards it",
              {{"relative_width", "", 0, 0, 1, 0.03, 0.12, "w"},
               {"scale_mm", "mm", 1.5, 0.05, 50, 0.5, 3, "s", true},
-              {"exponent", "", 1.5, 1, 10, 1, 3, "n", true}},
+              {"exponent", "", 1.5, 1, 10, 1, 3, "n", true},
+              {"pressure_share", "", 0, 0, 1, 0, 1, "c", true}},
              [](const EffectValues& v) { return std::make_unique<BoucWen>(v); }),
        "braid_hysteresis"},
       {entry("power_loss", Stage::force, muscle, "F' = F + c sign(v) |v / 100 mm/s|^0.7",

@@ -66,23 +66,28 @@ class Orifice final : public MuscleRatioEffect {
   double fill_per_s_, vent_per_s_, pressure_ = 0;
 };
 
-/// dp/dt = (u - p) / tau_r - k (p + p_atm) while p > 0: choked flow goes with the absolute pressure
+/// dp/dt = (u - p) / tau - k (p + p_atm)^n while p > 0: flow goes with the absolute pressure, n = 1 where it is choked
 class ChokedLeak final : public MuscleRatioEffect {
  public:
-  explicit ChokedLeak(const EffectValues& v) : leak_per_s_(v["leak_per_s"]) {}
+  explicit ChokedLeak(const EffectValues& v) : leak_per_s_(v["leak_per_s"]), regulator_s_(v["regulator_s"]), exponent_(v["exponent"]) {}
 
  private:
-  static constexpr double regulator_s = 0.07;
+  double lossPerS(double pressure) const { return leak_per_s_ * std::pow(pressure + atmosphere_ratio, exponent_); }
   double output(double input, const Moment& moment) override {
-    const double loss = leak_per_s_ * (pressure_ + atmosphere_ratio);
-    return pressure_ = std::max(0.0, pressure_ + moment.h_s * ((input - pressure_) / regulator_s - loss));
+    return pressure_ = std::max(0.0, pressure_ + moment.h_s * ((input - pressure_) / regulator_s_ - lossPerS(pressure_)));
   }
+  /// p + tau k (p + p_atm)^n = u by halving.
   double settled(double input) override {
-    const double k = leak_per_s_ * regulator_s;
-    return pressure_ = std::max(0.0, (input - k * atmosphere_ratio) / (1 + k));
+    constexpr int halvings = 50;
+    double low = 0, high = input;
+    for (int i = 0; i < halvings; ++i) {
+      const double middle = (low + high) / 2;
+      (middle + regulator_s_ * lossPerS(middle) < input ? low : high) = middle;
+    }
+    return pressure_ = low;
   }
 
-  double leak_per_s_, pressure_ = 0;
+  double leak_per_s_, regulator_s_, exponent_, pressure_ = 0;
 };
 
 /// ds/dt = (1 - s) / T - c sum max(0, du_i/dt),  p_i = min(u_i, s)
@@ -150,8 +155,11 @@ std::vector<ForeignEffect> pressureLaws() {
               {"vent_rate_per_s", "1/s", INFINITY, 0.01, INFINITY, 0.3, 2, "choked venting at half of full scale"}},
              [](const EffectValues& v) { return std::make_unique<Orifice>(v); }),
        "flow_limit"},
-      {entry("choked_leak", Stage::pressure, muscle, "dp/dt = (u - p) / 0.07 s - k (p + p_atm)",
-             {{"leak_per_s", "1/s", 0, 0, 100, 0.2, 2, "k"}}, [](const EffectValues& v) { return std::make_unique<ChokedLeak>(v); }),
+      {entry("choked_leak", Stage::pressure, muscle, "dp/dt = (u - p) / tau - k (p + p_atm)^n",
+             {{"leak_per_s", "1/s", 0, 0, 100, 0.2, 2, "k"},
+              {"regulator_s", "s", 0.07, 1e-3, 5, 0.03, 0.12, "tau", true},
+              {"exponent", "", 1, 0.3, 1.5, 0.5, 1, "n", true}},
+             [](const EffectValues& v) { return std::make_unique<ChokedLeak>(v); }),
        "leak"},
       {entry("tank", Stage::pressure, {ComponentKind::all_muscles}, "ds/dt = (1 - s) / T - c sum max(0, du/dt), p = min(u, s)",
              {{"loss_per_fill", "", 0, 0, 10, 0.2, 0.8, "c"}, {"recovery_s", "s", 0.3, 0.01, 100, 0.1, 0.6, "T", true}},

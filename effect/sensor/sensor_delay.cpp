@@ -1,5 +1,7 @@
 #include "sensor_delay.h"
 
+#include <cmath>
+
 namespace musclesim {
 
 EffectInfo SensorDelay::info() {
@@ -7,20 +9,23 @@ EffectInfo SensorDelay::info() {
           .stage = Stage::sensor,
           .acts_on = {ComponentKind::signal},
           .summary = "a reading comes late",
-          .equation = "y'(t) = y(t - T)    T = delay_s",
+          .equation = "y'(t) = f(t - (1 - c) T), c T df/dt = y - f    T = delay_s, c = filter_share",
           .signature = "this signal late against all others",
           .source = "dead time of sampling, filters and buses",
-          .parameters = {{"delay_s", "s", 0, 0, 2, 0.005, 0.1, "T"}},
-          .make = [](const EffectValues& values) { return std::make_unique<SensorDelay>(values["delay_s"]); }};
+          .parameters = {{"delay_s", "s", 0, 0, 2, 0.005, 0.1, "T"},
+                         {"filter_share", "", 0, 0, 1, 0, 1, "c, part of the delay that is a filter of first order", true}},
+          .make = [](const EffectValues& values) { return std::make_unique<SensorDelay>(values["delay_s"], values["filter_share"]); }};
 }
 
 double SensorDelay::reading(double value, const Moment& moment, long) {
-  return history_.empty() ? value : history_.at(moment.clock_s - delay_s_);
+  return history_.empty() ? value : history_.at(moment.clock_s - dead_time_s_);
 }
 
 void SensorDelay::track(double value, const Moment& moment) {
-  history_.add(moment.clock_s, value);
-  history_.forgetBefore(moment.clock_s - delay_s_);
+  const bool passes = history_.empty() || !(filter_s_ > 0);
+  filtered_ = passes ? value : value + (filtered_ - value) * std::exp(-moment.h_s / filter_s_);
+  history_.add(moment.clock_s, filtered_);
+  history_.forgetBefore(moment.clock_s - dead_time_s_);
 }
 
 }  // namespace musclesim

@@ -1,8 +1,8 @@
 /// Sensor stage: a reading comes late.
-///     y'(t) = y(t - T)
-/// T = delay_s. The signal is remembered at every internal step and joined by straight lines. Before the start of a run it is what it was
-/// when the run began to settle.
-/// Neutral: T = 0. Range 0 .. 2 s, usually 0.005 .. 0.1.  Source: dead time of sampling, filters and buses.
+///     y'(t) = f(t - (1 - c) T),    c T df/dt = y - f
+/// T = delay_s, c = filter_share: the part of the delay that is a filter of first order; the rest is dead time. The signal is remembered at
+/// every internal step and joined by straight lines. Before the start of a run it is what it was when the run began to settle.
+/// Neutral: T = 0. Range 0 .. 2 s, usually 0.005 .. 0.1; of c 0 .. 1.  Source: dead time of sampling, filters and buses.
 #pragma once
 
 #include "../history.h"
@@ -12,7 +12,7 @@ namespace musclesim {
 
 class SensorDelay final : public SensorEffect {
  public:
-  explicit SensorDelay(double delay_s) : delay_s_(delay_s) {}
+  SensorDelay(double delay_s, double filter_share) : dead_time_s_((1 - filter_share) * delay_s), filter_s_(filter_share * delay_s) {}
   static EffectInfo info();
 
   void reset() override { history_.clear(); }
@@ -21,8 +21,9 @@ class SensorDelay final : public SensorEffect {
   bool tracks() const override { return true; }
 
  private:
-  double delay_s_;
-  SampledHistory history_;
+  double dead_time_s_, filter_s_;
+  double filtered_ = 0;
+  SampledHistory history_;  ///< of the filtered signal
 };
 
 }  // namespace musclesim

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "diagnosis/blind/cause.h"
 #include "diagnosis/blind/excitation.h"
@@ -66,6 +67,34 @@ void append(const fs::path& file, const std::string& text) {
 TEST(BlindSha256, IsThatOfTheStandard) {
   EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   EXPECT_EQ(sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+}
+
+TEST_F(Blind, AllLawsHaveTheirTurn) {
+  Simulation simulation;
+  const Robot& elbow = simulation.build("elbow");
+  const std::vector<std::string> signals = {"angle_elbow_deg", "pressure_0", "pressure_1"};
+  std::set<std::string> first;
+  const std::size_t count = lawsInTurn(elbow, signals, false, {}, 5, 0).size();
+  for (std::size_t turn = 0; turn < foreignEffects().size(); ++turn) {
+    const auto laws = lawsInTurn(elbow, signals, false, {}, 5, turn);
+    EXPECT_EQ(laws.size(), count) << "all of them, wherever it begins";
+    first.insert(laws.front().info.id);
+  }
+  EXPECT_EQ(first.size(), count);
+  EXPECT_NE(lawsInTurn(elbow, signals, false, {}, 5, 0).front().info.id, lawsInTurn(elbow, signals, false, {}, 6, 0).front().info.id);
+  const auto leaks = lawsInTurn(elbow, signals, false, {"leak"}, 5, 3);
+  ASSERT_EQ(leaks.size(), 1u);
+  EXPECT_EQ(leaks[0].stands_for, "leak");
+  for (const ForeignEffect& law : lawsInTurn(elbow, signals, true, {"leak"}, 5, 0)) EXPECT_TRUE(law.stands_for.empty()) << law.info.id;
+}
+
+TEST_F(Blind, MakesOnlyTheCausesAskedFor) {
+  MakeOptions options = tiny({"single"});
+  options.causes = {"payload"};
+  const nlohmann::json key = readObject(make(cases(), keys(), options));
+  EXPECT_EQ(key["cases"]["case001"]["effects"][0]["id"], "payload");
+  options.causes = {"paylod"};
+  EXPECT_THROW(make(cases("other"), keys("b"), options), BadParameter);
 }
 
 TEST_F(Blind, DrawsNoCauseWhereTheCatalogueHasNone) {

@@ -62,6 +62,19 @@ TEST_F(OddsOnARig, NoneOfTheseBeatsWhatHardlyExplainsAndLosesToWhatDoes) {
   EXPECT_GT(odds_.ofNoneOfThese({}), odds_.ofNoEffect());
 }
 
+TEST_F(OddsOnARig, NoneOfTheseIsLikelierBesideALawOfManyStrengths) {
+  const std::vector<Suspect> laws = {{effectInfo("pressure_calibration"), "muscle_0", plant_},
+                                     {effectInfo("force_gain"), "muscle_0", plant_}};
+  ASSERT_EQ(laws[0].strengths().size(), 2u);
+  ASSERT_EQ(laws[1].strengths().size(), 1u);
+  const Odds odds(comparison_, nominal_, laws);
+  auto against = [&](std::size_t member) {
+    Explanation alone{{member}, Eigen::VectorXd::Constant(laws[member].coordinateCount(), 0.1), {}, leaving(3), 0, 0};
+    return odds.ofNoneOfThese({alone}) - odds.ofExplanation(alone);
+  };
+  EXPECT_NEAR(against(0) - against(1), weighing_.per_further_strength, 1e-9);
+}
+
 TEST_F(OddsOnARig, AreOfWhatWasNotSeenWhereThatIsKnown) {
   Explanation flexible = explanation({payload}, 1);
   flexible.unseen = leaving(4);

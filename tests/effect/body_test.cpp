@@ -258,10 +258,16 @@ TEST(AttachmentOffset, MovesTheStartOfTheMuscle) {
   EXPECT_NEAR(other.build("elbow").truth().length_mm[1], std::hypot(260, 8), 1e-6);
 }
 
+TEST(AttachmentOffset, MayRise) {
+  // The muscle runs from (35 + 8, 240 + 0.25 * 8) to (35, -20).
+  Simulation simulation(optionsWith({{"attachment_offset", "muscle_0", {{"offset_mm", 8.0}, {"slope", 0.25}}}}));
+  EXPECT_NEAR(simulation.build("elbow").truth().length_mm[0], std::hypot(262, 8), 1e-6);
+}
+
 TEST(AttachmentOffset, OfTheForeignLawIsTurnedToTheVertical) {
-  // 4 deg from the lever arm: the muscle runs from (35 + 8 cos, 240 + 8 sin) to (35, -20).
-  Simulation simulation(optionsWith({{"foreign.turned_attachment", "muscle_0", {{"offset_mm", 8.0}}}}));
-  const double turn_rad = 4 * rad_per_deg;
+  // The muscle runs from (35 + 8 cos, 240 + 8 sin) to (35, -20).
+  Simulation simulation(optionsWith({{"foreign.turned_attachment", "muscle_0", {{"offset_mm", 8.0}, {"turn_deg", 25.0}}}}));
+  const double turn_rad = 25 * rad_per_deg;
   EXPECT_NEAR(simulation.build("elbow").truth().length_mm[0], std::hypot(260 + 8 * std::sin(turn_rad), 8 * std::cos(turn_rad)), 1e-6);
 }
 

@@ -81,6 +81,27 @@ TEST(BraidHysteresis, LoopIsTwiceTheWidthAtAnySpeed) {
     }
 }
 
+TEST(BraidHysteresis, GoesWithThePressureAlone) {
+  for (const double pressure : {0.3, 0.6})
+    for (const double length_mm : {190.0, 240.0}) {
+      LengthMachine machine({{"braid_hysteresis", "all", {{"relative_width", 0.05}, {"presliding_mm", 1.0}, {"pressure_share", 1.0}}}},
+                            pressure, length_mm - 10);
+      machine.moveTo(length_mm, 50, h_s);
+      const double friction_N = 0.05 * pressure * machine.lawN(1, 300);
+      EXPECT_NEAR(machine.tensionAt(length_mm), machine.lawN(pressure, length_mm) + friction_N, 1e-6) << pressure << " " << length_mm;
+      machine.moveTo(length_mm + 5, 50, h_s);
+      machine.moveTo(length_mm, 50, h_s);
+      EXPECT_NEAR(machine.tensionAt(length_mm), machine.lawN(pressure, length_mm) - friction_N, 1e-6) << pressure << " " << length_mm;
+    }
+}
+
+TEST(BraidHysteresis, DoesNotPush) {
+  LengthMachine machine({{"braid_hysteresis", "all", {{"relative_width", 1.0}, {"presliding_mm", 1.0}, {"pressure_share", 1.0}}}}, 0.2,
+                        260);
+  machine.moveTo(200, 50, h_s);
+  EXPECT_EQ(machine.tensionAt(200), 0);
+}
+
 TEST(BraidHysteresis, ReversesOverTwicePresliding) {
   LengthMachine machine({{"braid_hysteresis", "all", {{"relative_width", 0.1}, {"presliding_mm", 1.5}}}}, 0.5, 210);
   machine.moveTo(225, 50, h_s);

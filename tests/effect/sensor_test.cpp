@@ -45,6 +45,23 @@ TEST(SensorDelay, ShowsWhatWas) {
   expectOnly("length_0_mm", run, clean);
 }
 
+TEST(SensorDelay, MayBeAFilter) {
+  const EffectInfo info = effectInfo("sensor_delay");
+  const double delay_s = 0.04, h_s = 1e-3;
+  for (const double share : {0.25, 1.0}) {
+    auto effect = info.make(EffectValues(info.parameters, {delay_s, share}));
+    auto& sensor = dynamic_cast<SensorEffect&>(*effect);
+    sensor.reset();
+    auto stepAt = [](double time_s) { return time_s > 0 ? 1.0 : 0.0; };
+    for (double time_s = -0.1; time_s < 0.2; time_s += h_s) {
+      sensor.track(stepAt(time_s), {time_s, h_s});
+      const double since_s = time_s - (1 - share) * delay_s;
+      const double expected = since_s > 0 ? 1 - std::exp(-since_s / (share * delay_s)) : 0;
+      EXPECT_NEAR(sensor.reading(stepAt(time_s), {time_s, h_s}, 0), expected, 1.1 * h_s / (share * delay_s)) << share << " " << time_s;
+    }
+  }
+}
+
 TEST(SensorBacklash, IsFlatAfterAReversalForItsWidth) {
   const EffectInfo info = effectInfo("sensor_backlash");
   SimulationOptions options;

@@ -1,9 +1,9 @@
 /// The catalogue of effects: one id per physical cause.
 #pragma once
 
+#include <Eigen/Core>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,9 +23,8 @@ struct EffectInfo {
   std::string source;
   std::vector<EffectParameter> parameters;
   std::function<std::unique_ptr<Effect>(const EffectValues&)> make;
-  /// Given: the robot builds the muscle's start `offset_mm` beside its place, in the direction of the lever arm turned by so much to the
-  /// vertical.
-  std::optional<double> start_turn_deg = {};
+  /// Given: how far beside its place the robot builds the muscle's start, along the lever arm and upward.
+  std::function<Eigen::Vector2d(const EffectValues&)> start_offset_mm = {};
 };
 
 /// All effects in the order in which they act within their stages: those of the library, then registered ones.
