@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "follow_up.h"
+#include "look_alikes.h"
 #include "score.h"
 #include "seal.h"
 
@@ -46,7 +47,8 @@ void putLeftOut(json& totals, const std::vector<FollowUp>& follow_ups) {
   for (const auto& [name, what] :
        {std::pair("left_out_failed", WithoutTruth::failed), std::pair("left_out_confidently_wrong", WithoutTruth::confidently_wrong),
         std::pair("left_out_look_alike", WithoutTruth::look_alike), std::pair("left_out_named_before", WithoutTruth::named_before),
-        std::pair("left_out_unexplained", WithoutTruth::unexplained), std::pair("left_out_unsure", WithoutTruth::unsure)})
+        std::pair("left_out_class_mate", WithoutTruth::class_mate), std::pair("left_out_unexplained", WithoutTruth::unexplained),
+        std::pair("left_out_unsure", WithoutTruth::unsure)})
     putRate(totals, name, follow_ups, [what = what](const FollowUp& one) {
       return one.left_out ? std::optional(withoutTruth(*one.left_out, one.answer) == what) : std::nullopt;
     });
@@ -94,7 +96,9 @@ WithoutTruth withoutTruth(const Judgement& answer, const Judgement& with_truth) 
   const bool named_before =
       with_truth.covered.value_or(false) && std::ranges::find(with_truth.ambiguity_set, answer.top) != with_truth.ambiguity_set.end();
   const bool confident_effect = answer.verdict == "effects_found" && answer.top_probability > confident;
-  if (confident_effect && !look_alike && !named_before) return WithoutTruth::confidently_wrong;
+  const bool class_mate =
+      std::ranges::any_of(with_truth.true_ids, [&](const std::string& id) { return areOfOneClass(id, idOf(answer.top)); });
+  if (confident_effect && !look_alike && !named_before) return class_mate ? WithoutTruth::class_mate : WithoutTruth::confidently_wrong;
   if (answer.verdict != "effects_found" || !answer.namesEffect()) return WithoutTruth::unexplained;
   return look_alike ? WithoutTruth::look_alike : named_before ? WithoutTruth::named_before : WithoutTruth::unsure;
 }
@@ -132,7 +136,7 @@ std::vector<std::string> missesOf(const FollowUp& follow_up) {
   };
   if (follow_up.left_out)
     if (const WithoutTruth without = withoutTruth(*follow_up.left_out, follow_up.answer);
-        without == WithoutTruth::failed || without == WithoutTruth::confidently_wrong)
+        without == WithoutTruth::failed || without == WithoutTruth::confidently_wrong || without == WithoutTruth::class_mate)
       misses.push_back("without the true effect: " + said(*follow_up.left_out));
   if (follow_up.experiment && !namesTruth(*follow_up.experiment))
     misses.push_back("after the proposed schedule: " + said(*follow_up.experiment));

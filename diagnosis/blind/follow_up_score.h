@@ -30,9 +30,10 @@ struct FollowUp {
 /// What the answer turns to without the true effect, the first that applies.
 enum class WithoutTruth {
   failed,
-  confidently_wrong,  ///< an effect with more than 0.9 that is neither of the next two
+  confidently_wrong,  ///< an effect with more than 0.9 that is none of the next three
   look_alike,         ///< one that the measured signals cannot separate comes first
   named_before,       ///< one that the answer with the true effect had beside it in its ambiguity set does
+  class_mate,         ///< one that other recordings cannot tell from the true effect (areOfOneClass) does, with more than 0.9
   unexplained,        ///< or no effect is likelier than none of these and no gap
   unsure              ///< another effect comes first, with 0.9 or less
 };

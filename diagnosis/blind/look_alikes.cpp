@@ -83,6 +83,19 @@ bool fitsAny(const std::string& answer, const std::vector<std::string>& patterns
   return std::ranges::any_of(patterns, [&](const std::string& pattern) { return fits(answer, pattern); });
 }
 
+bool areOfOneClass(const std::string& one_id, const std::string& other_id) {
+  static const std::vector<std::set<std::string>> classes = {{"valve_lag", "viscous_loss", "joint_viscous_friction"},
+                                                             {"transport_delay", "sensor_delay"},
+                                                             {"force_gain", "pressure_calibration"},
+                                                             {"leak", "creep"},
+                                                             {"braid_hysteresis", "joint_coulomb_friction"},
+                                                             {"length_offset", "attachment_offset"},
+                                                             {"payload", "force_gain"},
+                                                             {"base_tilt", "external_force", "sensor_bias"},
+                                                             {"joint_stop_offset", "contact"}};
+  return std::ranges::any_of(classes, [&](const auto& ids) { return ids.contains(one_id) && ids.contains(other_id); });
+}
+
 std::string idOf(const std::string& label) {
   return label.substr(0, label.find('@'));
 }

@@ -31,6 +31,9 @@ std::vector<std::string> acceptableAnswers(const std::string& id, const std::str
 bool fits(const std::string& answer, const std::string& pattern);
 bool fitsAny(const std::string& answer, const std::vector<std::string>& patterns);
 
+/// Whether two effects are one of the pairs that some recordings cannot tell apart (docs/effects.md), whatever is measured.
+bool areOfOneClass(const std::string& one_id, const std::string& other_id);
+
 /// "valve_lag" of "valve_lag@muscle_0".
 std::string idOf(const std::string& label);
 

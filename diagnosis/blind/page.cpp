@@ -144,6 +144,8 @@ std::string followed(const Score& score) {
   row("... an acceptable look-alike, with whatever probability", "", "left_out_look_alike");
   row("... an effect that the answer with all candidates had beside it in its ambiguity set, with whatever probability", "",
       "left_out_named_before");
+  row("... with more than 0.9 another of its class, which other signals or motions cannot tell from it (effects.md)", "",
+      "left_out_class_mate");
   row("... unexplained", "", "left_out_unexplained");
   row("... a wrong cause with 0.9 or less", "", "left_out_unsure");
   row("... no answer", "", "left_out_failed");

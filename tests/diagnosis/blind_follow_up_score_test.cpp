@@ -22,6 +22,8 @@ TEST(BlindFollowUp, TellsWhatAnAnswerTurnsToWithoutTheTruth) {
   EXPECT_EQ(turns("effects_found", {candidate("viscous_loss", "all", 0.95)}, 0), WithoutTruth::look_alike);
   EXPECT_EQ(turns("effects_found", {candidate("leak", "all", 0.95)}, 0), WithoutTruth::named_before);
   EXPECT_EQ(turns("effects_found", {candidate("leak", "muscle_0", 0.95)}, 0), WithoutTruth::confidently_wrong);
+  EXPECT_EQ(turns("effects_found", {candidate("joint_viscous_friction", "joint_elbow", 0.95)}, 0), WithoutTruth::class_mate);
+  EXPECT_EQ(turns("effects_found", {candidate("joint_viscous_friction", "joint_elbow", 0.6)}, 0.4), WithoutTruth::unsure);
   EXPECT_EQ(turns("effects_found", {candidate("creep", "all", 0.6)}, 0.4), WithoutTruth::unsure);
   EXPECT_EQ(turns("effects_found", {candidate("creep", "all", 0.4)}, 0.5), WithoutTruth::unexplained);
   EXPECT_EQ(turns("unexplained", {candidate("creep", "all", 0.95)}, 0), WithoutTruth::unexplained);
