@@ -29,12 +29,14 @@ namespace fs = std::filesystem;
 
 /// A fresh folder with room for cases and, elsewhere, for keys; removed at the end.
 class Blind : public ::testing::Test {
+ public:
+  ~Blind() override { fs::remove_all(root_); }
+
  protected:
   Blind() : root_(fs::temp_directory_path() / ("musclesim_blind_" + std::to_string(::getpid()) + "_" + testName())) {
     fs::remove_all(root_);
     fs::create_directories(root_ / "work");
   }
-  ~Blind() override { fs::remove_all(root_); }
 
   static std::string testName() { return ::testing::UnitTest::GetInstance()->current_test_info()->name(); }
   fs::path cases(const std::string& name = "cases") const { return root_ / "work" / name; }
