@@ -22,17 +22,33 @@ std::string patternOf(const std::string& id, const std::string& component, const
   return id + "@" + (known && components.size() > 1 ? component : "*");
 }
 
+/// Effects that some recordings cannot tell apart.
+struct LookAlikes {
+  std::set<std::string> ids;
+  bool (*inseparable)(const Measured&);  ///< on the same component by what is measured, whatever the motion
+};
+
+const std::vector<LookAlikes>& lookAlikes() {
+  const auto without_pressure = [](const Measured& measured) { return !measured.pressure; };
+  const auto without_both = [](const Measured& measured) { return !measured.pressure && !measured.force; };
+  const auto by_motion = [](const Measured&) { return false; };  // or on other components only: see acceptableAnswers
+  static const std::vector<LookAlikes> classes = {{{"valve_lag", "viscous_loss", "joint_viscous_friction"}, without_both},
+                                                  {{"force_gain", "pressure_calibration"}, without_pressure},
+                                                  {{"leak", "creep"}, without_pressure},
+                                                  {{"transport_delay", "sensor_delay"}, by_motion},
+                                                  {{"braid_hysteresis", "joint_coulomb_friction"}, by_motion},
+                                                  {{"length_offset", "attachment_offset"}, by_motion},
+                                                  {{"payload", "force_gain"}, by_motion},
+                                                  {{"base_tilt", "external_force", "sensor_bias"}, by_motion},
+                                                  {{"joint_stop_offset", "contact"}, by_motion}};
+  return classes;
+}
+
 std::vector<std::string> membersBeside(const std::string& id, const Measured& measured) {
-  std::vector<std::vector<std::string>> classes;
-  if (!measured.pressure && !measured.force) classes.push_back({"valve_lag", "viscous_loss", "joint_viscous_friction"});
-  if (!measured.pressure) {
-    classes.push_back({"force_gain", "pressure_calibration"});
-    classes.push_back({"leak", "creep"});
-  }
   std::vector<std::string> others;
-  for (const auto& members : classes)
-    if (std::ranges::find(members, id) != members.end())
-      std::ranges::copy_if(members, std::back_inserter(others), [&](const std::string& other) { return other != id; });
+  for (const LookAlikes& one : lookAlikes())
+    if (one.ids.contains(id) && one.inseparable(measured))
+      std::ranges::copy_if(one.ids, std::back_inserter(others), [&](const std::string& other) { return other != id; });
   return others;
 }
 
@@ -84,16 +100,7 @@ bool fitsAny(const std::string& answer, const std::vector<std::string>& patterns
 }
 
 bool areOfOneClass(const std::string& one_id, const std::string& other_id) {
-  static const std::vector<std::set<std::string>> classes = {{"valve_lag", "viscous_loss", "joint_viscous_friction"},
-                                                             {"transport_delay", "sensor_delay"},
-                                                             {"force_gain", "pressure_calibration"},
-                                                             {"leak", "creep"},
-                                                             {"braid_hysteresis", "joint_coulomb_friction"},
-                                                             {"length_offset", "attachment_offset"},
-                                                             {"payload", "force_gain"},
-                                                             {"base_tilt", "external_force", "sensor_bias"},
-                                                             {"joint_stop_offset", "contact"}};
-  return std::ranges::any_of(classes, [&](const auto& ids) { return ids.contains(one_id) && ids.contains(other_id); });
+  return std::ranges::any_of(lookAlikes(), [&](const LookAlikes& c) { return c.ids.contains(one_id) && c.ids.contains(other_id); });
 }
 
 std::string idOf(const std::string& label) {

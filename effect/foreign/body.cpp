@@ -161,6 +161,7 @@ class HuntCrossley final : public JointEffect {
 };
 
 /// The start beside its place in a direction between the lever arm and the muscle's line: any, as brackets are mounted.
+/// Where the catalogue's slope is fitted as well, that is the same law.
 EffectInfo turnedAttachment() {
   EffectInfo info = entry("turned_attachment", Stage::body, {ComponentKind::muscle}, "start' = start + d (e cos a + up sin a)",
                           {{"offset_mm", "mm", 0, -200, 200, -8, 8, "d"}, {"turn_deg", "deg", 4, -90, 90, -25, 25, "a", true}},

@@ -53,6 +53,13 @@ TEST_F(ThreeRigs, IntervalIsAPointWhereAllRecordingsAgree) {
   EXPECT_NEAR(shrink.high, shrink.value, 1e-9);
 }
 
+TEST_F(ThreeRigs, IntervalReachesAllWhereNoiseAloneMayLeaveTheRest) {
+  const Estimate shrink = intervalOf(1.02, 1.02, 1.02);  // a gap of 0.04 is left of 99
+  EXPECT_LT(shrink.value, 100);
+  EXPECT_EQ(shrink.high, 100);
+  EXPECT_LT(intervalOf(1.1, 1.1, 1.1).high, 100);
+}
+
 TEST_F(ThreeRigs, IntervalIsStudentsForOneMoreRecording) {
   // Normalised gaps after: 3, 8, 15 of 99 before.
   const Estimate shrink = intervalOf(2, 3, 4);
