@@ -278,7 +278,7 @@ Prediction Plant::predict(int recording, const Model& model, int end_row, Fideli
   const bool is_new = store_.isNew(key);
   Prediction prediction = store_.get(key, [&] { return replay(recorded, model, end_row, fidelity); });
   if (is_new && !prediction.refused) count(recorded.time_s[rows - 1] - recorded.time_s.front());
-  holdWhereMeasured(recording, model, prediction);
+  holdSamples(recording, model, prediction);
   return prediction;
 }
 
@@ -336,18 +336,13 @@ Prediction Plant::replay(Recording recording, const Model& model, int end_row, F
   return prediction;
 }
 
-/// Which samples were dropped is chance: no model can predict it, but the recording shows it. Where the measured value has been held, so is
-/// the predicted one.
-void Plant::holdWhereMeasured(int recording, const Model& model, Prediction& prediction) const {
+/// The same held samples in a stored prediction, which does not depend on them.
+void Plant::holdSamples(int recording, const Model& model, Prediction& prediction) const {
   for (const ActiveEffect& effect : model.effects) {
     if (effect.id != held_effect) continue;
-    for (std::size_t i = 0; i < signals_.size(); ++i) {
-      if (effect.component != "all" && !isComponentOf(effect.component, signals_[i].name)) continue;
-      const std::vector<double>& y = measured_[static_cast<std::size_t>(recording)][i];
-      std::vector<double>& predicted = prediction.values[i];
-      for (std::size_t row = 1; row < y.size(); ++row)
-        if (y[row] == y[row - 1]) predicted[row] = predicted[row - 1];
-    }
+    for (std::size_t i = 0; i < signals_.size(); ++i)
+      if (effect.component == "all" || isComponentOf(effect.component, signals_[i].name))
+        holdWhereMeasured(prediction.values[i], measured_[static_cast<std::size_t>(recording)][i]);
   }
 }
 

@@ -29,9 +29,6 @@ struct Stretch {
   int every = 1;
 };
 
-/// Which samples were held is chance that no model predicts, but the recording shows it.
-inline constexpr const char* held_effect = "sensor_dropout";
-
 /// Which stretches parameters are fitted to and explanations are chosen on, and which only measure the result.
 struct Split {
   std::vector<Stretch> fit, held_out;
@@ -125,7 +122,7 @@ class Plant {
   void count(double simulated_s) const;
   Prediction replay(Recording recording, const Model& model, int end_row, Fidelity fidelity) const;
   bool takesForEver(const Recording& recording, const ReplayOptions& options) const;
-  void holdWhereMeasured(int recording, const Model& model, Prediction& prediction) const;
+  void holdSamples(int recording, const Model& model, Prediction& prediction) const;
 
   std::vector<Recording> recordings_;
   const DiagnosisOptions& options_;

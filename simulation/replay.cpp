@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "../effect/components.h"
 #include "internal_step.h"
 #include "musclesim/controller/replay.h"
 #include "musclesim/error.h"
@@ -71,6 +72,16 @@ bool isOfTask(const std::string& signal) {
   return signal == "activity" || signal.starts_with("target_");
 }
 
+/// Signals of a recording whose samples an effect loses.
+std::vector<const Signal*> signalsHeldBy(const ActiveEffect& effect, const Recording& recording) {
+  std::vector<const Signal*> held;
+  if (effect.id != held_effect) return held;
+  for (const Signal& signal : recording.signals)
+    if (!signal.name.starts_with("command_") && (effect.component == "all" || effect.component == "signal_" + stemOf(signal.name)))
+      held.push_back(&signal);
+  return held;
+}
+
 }  // namespace
 
 std::vector<std::string> unknownSignals(const Recording& recording, const std::vector<std::string>& of_robot) {
@@ -128,10 +139,23 @@ SimulationOptions simulationOptionsFor(const RecordingInfo& info, const std::str
   return result;
 }
 
+void holdWhereMeasured(std::vector<double>& predicted, const std::vector<double>& measured) {
+  for (std::size_t row = 1; row < std::min(predicted.size(), measured.size()); ++row)
+    if (measured[row] == measured[row - 1]) predicted[row] = predicted[row - 1];
+}
+
 ReplayResult replayRecording(const Recording& recording, const ReplayOptions& options) {
   RecordingInfo info = recording.info;
   replaceRobot(info, options.robot);
-  Simulation simulation(simulationOptionsFor(info, sidecarPath(recording.file), options));
+  std::vector<ActiveEffect> held;
+  ReplayOptions drawn = options;
+  std::erase_if(drawn.effects, [&](const ActiveEffect& effect) {
+    if (signalsHeldBy(effect, recording).empty()) return false;
+    effectValues(effectInfo(effect.id), effect);  // refuses wrong ones
+    held.push_back(effect);
+    return true;
+  });
+  Simulation simulation(simulationOptionsFor(info, sidecarPath(recording.file), drawn));
   Robot& robot = simulation.build(info.robot);
   simulation.parameters().requireAllKnown();
   ReplayController commands(recording, robot.actuatorCount());
@@ -163,6 +187,12 @@ ReplayResult replayRecording(const Recording& recording, const ReplayOptions& op
     result.divergence = error.what();
   } catch (const Interrupted&) {
     result.interrupted = true;
+  }
+  for (const ActiveEffect& effect : held) {
+    result.simulated.info.active_effects.push_back(effect);
+    for (const Signal* measured : signalsHeldBy(effect, recording))
+      for (Signal& signal : result.simulated.signals)
+        if (signal.name == measured->name) holdWhereMeasured(signal.values, measured->values);
   }
   result.simulated.info.complete = !result.divergence && !result.interrupted;
   result.worst_gap = simulation.worstGap();

@@ -24,7 +24,9 @@ std::string patternOf(const std::string& id, const std::string& component, const
 
 /// Effects that some recordings cannot tell apart.
 struct LookAlikes {
-  std::set<std::string> ids;
+  bool holds(const std::string& id) const { return std::ranges::find(ids, id) != ids.end(); }
+
+  std::vector<std::string> ids;
   bool (*inseparable)(const Measured&);  ///< on the same component by what is measured, whatever the motion
 };
 
@@ -47,7 +49,7 @@ const std::vector<LookAlikes>& lookAlikes() {
 std::vector<std::string> membersBeside(const std::string& id, const Measured& measured) {
   std::vector<std::string> others;
   for (const LookAlikes& one : lookAlikes())
-    if (one.ids.contains(id) && one.inseparable(measured))
+    if (one.holds(id) && one.inseparable(measured))
       std::ranges::copy_if(one.ids, std::back_inserter(others), [&](const std::string& other) { return other != id; });
   return others;
 }
@@ -100,7 +102,7 @@ bool fitsAny(const std::string& answer, const std::vector<std::string>& patterns
 }
 
 bool areOfOneClass(const std::string& one_id, const std::string& other_id) {
-  return std::ranges::any_of(lookAlikes(), [&](const LookAlikes& c) { return c.ids.contains(one_id) && c.ids.contains(other_id); });
+  return std::ranges::any_of(lookAlikes(), [&](const LookAlikes& c) { return c.holds(one_id) && c.holds(other_id); });
 }
 
 std::string idOf(const std::string& label) {

@@ -113,6 +113,31 @@ TEST(SensorDropout, HoldsItsShareOfTheSamples) {
   EXPECT_NE(valuesOf(replayWith(commands, lost, options), "pressure_0"), held);
 }
 
+TEST(SensorDropout, AReplayLosesTheSamplesThatTheRecordingLost) {
+  const Recording commands = commandsFor("rig", 2, [](double t) { return Action{0.4 + 0.2 * t}; });
+  const auto lossOf = [](double fraction) {
+    return std::vector<ActiveEffect>{{"sensor_dropout", "signal_pressure_0", {{"fraction", fraction}}}};
+  };
+  ReplayOptions machine;
+  machine.seed = 7;
+  const Recording measured = [&] {
+    Recording recording = replayWith(commands, lossOf(0.2), machine).simulated;
+    recording.info.active_effects.clear();
+    recording.info.seed.reset();
+    return recording;
+  }();
+  const auto rmse = [](const ReplayResult& result, const std::string& signal) {
+    return std::ranges::find(result.errors, signal, &SignalError::name)->rmse;
+  };
+  const ReplayResult without = replayWith(measured, {}), with = replayWith(measured, lossOf(0.3));
+  EXPECT_GT(rmse(without, "pressure_0"), 1e-3);
+  EXPECT_EQ(rmse(with, "pressure_0"), 0) << "whatever the fraction says";
+  EXPECT_EQ(valuesOf(with, "length_0_mm"), valuesOf(without, "length_0_mm"));
+  ASSERT_EQ(with.simulated.info.active_effects.size(), 1);
+  EXPECT_EQ(with.simulated.info.active_effects.front().id, held_effect);
+  EXPECT_THROW(replayWith(measured, lossOf(1.5)), BadParameter);
+}
+
 TEST(SensorNoise, HasItsDeviationAndIsPartOfTheRecording) {
   const Recording commands = commandsFor("rig", 10, [](double) { return Action{0.5}; });
   ReplayOptions options;

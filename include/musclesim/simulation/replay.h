@@ -21,7 +21,7 @@ struct ReplayOptions {
   bool plane = false;
   std::optional<std::uint64_t> seed;
   Parameters parameters;              ///< wins over the sidecar's robot_parameters
-  std::vector<ActiveEffect> effects;  ///< besides the sidecar's active_effects
+  std::vector<ActiveEffect> effects;  ///< besides the sidecar's active_effects; held_effect as replayRecording says
   /// Called before the first row with the simulation; what it returns is shown the readings of every row.
   using Watcher = std::function<void(const State&)>;
   std::function<Watcher(Simulation&)> watch;
@@ -60,9 +60,16 @@ void replaceRobot(RecordingInfo& info, const std::optional<std::string>& robot);
 /// that is not registered and the options none.
 SimulationOptions simulationOptionsFor(const RecordingInfo& info, const std::string& source, const ReplayOptions& options = {});
 
+/// Which samples were lost is chance that no model predicts, but the recording shows it.
+inline constexpr const char* held_effect = "sensor_dropout";
+
+/// Where a measured value is the one of the row before, so becomes the predicted one. predicted, measured: [rows]
+void holdWhereMeasured(std::vector<double>& predicted, const std::vector<double>& measured);
+
 /// Simulates the plant of a recording under its commands, each held until the next row, with its active effects and those of the options.
-/// The simulated recording names both as its active effects. Each call builds a simulation of its own, so that any number can run in as
-/// many threads. Throws BadFile if the robot is not registered or has another number of muscles than the recording has commands,
+/// The simulated recording names both as its active effects. Samples that a held_effect of the options loses in a signal that the recording
+/// has are those that the recording lost; otherwise they are drawn. Each call builds a simulation of its own, so that any number can run in
+/// as many threads. Throws BadFile if the robot is not registered or has another number of muscles than the recording has commands,
 /// BadParameter for parameters unknown to the model.
 ReplayResult replayRecording(const Recording& recording, const ReplayOptions& options = {});
 
