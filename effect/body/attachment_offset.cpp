@@ -10,14 +10,13 @@ EffectInfo AttachmentOffset::info() {
           .stage = Stage::body,
           .acts_on = {ComponentKind::muscle},
           .summary = "a muscle starts beside the place where the model has it",
-          .equation = "start' = start + d (e + s v)    d = offset_mm, e along the lever arm, away from the joint, v upward, s = slope",
+          .equation = "start' = start + d e + r v    d = offset_mm, e along the lever arm, away from the joint, r = rise_mm, v upward",
           .signature = "torque and length errors of one muscle, tied together by the angle",
           .source = "definition",
-          .parameters = {{"offset_mm", "mm", 0, -200, 200, -8, 8, "d"},
-                         {"slope", "", 0, -1, 1, -0.4, 0.4, "s, offset upward over that along the lever arm", true}},
+          .parameters = {{"offset_mm", "mm", 0, -200, 200, -8, 8, "d"}, {"rise_mm", "mm", 0, -200, 200, -3, 3, "r"}},
           .make = [](const EffectValues&) { return std::make_unique<AttachmentOffset>(); },
           .start_offset_mm = [](const EffectValues& values) -> Eigen::Vector2d {
-            return values["offset_mm"] * Eigen::Vector2d(1, values["slope"]);
+            return {values["offset_mm"], values["rise_mm"]};
           }};
 }
 

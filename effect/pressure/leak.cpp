@@ -15,7 +15,7 @@ EffectInfo Leak::info() {
           "dp/dt = (u - p) / tau_r - k p^n    u delivered, p actual, k = leak_per_s, tau_r = regulator_time_constant_s, n = flow_exponent",
       .signature = "decays while held, steady offset when regulated",
       .source = "mass balance; losses of 3 % to 80 % in 120 s measured with closed valve",
-      .parameters = {{"leak_per_s", "1/s", 0, 0, 100, 0.0003, 0.05, "k"},
+      .parameters = {{"leak_per_s", "1/s", 0, 0, 100, 0.0003, 1, "k"},
                      {"regulator_time_constant_s", "s", 0.05, 1e-3, 5, 0.02, 0.15, "tau_r", true},
                      {"flow_exponent", "", 1, 0.3, 1.5, 0.5, 1, "n: 1 laminar or choked, 0.5 a hole at little pressure", true}},
       .make = [](const EffectValues& values) {

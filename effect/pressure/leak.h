@@ -4,8 +4,9 @@
 /// laminar flow through a pore or for flow that is choked, 0.5 for a hole at little pressure (turbulent: flow with the root of the
 /// pressure difference). p^(n-1) is taken at no less than 0.001. Held and n = 1, p = u / (1 + k tau_r). Exact for a u held over the step
 /// and n = 1; otherwise p^(n-1) is that of the step's begin. Neutral: k = 0; then there is no regulator lag either, p = u. Range 0 .. 100
-/// per s, usually 0.0003 .. 0.05.  Source: mass balance with a loss by gauge pressure; losses of 3 % to 80 % in 120 s measured on muscles
-/// with closed valve.
+/// per s, usually 0.0003 .. 1: intact muscles up to 0.05, which shows with closed valve only; against a regulator about 0.1 and more
+/// shows.  Source: mass balance with a loss by gauge pressure; losses of 3 % to 80 % in 120 s measured on muscles with closed valve; the
+/// upper end is an estimate, a hole that takes 5 % of the pressure from a regulator of 0.05 s.
 #pragma once
 
 #include "musclesim/effect/catalogue.h"

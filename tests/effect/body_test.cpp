@@ -259,9 +259,11 @@ TEST(AttachmentOffset, MovesTheStartOfTheMuscle) {
 }
 
 TEST(AttachmentOffset, MayRise) {
-  // The muscle runs from (35 + 8, 240 + 0.25 * 8) to (35, -20).
-  Simulation simulation(optionsWith({{"attachment_offset", "muscle_0", {{"offset_mm", 8.0}, {"slope", 0.25}}}}));
+  // The muscle runs from (35 + 8, 240 + 2) to (35, -20), or from (35, 240 + 2).
+  Simulation simulation(optionsWith({{"attachment_offset", "muscle_0", {{"offset_mm", 8.0}, {"rise_mm", 2.0}}}}));
   EXPECT_NEAR(simulation.build("elbow").truth().length_mm[0], std::hypot(262, 8), 1e-6);
+  Simulation straight(optionsWith({{"attachment_offset", "muscle_0", {{"rise_mm", 2.0}}}}));
+  EXPECT_NEAR(straight.build("elbow").truth().length_mm[0], 262, 1e-6);
 }
 
 TEST(AttachmentOffset, OfTheForeignLawIsTurnedToTheVertical) {
