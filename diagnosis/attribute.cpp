@@ -27,7 +27,7 @@ constexpr double least_hope = -1;            ///< ln of the odds of one more eff
 constexpr int few_effects = 2;               ///< up to that many, the first look serves for all of them
 constexpr int first_rounds = 2, last_rounds = 2;
 constexpr int many_rounds = 12;  ///< in place of the last rounds where many effects act together
-constexpr Reach single_reach = {0.8, 0.4}, pair_reach = {0.25, 0.1};
+constexpr Reach single_reach = {{0.8, 0.5}, {0.4, 0.15}}, pair_reach = {{0.25, 0}, {0.1, 0}};
 
 }  // namespace
 
@@ -293,10 +293,10 @@ void Attributor::fitTogether(std::vector<Candidate> candidates, Reach reach) {
       if (!plant_.interrupted() && chosen(candidate)) work(candidate);
     });
   };
-  auto limit = [&](double distance) {
+  auto limit = [&](const Distance& distance) {
     double best = std::numeric_limits<double>::infinity();
     for (const Candidate& candidate : candidates) best = std::min(best, candidate.explanation.log_misfit);
-    return best + distance;
+    return best + distance.beyond_best + distance.share_of_best * std::max(0.0, best);
   };
   auto all = [](const Candidate&) { return true; };
   forEach(all, [&](Candidate& candidate) {

@@ -25,9 +25,13 @@ struct Attribution {
   double none_of_these = 0, no_effect = 0;
 };
 
-/// A fit goes on while its log misfit per affected cell is within that of the best: on the look, on all recordings.
+/// How far behind the best, in log misfit per affected cell, a fit may be and go on: the more the best itself still leaves, the farther,
+/// since the others have as little settled after the same number of rounds.
+struct Distance {
+  double beyond_best, share_of_best;
+};
 struct Reach {
-  double on_look, on_all;
+  Distance on_look, on_all;
 };
 
 class Attributor {

@@ -116,6 +116,19 @@ double rangeOf(const std::vector<Recording>& recordings, const std::string& name
   return largest > least ? largest - least : 0;
 }
 
+/// Share of the rows whose value is that of the row before.
+double heldShare(const std::vector<Recording>& recordings, const std::string& name) {
+  double held = 0, count = 0;
+  for (const Recording& recording : recordings)
+    if (const Signal* signal = recording.find(name))
+      for (std::size_t row = 1; row < signal->values.size(); ++row) {
+        if (!std::isfinite(signal->values[row])) continue;
+        ++count;
+        held += signal->values[row] == signal->values[row - 1] ? 1 : 0;
+      }
+  return count > 0 ? held / count : 0;
+}
+
 double finestLattice(const std::vector<Recording>& recordings, const std::string& name) {
   double step = 0;
   for (const Recording& recording : recordings)
@@ -148,14 +161,15 @@ double latticeStep(const std::vector<double>& values) {
 
 NoiseFloor noiseFloor(const std::vector<Recording>& recordings, const std::string& name) {
   constexpr double imperceptible = 1e-9, usual_share = 1e-3;
+  constexpr double held_by_chance = 0.1, fine_lattice = 4;  // noise of four steps of a lattice makes 7 % of neighbours equal
   const double least = std::max(finestLattice(recordings, name) / std::sqrt(12.0), imperceptible);
   if (const auto repeats = fromRepeats(recordings, name)) return {std::max(*repeats, least), NoiseFloor::Source::repeats};
   if (const auto sidecar = fromSidecars(recordings, name)) return {std::max(*sidecar, least), NoiseFloor::Source::sidecar};
-  const double quiet = std::max(fromQuietRows(recordings, name, false), least);
-  if (quiet > imperceptible) return {quiet, NoiseFloor::Source::quiet_rows};
-  // Most quiet rows repeat the value before, though the values lie on no lattice: the sensor is read less often than it is logged.
-  const double changed = fromQuietRows(recordings, name, true);
-  if (changed > imperceptible) return {changed, NoiseFloor::Source::quiet_rows};
+  const double quiet = std::max(fromQuietRows(recordings, name, false), least), changed = fromQuietRows(recordings, name, true);
+  // Rows that repeat the value before, though chance makes few values equal, are of a sensor that is read less often than it is logged.
+  const bool is_held = heldShare(recordings, name) > held_by_chance && changed > fine_lattice * finestLattice(recordings, name);
+  if (!is_held && quiet > imperceptible) return {quiet, NoiseFloor::Source::quiet_rows};
+  if (changed > imperceptible) return {std::max(changed, least), NoiseFloor::Source::quiet_rows};
   return {std::max(usual_share * rangeOf(recordings, name), least), NoiseFloor::Source::range};
 }
 

@@ -260,7 +260,7 @@ std::vector<Suspect> Suspect::numbersOfBits() const {
 
 /// A small leak shows as its regulator's lag, a large one as what the regulator cannot hold: they look different.
 std::vector<Suspect> Suspect::smallAndLarge() const {
-  constexpr double large = 10;  // times the end of the usual range
+  constexpr double large = 0.5;  // times the end of the usual range
   std::vector<Suspect> result = {*this, *this};
   for (const int strength : strengths_) {
     Coordinate& c = result.back().coordinates_[static_cast<std::size_t>(strength)];

@@ -68,17 +68,28 @@ TEST(NoiseFloor, OfASignalThatIsReadInEveryOtherRowIsThatOfItsReadings) {
 
 /// A sensor that is read five times less often than it is logged.
 TEST(NoiseFloor, OfReadingsThatAreHeldIsThatOfWhatWasRead) {
-  double mean = 0;
   constexpr int count = 8;
-  for (int seed = 1; seed <= count; ++seed) {
-    Recording recording = noisyWave(static_cast<std::uint64_t>(seed));
-    std::vector<double>& y = recording.signals[1].values;
-    for (std::size_t row = 0; row < y.size(); ++row) y[row] = y[row - row % 5];
-    const NoiseFloor floor = noiseFloor({recording}, "length_0_mm");
-    EXPECT_EQ(floor.source, NoiseFloor::Source::quiet_rows);
-    mean += floor.value / count;
+  for (const std::size_t every : {2, 3, 4, 5}) {
+    double mean = 0;
+    for (int seed = 1; seed <= count; ++seed) {
+      Recording recording = noisyWave(static_cast<std::uint64_t>(seed));
+      std::vector<double>& y = recording.signals[1].values;
+      for (std::size_t row = 0; row < y.size(); ++row) y[row] = y[row - row % every];
+      const NoiseFloor floor = noiseFloor({recording}, "length_0_mm");
+      EXPECT_EQ(floor.source, NoiseFloor::Source::quiet_rows);
+      mean += floor.value / count;
+    }
+    EXPECT_NEAR(mean, std_mm, 0.15 * std_mm) << "read every " << every << " rows";
   }
-  EXPECT_NEAR(mean, std_mm, 0.15 * std_mm);
+}
+
+TEST(NoiseFloor, OfLostSamplesIsThatOfTheOthers) {
+  Recording recording = noisyWave(1);
+  std::vector<double>& y = recording.signals[1].values;
+  RandomStream random(1, "lost");
+  for (std::size_t row = 1; row < y.size(); ++row)
+    if (random.uniform() < 0.5) y[row] = y[row - 1];
+  EXPECT_NEAR(noiseFloor({recording}, "length_0_mm").value, std_mm, 0.2 * std_mm);
 }
 
 TEST(NoiseFloor, IsAThousandthOfTheRangeWhereNothingElseTellsIt) {

@@ -73,8 +73,8 @@ TEST(Report, ListsEffectsThatActTogetherTogether) {
 TEST(Report, GivesTheNumbersOfWhatComesNearest) {
   Diagnosis d = answer(Verdict::unexplained);
   d.attempt.effects = {"leak@muscle_0"};
-  d.attempt.active_effects = {{"leak", "muscle_0", {{"leak_per_s", 0.25}}}};
-  EXPECT_TRUE(contains(diagnosisReport(d), "What comes nearest: leak@muscle_0 (leak_per_s = 0.25, usual are 0.0003 to 0.05)."));
+  d.attempt.active_effects = {{"leak", "muscle_0", {{"leak_per_s", 2.5}}}};
+  EXPECT_TRUE(contains(diagnosisReport(d), "What comes nearest: leak@muscle_0 (leak_per_s = 2.5, usual are 0.0003 to 1)."));
 }
 
 TEST(Report, ShowsTheLargestGapFirst) {
