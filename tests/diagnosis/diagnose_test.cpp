@@ -1,7 +1,9 @@
 // Plants with a planted effect, noise added; candidates are few to keep the tests short.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -32,6 +34,54 @@ TEST(Diagnose, FindsAPlantedPayload) {
   EXPECT_GE(mass.high, mass.value);
   EXPECT_GT(found.shrink_percent, 95);
   EXPECT_GT(found.shrink_percent, found.nominal_refit_shrink_percent);
+}
+
+/// What an elbow measures but for forces under waves and a step, and once more under larger ones.
+std::vector<Recording> elbow(const ActiveEffect& effect) {
+  std::vector<Recording> recordings;
+  for (const double amplitude : {0.05, 0.07}) {
+    Recording plan;
+    plan.file = fmt::format("elbow_{}.csv", recordings.size());
+    plan.info.robot = "elbow";
+    plan.signals = {{"command_0", {}}, {"command_1", {}}};
+    for (int row = 0; row < 300; ++row) {
+      const double t = 0.01 * row, way = amplitude * (t < 2 ? std::sin(3 * t) : 1);
+      plan.time_s.push_back(t);
+      plan.signals[0].values.push_back(0.4 + way);
+      plan.signals[1].values.push_back(0.4 - way);
+    }
+    ReplayOptions options;
+    options.effects = {effect};
+    Recording recording = replayRecording(plan, options).simulated;
+    recording.file = plan.file;
+    recording.info.active_effects.clear();
+    std::erase_if(recording.signals, [](const Signal& signal) { return signal.name.starts_with("force_"); });
+    recording.info.noise_std = {{"pressure_0", 0.003}, {"pressure_1", 0.003},     {"length_0_mm", 0.08}, {"length_1_mm", 0.08},
+                                {"hand_x_mm", 0.3},    {"angle_elbow_deg", 0.08}, {"hand_y_mm", 0.3},    {"hand_z_mm", 0.3}};
+    RandomStream random(recordings.size(), "elbow");
+    for (Signal& signal : recording.signals)
+      if (const auto noise = recording.info.noise_std.find(signal.name); noise != recording.info.noise_std.end())
+        for (double& value : signal.values) value += noise->second * random.normal();
+    recordings.push_back(std::move(recording));
+  }
+  return recordings;
+}
+
+/// Along the lever arm alone another offset, of the other sign, fits best.
+TEST(Diagnose, FindsAnAttachmentThatIsOffInAnyDirection) {
+  const ActiveEffect bracket = {"foreign.turned_attachment", "muscle_1", {{"offset_mm", 3.0}, {"turn_deg", -15.0}}};
+  const Diagnosis found = diagnose(elbow(bracket), few({"attachment_offset"}));
+  ASSERT_EQ(found.chosen, std::vector<std::string>{"attachment_offset@muscle_1"}) << diagnosisSummary(found);
+  EXPECT_NEAR(found.effects.front().parameters.at("offset_mm").value, 3 * std::cos(0.2618), 0.15);
+  EXPECT_NEAR(found.effects.front().parameters.at("rise_mm").value, -3 * std::sin(0.2618), 0.05);
+}
+
+/// After a few steps the one is a multiple of the noise behind the other, both are far from where they lead.
+TEST(Diagnose, FitsLookAlikesToTheEnd) {
+  const Diagnosis found =
+      diagnose(elbow({"foreign.power_loss", "all", {{"loss_at_100_mm_per_s_N", 6.0}}}), few({"viscous_loss", "joint_viscous_friction"}));
+  ASSERT_FALSE(found.effects.empty());
+  EXPECT_TRUE(lists(found.ambiguity_set, "viscous_loss@all")) << diagnosisSummary(found);
 }
 
 TEST(Diagnose, SaysNoGapWhereThereIsOnlyNoise) {
