@@ -133,9 +133,10 @@ std::set<std::size_t> Attributor::sameCommandsAs(std::size_t stretch) const {
   return result;
 }
 
-/// Whether one of its effects does as well at next to no strength, with its shape as it is: a leak without a leak is its regulator's lag.
+/// Whether one of its effects does as well, as far as odds are made of it, at next to no strength, with its shape as it is: a leak without
+/// a leak is its regulator's lag.
 bool Attributor::isHollow(const Explanation& explanation) const {
-  constexpr double next_to_nothing = 1e-3, noticeable = 0.02;  // typical strengths; log misfit per affected cell
+  constexpr double next_to_nothing = 1e-3, noticeable = 0.3;  // typical strengths; ln of the odds
   if (explanation.residual.size() != fit_.size()) return false;
   const Eigen::VectorXd as_it_is = fit_.predicted(modelOf(explanation));
   Eigen::Index first = 0;
@@ -148,10 +149,9 @@ bool Attributor::isHollow(const Explanation& explanation) const {
       weak.z = clampedAll(weak.suspects, weak.z);
       const Eigen::VectorXd predicted = fit_.predicted(modelOf(weak));
       on_simulation_();
-      if (predicted.size() == fit_.size() && predicted.allFinite()) {
-        const double misfit = fit_.logMisfit(explanation.residual + as_it_is - predicted) / fit_.affectedCells(nominal_residual_);
-        if (misfit < explanation.log_misfit + noticeable) return true;
-      }
+      if (predicted.size() == fit_.size() && predicted.allFinite() &&
+          odds().ofMisfit(explanation.residual + as_it_is - predicted) > odds().ofMisfit(explanation.residual) - noticeable)
+        return true;
     }
     first += suspect.coordinateCount();
   }

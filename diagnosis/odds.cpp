@@ -18,7 +18,6 @@ double Odds::misfitBeyond(double mismatch, const Eigen::VectorXd& residual) cons
   return sum / comparison_.affectedCells(nominal_residual_);
 }
 
-/// ln of the odds by what is left.
 double Odds::ofMisfit(const Eigen::VectorXd& residual) const {
   return -weighing_.per_misfit * misfitBeyond(weighing_.law_mismatch, residual) -
          weighing_.per_closer_misfit * misfitBeyond(weighing_.close_law_mismatch, residual);

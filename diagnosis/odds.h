@@ -51,6 +51,8 @@ class Odds {
 
   /// ln of the odds of an explanation, but for a constant; of a hollow one minus infinity.
   double ofExplanation(const Explanation& explanation) const;
+  /// ln of the odds by what is left, without what speaks against an explanation beforehand.
+  double ofMisfit(const Eigen::VectorXd& residual) const;
   /// The same of no effect at all.
   double ofNoEffect() const;
   /// The same of a cause that the catalogue does not hold, beside the likeliest of some explanations and no effect: a cause that the
@@ -62,7 +64,6 @@ class Odds {
 
  private:
   double misfitBeyond(double mismatch, const Eigen::VectorXd& residual) const;
-  double ofMisfit(const Eigen::VectorXd& residual) const;
   bool actsWhereOthersDo(const Explanation& explanation, std::size_t member) const;
   double beforehand(const Explanation& explanation) const;
 

@@ -23,8 +23,8 @@ struct BeforeAndAfter {
 
 /// The shrink on what was held out, and the interval in which that of another recording of the same plant is expected with 95 %. It holds
 /// two: a bootstrap over blocks of rows of one second, 1000 draws (Kuensch 1989), and, where there are three recordings or more, Student's
-/// prediction interval for one more value of ln(after / before), which has one value per recording, fitted or held out. It reaches 100 % where
-/// its upper end leaves no more than noise alone may.
+/// prediction interval for one more value of ln(after / before), which has one value per recording, fitted or held out. It reaches 100 %
+/// where its upper end leaves no more than noise alone may.
 Estimate shrinkInterval(const BeforeAndAfter& held_out, const BeforeAndAfter& fitted, std::uint64_t seed);
 
 /// Residual on held_out after re-tuning the model's own numbers (Plant::nominalParameters) on `fitted`, without any effect.
