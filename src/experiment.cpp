@@ -96,11 +96,14 @@ Action addExperiment(CLI::App& command, ModelOptions& model) {
   auto arguments = std::make_shared<ExperimentArguments>();
   command.add_option("--specimen", arguments->specimen, "short (60/200 mm), medium (75/300), long (60/350), all, or MIN/MAX in mm")
       ->capture_default_str();
-  command.add_option("--data", arguments->data, "Measured static points to compare with, as for fit");
-  addPointsOptions(command, arguments->points);
+  CLI::Option* data = command.add_option("--data", arguments->data, "Measured static points to compare with, as for fit");
+  addPointsOptions(command, *data, arguments->points);
   command.add_option("--out", arguments->out, "Folder for points and figures (default: log/runs/<date-time>-experiment)");
   command.add_option("--config", model.config, "TOML file with named parameters, for example a fitted muscle");
-  command.add_option("--set", model.set, "name=value: override one named parameter; may be repeated")->allow_extra_args(false);
+  command
+      .add_option("--set", model.set,
+                  "name=value: override one named parameter; may be repeated. Loads and lengths of the specimen are the experiment's own")
+      ->allow_extra_args(false);
   command.add_flag("--quiet", model.quiet, "No messages on standard error except errors");
   command.add_flag("--json", model.json, "Print the verdict as one JSON object, the last line of standard output");
   return [&model, arguments] { return experiment(model, *arguments); };

@@ -107,10 +107,11 @@ int fit(const FitArguments& arguments) {
 
 Action addFit(CLI::App& command) {
   auto arguments = std::make_shared<FitArguments>();
-  command.add_option("data", arguments->data, "Table of static points: pressure or pressure_kPa|bar|MPa, length_mm|cm|m, force_N")
-      ->required();
+  CLI::Option* data =
+      command.add_option("data", arguments->data, "Table of static points: pressure or pressure_kPa|bar|MPa, length_mm|cm|m, force_N")
+          ->required();
   command.add_option("--law", arguments->law, fmt::format("all, or one of {}", fmt::join(lawModelNames(), ", ")))->capture_default_str();
-  addPointsOptions(command, arguments->points);
+  addPointsOptions(command, *data, arguments->points);
   command
       .add_option("--rest-length", arguments->rest_length_mm, "Rest length of the measured muscle in mm (default: the longest measured)")
       ->check(CLI::Range(5.0, 1e4));

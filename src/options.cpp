@@ -85,16 +85,20 @@ std::vector<ActiveEffect> effectsFrom(const ModelOptions& options) {
   return options.effects ? readEffects(*options.effects) : std::vector<ActiveEffect>();
 }
 
-void addPointsOptions(CLI::App& command, PointsOptions& options) {
+void addPointsOptions(CLI::App& command, CLI::Option& table, PointsOptions& options) {
   command
       .add_option("--columns", options.columns,
                   "pressure=NAME,length=NAME,force=NAME: other columns; NAME:unit gives a unit (else fraction, mm, N)")
-      ->delimiter(',');
-  command.add_option("--where", options.where, "column=value: only these rows; may be repeated")->delimiter(',');
+      ->delimiter(',')
+      ->needs(&table);
+  command.add_option("--where", options.where, "column=value: only these rows; may be repeated")->delimiter(',')->needs(&table);
   command.add_option("--full-scale-kPa", options.full_scale_kPa, "Pressure of fraction 1 (default: the largest of the file)")
-      ->check(CLI::Range(1.0, 1e4));
-  command.add_option("--censored-below", options.censored_below_N,
-                     "Force in N at and below which the sensor shows nothing (default: found where the lowest force repeats)");
+      ->check(CLI::Range(1.0, 1e4))
+      ->needs(&table);
+  command
+      .add_option("--censored-below", options.censored_below_N,
+                  "Force in N at and below which the sensor shows nothing (default: found where the lowest force repeats)")
+      ->needs(&table);
 }
 
 StaticPointsOptions staticPointsOptions(const PointsOptions& options) {

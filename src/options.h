@@ -44,7 +44,8 @@ struct PointsOptions {
   std::optional<double> full_scale_kPa, censored_below_N;
 };
 
-void addPointsOptions(CLI::App& command, PointsOptions& options);
+/// They are refused without `table`, the option that names the table.
+void addPointsOptions(CLI::App& command, CLI::Option& table, PointsOptions& options);
 
 /// Throws BadParameter unless columns and rows are given as name=value.
 StaticPointsOptions staticPointsOptions(const PointsOptions& options);

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include "src/program.h"
 #include "support/support.h"
@@ -69,6 +70,35 @@ TEST_F(DiagnoseCommand, WhatIsReadIsNotWrittenOver) {
     EXPECT_TRUE(contains(result.err, "is read and would be written over")) << result.err;
   }
   EXPECT_TRUE(fs::exists(folder_ / "out" / "next.csv") && fs::exists(folder_ / "out" / "nominal.toml"));
+}
+
+/// A payload that was seen at almost one pressure alone; the recordings themselves say nothing of it.
+TEST_F(DiagnoseCommand, TheProposedScheduleCanBeReplayed) {
+  const std::string sidecar = R"({"format": "musclesim-recording-1", "robot": "rig", "robot_parameters": {"load_kg": 1.5}})";
+  std::ofstream(folder_ / "payload.json")
+      << R"({"format": "musclesim-effects-1", "effects": [{"id": "payload", "component": "hand", "parameters": {"mass_kg": 0.2}}]})";
+  for (const int number : {1, 2}) {
+    std::ofstream(folder_ / fmt::format("plan{}.json", number)) << sidecar;
+    std::ofstream plan(folder_ / fmt::format("plan{}.csv", number));
+    plan << "time_s,command_0\n";
+    for (int row = 0; row < 100; ++row) plan << fmt::format("{:.2f},{}\n", 0.01 * row, 0.29 + 0.01 * number + (row < 50 ? 0 : 0.02));
+    plan.close();
+    const std::string of_plant = fmt::format("plant{}", number);
+    ASSERT_EQ(runProgram({"replay", fmt::format("plan{}.csv", number), "--effects", "payload.json", "--set", "sensor.length_noise_mm=0.3",
+                          "--seed", std::to_string(number), "--out", of_plant + ".csv", "--quiet"},
+                         folder_)
+                  .status,
+              0);
+    std::ofstream(folder_ / (of_plant + ".json")) << sidecar;
+  }
+  const ProgramResult result = diagnose(
+      {"plant1.csv", "plant2.csv", "--candidates", "payload", "force_gain", "--ignore-columns", "force_0_N,pressure_0", "--out", "out"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_TRUE(contains(result.out, "record next.csv")) << result.out;
+  EXPECT_EQ(runProgram({"replay", "out/next.csv", "--quiet", "--out", "predicted.csv"}, folder_).status, 0);
+  std::stringstream of_prediction;
+  of_prediction << std::ifstream(folder_ / "predicted.json").rdbuf();
+  EXPECT_TRUE(contains(of_prediction.str(), R"("load_kg": 1.5)")) << of_prediction.str();
 }
 
 TEST_F(DiagnoseCommand, WrongOptionsAreUsageErrors) {

@@ -42,6 +42,12 @@ TEST(ExperimentCommand, UnknownSpecimensAreRefused) {
   }
 }
 
+TEST(ExperimentCommand, OptionsOfMeasuredPointsNeedThem) {
+  const ProgramResult result = runProgram({"experiment", "--specimen", "60/200", "--columns", "force=load"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("--columns requires --data"), std::string::npos) << result.err;
+}
+
 TEST(ExperimentCommand, LineMusclesHaveNoPlaceInTheFrame) {
   const ProgramResult result = runProgram({"experiment", "--specimen", "60/200", "--set", "muscle.model=line"});
   EXPECT_EQ(result.status, 2);
