@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <numeric>
+#include <optional>
 #include <set>
 
 #include "parallel.h"
@@ -14,17 +14,14 @@ namespace musclesim {
 
 namespace {
 
-constexpr std::size_t many_suspects = 200;   ///< with more, most are looked at on the first stretch of the look only
-constexpr std::size_t nearest_count = 80;    ///< suspects that are looked at on all of it then
-constexpr std::size_t per_effect_count = 3;  ///< and at least so many of every effect
-constexpr std::size_t single_count = 14;     ///< suspects that are fitted
-constexpr std::size_t component_count = 8;   ///< suspects on the component of the best that are fitted
-constexpr std::size_t pair_count = 6;        ///< further effects that are fitted beside the best
-constexpr std::size_t base_count = 3;        ///< explanations beside which further effects are looked for
-constexpr std::size_t fewer_pairs = 3;       ///< further effects that are fitted beside the second and third of them
-constexpr double likely_share = 0.1;         ///< of the best one's probability, that those have at least
-constexpr double least_hope = -1;            ///< ln of the odds of one more effect that leaves nothing; below, none is looked for
-constexpr int few_effects = 2;               ///< up to that many, the first look serves for all of them
+constexpr std::size_t single_count = 14;    ///< suspects that are fitted
+constexpr std::size_t component_count = 8;  ///< suspects on the component of the best that are fitted
+constexpr std::size_t pair_count = 6;       ///< further effects that are fitted beside the best
+constexpr std::size_t base_count = 3;       ///< explanations beside which further effects are looked for
+constexpr std::size_t fewer_pairs = 3;      ///< further effects that are fitted beside the second and third of them
+constexpr double likely_share = 0.1;        ///< of the best one's probability, that those have at least
+constexpr double least_hope = -1;           ///< ln of the odds of one more effect that leaves nothing; below, none is looked for
+constexpr int few_effects = 2;              ///< up to that many, the first look serves for all of them
 constexpr int first_rounds = 2, last_rounds = 2;
 constexpr int many_rounds = 12;  ///< in place of the last rounds where many effects act together
 constexpr Reach single_reach = {{0.8, 0.5}, {0.4, 0.15}}, pair_reach = {{0.25, 0}, {0.1, 0}};
@@ -37,121 +34,6 @@ Attributor::Attributor(const Plant& plant, const DiagnosisOptions& options, OnSi
       on_simulation_(std::move(on_simulation)),
       look_(plant, plant.lookStretches(), Comparison::Averages::with),
       fit_(plant, plant.split().fit, Comparison::Averages::with) {}
-
-Comparison Attributor::firstOfLook() const {
-  Comparison result(plant_, {look_.stretches().front()}, Comparison::Averages::with);
-  result.goCoarse(result.predicted(Model{}), Comparison::Purpose::looking);
-  return result;
-}
-
-/// Of variants without any strength (numbers of bits), those of one component that leave least on the first stretch of the look: simulating
-/// all of them on all of it would take as long as everything else.
-void Attributor::keepNearestVariants() {
-  constexpr std::size_t kept = 2;
-  const Comparison brief = firstOfLook();
-  std::vector<Suspect>& all = result_.suspects;
-  std::map<std::string, std::vector<std::size_t>> variants;
-  for (std::size_t i = 0; i < all.size(); ++i)
-    if (all[i].coordinateCount() == 0) variants[all[i].label()].push_back(i);
-  std::vector<double> log_misfit(all.size(), 0);
-  std::vector<std::size_t> tried;
-  for (const auto& [label, members] : variants)
-    if (members.size() > kept) tried.insert(tried.end(), members.begin(), members.end());
-  parallelFor(static_cast<int>(tried.size()), options_.job_count, [&](int i) {
-    const std::size_t index = tried[static_cast<std::size_t>(i)];
-    if (plant_.interrupted()) return;
-    const Eigen::VectorXd predicted = brief.predicted(Model{{all[index].at({})}, {}});
-    log_misfit[index] = predicted.size() ? brief.logMisfit(brief.measured() - predicted) : std::numeric_limits<double>::infinity();
-    on_simulation_();
-  });
-  std::set<std::size_t> dropped;
-  for (auto& [label, members] : variants) {
-    std::ranges::stable_sort(members, {}, [&](std::size_t i) { return log_misfit[i]; });
-    if (members.size() <= kept) continue;
-    dropped.insert(members.begin() + static_cast<std::ptrdiff_t>(kept), members.end());
-    result_.thinned.insert(label);
-  }
-  std::vector<Suspect> rest;
-  for (std::size_t i = 0; i < all.size(); ++i)
-    if (!dropped.contains(i)) rest.push_back(std::move(all[i]));
-  all = std::move(rest);
-}
-
-/// The suspects that are looked at on all of the look. Where there are many - ten muscles have ten of most kinds - those that explain most
-/// of its first stretch, and some of every effect. That does not depend on what may be an answer: nor does where the gap lies.
-std::vector<std::size_t> Attributor::worthLookingAt() const {
-  const std::vector<Suspect>& all = result_.suspects;
-  std::vector<std::size_t> order(all.size());
-  std::iota(order.begin(), order.end(), 0);
-  if (all.size() <= many_suspects || look_.stretches().size() < 2) return order;
-  const Comparison brief = firstOfLook();
-  std::vector<Suspect> suspects = all;
-  const std::vector<Signature> looks =
-      screen(brief, suspects, brief.predicted(Model{}), Model{}, Strengths::adapted, options_.job_count, on_simulation_);
-  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return looks[i].log_misfit; });
-  std::map<std::string, std::size_t> per_effect;
-  std::vector<std::size_t> chosen;
-  for (std::size_t rank = 0; rank < order.size(); ++rank) {
-    const bool among_first_of_effect = per_effect[all[order[rank]].info().id]++ < per_effect_count;
-    if (rank < nearest_count || among_first_of_effect) chosen.push_back(order[rank]);
-  }
-  std::ranges::sort(chosen);
-  return chosen;
-}
-
-void Attributor::lookAtSuspects(const Eigen::VectorXd& nominal) {
-  const std::vector<std::size_t> chosen = worthLookingAt();
-  std::vector<Suspect> suspects;
-  for (const std::size_t i : chosen) suspects.push_back(result_.suspects[i]);
-  std::vector<Signature> looks = screen(look_, suspects, nominal, Model{}, Strengths::adapted, options_.job_count, on_simulation_);
-  for (const Suspect& suspect : result_.suspects) {
-    Signature unknown;
-    unknown.per_strength.resize(std::max<std::size_t>(1, suspect.strengths().size()));
-    explain(look_, suspect, look_residual_, unknown);
-    result_.signatures.push_back(std::move(unknown));
-  }
-  for (std::size_t k = 0; k < chosen.size(); ++k) {
-    result_.suspects[chosen[k]] = std::move(suspects[k]);
-    result_.signatures[chosen[k]] = std::move(looks[k]);
-  }
-  result_.looked_at_count = chosen.size();
-}
-
-/// What shows nothing in the stretches of the look may show in the rest of the recordings.
-void Attributor::lookForExcitation(const std::vector<Suspect>& typical) {
-  const std::vector<Stretch>&looked = look_.stretches(), &fitted = fit_.stretches();
-  const bool is_all = looked.size() == fitted.size() && std::ranges::equal(looked, fitted, {}, &Stretch::end_row, &Stretch::end_row);
-  if (is_all) return;
-  const Eigen::VectorXd nominal = fit_.measured() - nominal_residual_;
-  std::vector<std::size_t> hidden;
-  for (std::size_t i = 0; i < typical.size(); ++i)
-    if (result_.allowed[i] && result_.signatures[i].excitation_ratio.value_or(1) < 1) hidden.push_back(i);
-  parallelFor(static_cast<int>(hidden.size()), options_.job_count, [&](int i) {
-    const std::size_t index = hidden[static_cast<std::size_t>(i)];
-    if (plant_.interrupted()) return;
-    const Suspect& suspect = typical[index];
-    const Eigen::VectorXd predicted = fit_.predicted(Model{{suspect.at(suspect.typical())}, {}});
-    if (predicted.size() == nominal.size() && predicted.allFinite())
-      result_.signatures[index].excitation_ratio = excitationOf(fit_, {predicted - nominal});
-    on_simulation_();
-  });
-}
-
-void Attributor::look() {
-  const Eigen::VectorXd nominal = look_.predicted(Model{});
-  if (!nominal.size()) throw Diverged(0, plant_.robot(), "the model without further effects cannot follow the recordings");
-  look_residual_ = look_.measured() - nominal;
-  const Eigen::VectorXd everywhere = fit_.predicted(Model{});
-  nominal_residual_ = fit_.measured() - everywhere;
-  look_.goCoarse(nominal, Comparison::Purpose::looking);
-  fit_.goCoarse(everywhere);
-  result_.suspects = suspects(plant_, DiagnosisOptions{});
-  keepNearestVariants();
-  for (const Suspect& suspect : result_.suspects) result_.allowed.push_back(allows(options_, suspect.info().id));
-  const std::vector<Suspect> typical = result_.suspects;
-  lookAtSuspects(nominal);
-  lookForExcitation(typical);
-}
 
 Model Attributor::modelOf(const Explanation& explanation) const {
   Model model;
@@ -283,6 +165,24 @@ bool Attributor::mayBeBelieved(const Explanation& explanation) const {
   return explanation.residual.size() == fit_.size() && odds().ofExplanation(explanation) > best - far_behind;
 }
 
+/// Of candidates with the same effects the one with the least misfit, where further coordinates must be worth their while.
+void Attributor::keepBetterOfSame(std::vector<Candidate>& candidates) const {
+  constexpr double worth_a_coordinate = 0.05;  // log misfit per affected cell
+  auto costOf = [&](const Explanation& explanation) {
+    return explanation.log_misfit + worth_a_coordinate * static_cast<double>(explanation.z.size());
+  };
+  std::vector<Candidate> kept;
+  for (Candidate& candidate : candidates) {
+    const auto same =
+        std::ranges::find_if(kept, [&](const Candidate& other) { return sameEffects(other.explanation, candidate.explanation); });
+    if (same == kept.end())
+      kept.push_back(std::move(candidate));
+    else if (costOf(candidate.explanation) < costOf(same->explanation))
+      *same = std::move(candidate);
+  }
+  candidates = std::move(kept);
+}
+
 /// In three rounds, each for those that the round before left within reach of the best: a few steps on the look, more steps, all recordings
 /// in fine steps (coarse ones blur what lasts some milliseconds). Those out of reach keep what they had, with their misfit on all
 /// recordings.
@@ -306,6 +206,7 @@ void Attributor::fitTogether(std::vector<Candidate> candidates, Reach reach) {
   forEach([&, within = limit(reach.on_look)](
               const Candidate& candidate) { return candidate.explanation.log_misfit <= within && gainsOnLook(candidate); },
           [&](Candidate& candidate) { refit(candidate.explanation, look_, more_rounds, Fidelity::coarse); });
+  keepBetterOfSame(candidates);
   forEach(all, [&](Candidate& candidate) { refit(candidate.explanation, fit_, 0, Fidelity::coarse); });
   forEach([&, within = limit(reach.on_all)](
               const Candidate& candidate) { return candidate.explanation.log_misfit <= within && mayBeBelieved(candidate.explanation); },
@@ -340,10 +241,25 @@ void Attributor::fitSingles() {
   fitAlone(survivors(log_misfit, single_count, true));
 }
 
+/// The chosen suspects, each with the variant of it that is next best on the first look.
+std::vector<std::size_t> Attributor::withSecondVariants(const std::vector<std::size_t>& chosen) const {
+  std::vector<std::size_t> result;
+  for (const std::size_t index : chosen) {
+    result.push_back(index);
+    std::optional<std::size_t> second;
+    for (std::size_t i = 0; i < result_.suspects.size(); ++i)
+      if (i != index && result_.suspects[i].label() == result_.suspects[index].label() && std::isfinite(result_.signatures[i].log_misfit) &&
+          (!second || result_.signatures[i].log_misfit < result_.signatures[*second].log_misfit))
+        second = i;
+    if (second) result.push_back(*second);
+  }
+  return result;
+}
+
 void Attributor::fitAlone(const std::vector<std::size_t>& chosen) {
   const double without = look_.logMisfit(look_residual_);
   std::vector<Candidate> candidates;
-  for (const std::size_t index : chosen)
+  for (const std::size_t index : withSecondVariants(chosen))
     candidates.push_back({{{index}, startOf(index, result_.signatures[index]), {}, {}, 0, 0}, without});
   fitTogether(std::move(candidates), single_reach);
 }
@@ -397,7 +313,9 @@ bool Attributor::fitFurther(std::size_t count) {
   for (const Explanation& base : bases) {
     const std::size_t most = &base == &bases.front() ? pair_count : fewer_pairs;
     for (Candidate& candidate : candidatesBeside(base, most)) {
-      const auto same = [&](const Candidate& other) { return sameEffects(other.explanation, candidate.explanation); };
+      const auto same = [&](const Candidate& other) {
+        return std::ranges::is_permutation(other.explanation.suspects, candidate.explanation.suspects);
+      };
       if (std::ranges::none_of(candidates, same)) candidates.push_back(std::move(candidate));
     }
   }
@@ -435,7 +353,7 @@ std::vector<Attributor::Candidate> Attributor::candidatesBeside(const Explanatio
     log_misfit.push_back(same ? std::numeric_limits<double>::infinity() : signatures[s].log_misfit);
   }
   std::vector<Candidate> candidates;
-  for (const std::size_t index : survivors(log_misfit, most, false)) {
+  for (const std::size_t index : withSecondVariants(survivors(log_misfit, most, false))) {
     const Eigen::VectorXd further = startOf(index, signatures[index]);
     Explanation explanation{base.suspects, Eigen::VectorXd(base.z.size() + further.size()), {}, {}, 0, 0, base.tuning};
     explanation.suspects.push_back(index);

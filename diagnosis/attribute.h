@@ -58,6 +58,8 @@ class Attributor {
     double without;  ///< misfit on the look without its last suspect
   };
 
+  void keepBetterOfSame(std::vector<Candidate>& candidates) const;
+  std::vector<std::size_t> withSecondVariants(const std::vector<std::size_t>& chosen) const;
   Eigen::VectorXd clampedAll(const std::vector<std::size_t>& members, const Eigen::VectorXd& z) const;
   FitProblem problemOf(const Explanation& explanation, const Comparison& comparison, Fidelity fidelity) const;
   void refit(Explanation& explanation, const Comparison& comparison, int rounds, Fidelity fidelity) const;

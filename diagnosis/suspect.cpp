@@ -269,10 +269,22 @@ std::vector<Suspect> Suspect::smallAndLarge() const {
   return result;
 }
 
+/// A share that may be none, of a second lag, of a filter, of friction that goes with the pressure: the simpler law is fitted by itself,
+/// for the share leads fits away from where it would be best.
+std::vector<Suspect> Suspect::withAndWithoutShares() const {
+  Suspect without = *this;
+  for (int i = coordinateCount() - 1; i >= 0; --i) {
+    const Coordinate& c = coordinates_[static_cast<std::size_t>(i)];
+    const EffectParameter& p = info_.parameters[c.parameter];
+    if (c.scale == Scale::shift && p.minimum == p.neutral && p.usual_low == p.neutral) without.leaveOut(i);
+  }
+  return without.coordinateCount() < coordinateCount() ? std::vector{*this, std::move(without)} : std::vector{*this};
+}
+
 std::vector<Suspect> Suspect::variants(const Plant& plant) const {
   if (info_.id == "command_quantisation") return numbersOfBits();
   if (info_.id == "leak") return smallAndLarge();
-  if (info_.id != "contact") return {*this};
+  if (info_.id != "contact") return withAndWithoutShares();
   std::vector<Suspect> result;
   auto add = [&](const std::string& plane, double at, const std::string& side, int axis) {
     Suspect variant = *this;

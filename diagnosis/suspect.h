@@ -31,7 +31,7 @@ class Suspect {
   bool isSigned(int coordinate) const;
   /// From here on z = 1 is the strength that `z` stood for; of the other sign where that is negative.
   void rescale(int coordinate, double z);
-  /// From here on a strength stays neutral and is no coordinate; those after it count one less.
+  /// From here on a coordinate stays neutral and is none; those after it count one less.
   void leaveOut(int coordinate);
   /// Whether it is a time.
   bool isTime(int coordinate) const;
@@ -50,7 +50,7 @@ class Suspect {
   /// All strengths 1, all shapes usual.
   Eigen::VectorXd typical() const;
   /// The suspect once for each choice that no fit can reach from another one: a wall on either side of each axis, a
-  /// number of bits.
+  /// number of bits, a law with a share of something and without.
   std::vector<Suspect> variants(const Plant& plant) const;
 
  private:
@@ -68,6 +68,7 @@ class Suspect {
   void countHeld(const Plant& plant);
   std::vector<Suspect> numbersOfBits() const;
   std::vector<Suspect> smallAndLarge() const;
+  std::vector<Suspect> withAndWithoutShares() const;
 
   EffectInfo info_;
   std::string component_;

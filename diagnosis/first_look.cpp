@@ -1,0 +1,138 @@
+// How every suspect would show, from one simulation or a few of each: what is fitted is chosen by that.
+#include <Eigen/Dense>
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "attribute.h"
+#include "musclesim/error.h"
+#include "parallel.h"
+
+namespace musclesim {
+
+namespace {
+
+constexpr std::size_t many_suspects = 240;   ///< with more, most are looked at on the first stretch of the look only
+constexpr std::size_t nearest_count = 80;    ///< suspects that are looked at on all of it then
+constexpr std::size_t per_effect_count = 3;  ///< and at least so many of every effect
+
+}  // namespace
+
+Comparison Attributor::firstOfLook() const {
+  Comparison result(plant_, {look_.stretches().front()}, Comparison::Averages::with);
+  result.goCoarse(result.predicted(Model{}), Comparison::Purpose::looking);
+  return result;
+}
+
+/// Of variants without any strength (numbers of bits), those of one component that leave least on the first stretch of the look: simulating
+/// all of them on all of it would take as long as everything else.
+void Attributor::keepNearestVariants() {
+  constexpr std::size_t kept = 2;
+  const Comparison brief = firstOfLook();
+  std::vector<Suspect>& all = result_.suspects;
+  std::map<std::string, std::vector<std::size_t>> variants;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i].coordinateCount() == 0) variants[all[i].label()].push_back(i);
+  std::vector<double> log_misfit(all.size(), 0);
+  std::vector<std::size_t> tried;
+  for (const auto& [label, members] : variants)
+    if (members.size() > kept) tried.insert(tried.end(), members.begin(), members.end());
+  parallelFor(static_cast<int>(tried.size()), options_.job_count, [&](int i) {
+    const std::size_t index = tried[static_cast<std::size_t>(i)];
+    if (plant_.interrupted()) return;
+    const Eigen::VectorXd predicted = brief.predicted(Model{{all[index].at({})}, {}});
+    log_misfit[index] = predicted.size() ? brief.logMisfit(brief.measured() - predicted) : std::numeric_limits<double>::infinity();
+    on_simulation_();
+  });
+  std::set<std::size_t> dropped;
+  for (auto& [label, members] : variants) {
+    std::ranges::stable_sort(members, {}, [&](std::size_t i) { return log_misfit[i]; });
+    if (members.size() <= kept) continue;
+    dropped.insert(members.begin() + static_cast<std::ptrdiff_t>(kept), members.end());
+    result_.thinned.insert(label);
+  }
+  std::vector<Suspect> rest;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (!dropped.contains(i)) rest.push_back(std::move(all[i]));
+  all = std::move(rest);
+}
+
+/// The suspects that are looked at on all of the look. Where there are many - ten muscles have ten of most kinds - those that explain most
+/// of its first stretch, and some of every effect. That does not depend on what may be an answer: nor does where the gap lies.
+std::vector<std::size_t> Attributor::worthLookingAt() const {
+  const std::vector<Suspect>& all = result_.suspects;
+  std::vector<std::size_t> order(all.size());
+  std::iota(order.begin(), order.end(), 0);
+  if (all.size() <= many_suspects || look_.stretches().size() < 2) return order;
+  const Comparison brief = firstOfLook();
+  std::vector<Suspect> suspects = all;
+  const std::vector<Signature> looks =
+      screen(brief, suspects, brief.predicted(Model{}), Model{}, Strengths::adapted, options_.job_count, on_simulation_);
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return looks[i].log_misfit; });
+  std::map<std::string, std::size_t> per_effect;
+  std::vector<std::size_t> chosen;
+  for (std::size_t rank = 0; rank < order.size(); ++rank) {
+    const bool among_first_of_effect = per_effect[all[order[rank]].info().id]++ < per_effect_count;
+    if (rank < nearest_count || among_first_of_effect) chosen.push_back(order[rank]);
+  }
+  std::ranges::sort(chosen);
+  return chosen;
+}
+
+void Attributor::lookAtSuspects(const Eigen::VectorXd& nominal) {
+  const std::vector<std::size_t> chosen = worthLookingAt();
+  std::vector<Suspect> suspects;
+  for (const std::size_t i : chosen) suspects.push_back(result_.suspects[i]);
+  std::vector<Signature> looks = screen(look_, suspects, nominal, Model{}, Strengths::adapted, options_.job_count, on_simulation_);
+  for (const Suspect& suspect : result_.suspects) {
+    Signature unknown;
+    unknown.per_strength.resize(std::max<std::size_t>(1, suspect.strengths().size()));
+    explain(look_, suspect, look_residual_, unknown);
+    result_.signatures.push_back(std::move(unknown));
+  }
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    result_.suspects[chosen[k]] = std::move(suspects[k]);
+    result_.signatures[chosen[k]] = std::move(looks[k]);
+  }
+  result_.looked_at_count = chosen.size();
+}
+
+/// What shows nothing in the stretches of the look may show in the rest of the recordings.
+void Attributor::lookForExcitation(const std::vector<Suspect>& typical) {
+  const std::vector<Stretch>&looked = look_.stretches(), &fitted = fit_.stretches();
+  const bool is_all = looked.size() == fitted.size() && std::ranges::equal(looked, fitted, {}, &Stretch::end_row, &Stretch::end_row);
+  if (is_all) return;
+  const Eigen::VectorXd nominal = fit_.measured() - nominal_residual_;
+  std::vector<std::size_t> hidden;
+  for (std::size_t i = 0; i < typical.size(); ++i)
+    if (result_.allowed[i] && result_.signatures[i].excitation_ratio.value_or(1) < 1) hidden.push_back(i);
+  parallelFor(static_cast<int>(hidden.size()), options_.job_count, [&](int i) {
+    const std::size_t index = hidden[static_cast<std::size_t>(i)];
+    if (plant_.interrupted()) return;
+    const Suspect& suspect = typical[index];
+    const Eigen::VectorXd predicted = fit_.predicted(Model{{suspect.at(suspect.typical())}, {}});
+    if (predicted.size() == nominal.size() && predicted.allFinite())
+      result_.signatures[index].excitation_ratio = excitationOf(fit_, {predicted - nominal});
+    on_simulation_();
+  });
+}
+
+void Attributor::look() {
+  const Eigen::VectorXd nominal = look_.predicted(Model{});
+  if (!nominal.size()) throw Diverged(0, plant_.robot(), "the model without further effects cannot follow the recordings");
+  look_residual_ = look_.measured() - nominal;
+  const Eigen::VectorXd everywhere = fit_.predicted(Model{});
+  nominal_residual_ = fit_.measured() - everywhere;
+  look_.goCoarse(nominal, Comparison::Purpose::looking);
+  fit_.goCoarse(everywhere);
+  result_.suspects = suspects(plant_, DiagnosisOptions{});
+  keepNearestVariants();
+  for (const Suspect& suspect : result_.suspects) result_.allowed.push_back(allows(options_, suspect.info().id));
+  const std::vector<Suspect> typical = result_.suspects;
+  lookAtSuspects(nominal);
+  lookForExcitation(typical);
+}
+
+}  // namespace musclesim
