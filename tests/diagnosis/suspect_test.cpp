@@ -51,6 +51,18 @@ TEST_F(PlantedRig, BoundsAreThoseOfTheUsualRange) {
   }
 }
 
+TEST_F(PlantedRig, ALawWithAShareOfSomethingHasAVariantWithout) {
+  const std::vector<Suspect> lags = suspect("valve_lag", "muscle_0").variants(plant_);
+  ASSERT_EQ(lags.size(), 2);
+  EXPECT_EQ(lags[0].coordinateCount(), 3);
+  EXPECT_EQ(lags[1].coordinateCount(), 2);
+  EXPECT_EQ(lags[0].label(), lags[1].label());
+  EXPECT_EQ(lags[1].strengths(), (std::vector<int>{0, 1}));
+  const ActiveEffect simple = lags[1].at(lags[1].typical());
+  EXPECT_EQ(std::get<double>(simple.parameters.at("second_lag_share")), 0);
+  EXPECT_EQ(suspect("payload", "hand").variants(plant_).size(), 1);
+}
+
 TEST_F(PlantedRig, HeldSamplesAreCountedNotFitted) {
   std::vector<Recording> recordings = planted::plant({});
   for (Recording& recording : recordings) {
