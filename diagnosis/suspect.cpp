@@ -281,8 +281,36 @@ std::vector<Suspect> Suspect::withAndWithoutShares() const {
   return without.coordinateCount() < coordinateCount() ? std::vector{*this, std::move(without)} : std::vector{*this};
 }
 
+/// A muscle's start and its end, where the robot has both.
+std::vector<Suspect> Suspect::ends(const Plant& plant) const {
+  std::vector<Suspect> result;
+  for (const MuscleEnd end : {MuscleEnd::start, MuscleEnd::end}) {
+    const int muscle = component_ == "all" ? 0 : std::stoi(component_.substr(std::string("muscle_").size()));
+    if (!plant.model().robot().asksForOffset(muscle, end)) continue;
+    result.push_back(*this);
+    for (std::size_t i = 0; i < info_.parameters.size(); ++i)
+      if (info_.parameters[i].name == "attachment") result.back().base_[i] = end == MuscleEnd::start ? 0 : 1;
+  }
+  return result;
+}
+
+/// All strengths together, and each by itself: about an axis that lies in the plane of motion a tilt acts by its square, which no small step
+/// shows, and beside another strength it is not looked for farther.
+std::vector<Suspect> Suspect::togetherAndAlone() const {
+  std::vector<Suspect> result = {*this};
+  for (int kept = 0; kept < coordinateCount(); ++kept) {
+    Suspect alone = *this;
+    for (int i = coordinateCount() - 1; i >= 0; --i)
+      if (i != kept) alone.leaveOut(i);
+    result.push_back(std::move(alone));
+  }
+  return result;
+}
+
 std::vector<Suspect> Suspect::variants(const Plant& plant) const {
   if (info_.id == "command_quantisation") return numbersOfBits();
+  if (info_.id == "attachment_offset") return ends(plant);
+  if (info_.id == "base_tilt") return togetherAndAlone();
   if (info_.id == "leak") return smallAndLarge();
   if (info_.id != "contact") return withAndWithoutShares();
   std::vector<Suspect> result;

@@ -50,7 +50,7 @@ class Suspect {
   /// All strengths 1, all shapes usual.
   Eigen::VectorXd typical() const;
   /// The suspect once for each choice that no fit can reach from another one: a wall on either side of each axis, a
-  /// number of bits, a law with a share of something and without.
+  /// number of bits, either end of a muscle, a law with a share of something and without.
   std::vector<Suspect> variants(const Plant& plant) const;
 
  private:
@@ -69,6 +69,8 @@ class Suspect {
   std::vector<Suspect> numbersOfBits() const;
   std::vector<Suspect> smallAndLarge() const;
   std::vector<Suspect> withAndWithoutShares() const;
+  std::vector<Suspect> ends(const Plant& plant) const;
+  std::vector<Suspect> togetherAndAlone() const;
 
   EffectInfo info_;
   std::string component_;

@@ -208,12 +208,12 @@ bool EffectChain::has(const std::string& id) const {
   return std::any_of(planned_.begin(), planned_.end(), [&](const Planned& planned) { return planned.info.id == id; });
 }
 
-Vector EffectChain::startOffsetMm(int muscle, const Vector& lever) const {
+Vector EffectChain::mountOffsetMm(int muscle, MuscleEnd end, const Vector& lever) const {
   Vector sum = Vector::Zero();
   const Vector up = Vector::UnitY() - lever.y() * lever;
   for (const Planned& planned : planned_) {
-    if (!planned.info.start_offset_mm || (planned.component != "all" && planned.component != fmt::format("muscle_{}", muscle))) continue;
-    const Eigen::Vector2d offset_mm = planned.info.start_offset_mm(EffectValues(planned.info.parameters, planned.values));
+    if (!planned.info.mount_offset_mm || (planned.component != "all" && planned.component != fmt::format("muscle_{}", muscle))) continue;
+    const Eigen::Vector2d offset_mm = planned.info.mount_offset_mm(EffectValues(planned.info.parameters, planned.values), end);
     sum += offset_mm.x() * lever + offset_mm.y() * up.stableNormalized();
   }
   return sum;

@@ -21,8 +21,9 @@ Elbow::Elbow(Simulation& simulation) : Robot(simulation) {
   const double maximum_mm = parameter("elbow.maximum_length_mm", 320, "mm", 15, 1e4, "both muscles: longest length");
   const double stop_deg = parameter("elbow.stop_deg", 70, "deg", 0, 170, "joint stops at minus and plus this angle");
   const double hand_mm = parameter("elbow.hand_mm", 250, "mm", 0, 1e4, "distance of the hand from the hinge");
-  lever_mm_ = parameter("elbow.lever_mm", 35, "mm", 0, 1e3, "distance of the attachments from the middle plane");
-  lower_mm_ = parameter("elbow.lower_attachment_mm", -20, "mm", -1e3, 1e3, "height of the attachments on the forearm at angle 0");
+  const double lever_mm = parameter("elbow.lever_mm", 35, "mm", 0, 1e3, "distance of the attachments from the middle plane");
+  const double lower_mm =
+      parameter("elbow.lower_attachment_mm", -20, "mm", -1e3, 1e3, "height of the attachments on the forearm at angle 0");
   const double upper_mm = parameter("elbow.upper_attachment_mm", 240, "mm", 1, 1e4, "height of the attachments in the world");
 
   constexpr double drawn_radius_mm = 12;
@@ -39,8 +40,8 @@ Elbow::Elbow(Simulation& simulation) : Robot(simulation) {
   addAngle("elbow", hinge_);
   for (int i = 0; i < 2; ++i) {
     const double side = i == 0 ? 1 : -1;
-    const Vector bottom = lowerAttachment(side, 0);
-    const Vector& top = upper_mm_[i] = mountedStart({side * lever_mm_, upper_mm, 0}, {side, 0, 0});
+    const Vector& bottom = lower_mm_[i] = mountedEnd({side * lever_mm, lower_mm, 0}, {side, 0, 0});
+    const Vector& top = upper_mm_[i] = mountedStart({side * lever_mm, upper_mm, 0}, {side, 0, 0});
     muscles_[i] = new Muscle(world(), space(), top, top + (bottom - top) / 3, top + (bottom - top) * 2 / 3, bottom, minimum_mm, maximum_mm);
     muscles_[i]->connectStartTo(nullptr);
     muscles_[i]->connectEndTo(forearm_);
@@ -50,8 +51,8 @@ Elbow::Elbow(Simulation& simulation) : Robot(simulation) {
   setHand(forearm_, forearm_->getRotation().transpose() * (hand - forearm_->getPosition()));
 }
 
-Vector Elbow::lowerAttachment(double side, double angle_rad) const {
-  return Eigen::AngleAxisd(angle_rad, Vector::UnitZ()) * Vector(side * lever_mm_, lower_mm_, 0);
+Vector Elbow::lowerAttachment(int muscle, double angle_rad) const {
+  return Eigen::AngleAxisd(angle_rad, Vector::UnitZ()) * lower_mm_[muscle];
 }
 
 /// Turns the forearm to an angle about the hinge.
@@ -71,8 +72,7 @@ double Elbow::torqueNmm(double angle_rad) {
   const BodyLoad load = effects.restingLoad(*forearm_);
   double torque = (forearm_->getPosition().cross(forearm.mass * gravity + load.force_N) + load.torque_Nmm).z();
   for (int i = 0; i < 2; ++i) {
-    const double side = i == 0 ? 1 : -1;
-    const Vector lower = lowerAttachment(side, angle_rad);
+    const Vector lower = lowerAttachment(i, angle_rad);
     const Vector along = upper_mm_[i] - lower;
     const Vector pull = effects.restingTensionN(i, along.norm()) * along.normalized();
     const Vector half_weight = muscles_[i]->massG() / 2 * gravity;
@@ -86,10 +86,7 @@ void Elbow::settle(const Action& first_command) {
   const double low_rad = dJointGetHingeParam(hinge_->id(), dParamLoStop), high_rad = dJointGetHingeParam(hinge_->id(), dParamHiStop);
   const double angle = restFrom([&](double q) { return -torqueNmm(q); }, 0, low_rad, high_rad);
   placeForearm(angle);
-  for (int i = 0; i < 2; ++i) {
-    const double side = i == 0 ? 1 : -1;
-    muscles_[i]->placeStraight(upper_mm_[i], lowerAttachment(side, angle));
-  }
+  for (int i = 0; i < 2; ++i) muscles_[i]->placeStraight(upper_mm_[i], lowerAttachment(i, angle));
 }
 
 }  // namespace musclesim

@@ -111,10 +111,10 @@ void Robot::loadHand(double mass_g) {
   hand_offset_mm_ = hand_->getRotation().transpose() * (point - hand_->getPosition());
 }
 
-Vector Robot::mountedStart(const Vector& start_mm, const Vector& lever) {
+Vector Robot::mounted(MuscleEnd end, const Vector& place_mm, const Vector& lever) {
   const int muscle = actuatorCount();
-  offset_muscles_.insert(muscle);
-  return start_mm + simulation_.effects().startOffsetMm(muscle, lever.normalized());
+  mounted_ends_.insert({muscle, end});
+  return place_mm + simulation_.effects().mountOffsetMm(muscle, end, lever.normalized());
 }
 
 Vector Robot::handMm() const {

@@ -104,7 +104,8 @@ RoboticArm::RoboticArm(Simulation& simulation) : Robot(simulation) {
   for (int i = 0; i < muscle_count; ++i) {
     const auto& row = robotic_arm::muscles()[static_cast<std::size_t>(i)];
     auto* muscle = new Muscle(world(), space(), mountedStart(toVector(row.start_mm), leverOf(row)), toVector(row.start_control_mm),
-                              toVector(row.end_control_mm), toVector(row.end_mm), row.minimum_length_mm, row.maximum_length_mm);
+                              toVector(row.end_control_mm), mountedEnd(toVector(row.end_mm), leverOf(row)), row.minimum_length_mm,
+                              row.maximum_length_mm);
     muscle->connectStartTo(find(bones, row.connect_start_to));
     muscle->connectEndTo(find(bones, row.connect_end_to));
     muscle->setColor(row.cap_rgb[0], row.cap_rgb[1], row.cap_rgb[2], row.color_name);

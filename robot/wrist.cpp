@@ -44,7 +44,8 @@ void Wrist::buildMuscle(int i) {
   const double rest_mm = parameter(fmt::format("wrist.rest_length_{}_mm", i), 215, "mm", 20, 1e4,
                                    fmt::format("muscle {}: length at which it matches the force law's rest length", i));
   const double side = i == 0 ? 1 : -1;
-  const Vector bottom = leverEnd(i, 0);
+  const Vector& bottom = lower_mm_[i] =
+      mountedEnd(Eigen::AngleAxisd(-middle_rad_, Vector::UnitZ()) * Vector(side * lever_mm_, 0, 0), {side, 0, 0});
   const Vector& top = upper_mm_[i] = mountedStart({side * lever_mm_, length_mm, 0}, {side, 0, 0});
   muscles_[i] = new Muscle(world(), space(), top, top + (bottom - top) / 3, top + (bottom - top) * 2 / 3, bottom, minimum_mm, maximum_mm);
   muscles_[i]->setForceLaw(makeForceLaw(simulation().parameters(), minimum_mm, rest_mm));
@@ -54,8 +55,7 @@ void Wrist::buildMuscle(int i) {
 }
 
 Vector Wrist::leverEnd(int muscle, double angle_rad) const {
-  const double side = muscle == 0 ? 1 : -1;
-  return Eigen::AngleAxisd(angle_rad - middle_rad_, Vector::UnitZ()) * Vector(side * lever_mm_, 0, 0);
+  return Eigen::AngleAxisd(angle_rad, Vector::UnitZ()) * lower_mm_[muscle];
 }
 
 void Wrist::placeHand(double angle_rad) {

@@ -5,25 +5,40 @@
 
 namespace musclesim {
 
+namespace {
+
+MuscleEnd endOf(const EffectValues& values) {
+  return values["attachment"] == 0 ? MuscleEnd::start : MuscleEnd::end;
+}
+
+}  // namespace
+
 EffectInfo AttachmentOffset::info() {
   return {.id = "attachment_offset",
           .stage = Stage::body,
           .acts_on = {ComponentKind::muscle},
-          .summary = "a muscle starts beside the place where the model has it",
-          .equation = "start' = start + d e + r v    d = offset_mm, e along the lever arm, away from the joint, r = rise_mm, v upward",
+          .summary = "a muscle is attached beside the place where the model has it",
+          .equation =
+              "place' = place + d e + r v    of its start or end; d = offset_mm, e along the lever arm, away from the joint, "
+              "r = rise_mm, v upward",
           .signature = "torque and length errors of one muscle, tied together by the angle",
           .source = "definition",
-          .parameters = {{"offset_mm", "mm", 0, -200, 200, -8, 8, "d"}, {"rise_mm", "mm", 0, -200, 200, -3, 3, "r"}},
-          .make = [](const EffectValues&) { return std::make_unique<AttachmentOffset>(); },
-          .start_offset_mm = [](const EffectValues& values) -> Eigen::Vector2d {
+          .parameters = {{"offset_mm", "mm", 0, -200, 200, -8, 8, "d"},
+                         {"rise_mm", "mm", 0, -200, 200, -3, 3, "r"},
+                         {"attachment", "", 0, 0, 1, 0, 1, "which of the muscle's two", true, {"start", "end"}}},
+          .make = [](const EffectValues& values) { return std::make_unique<AttachmentOffset>(endOf(values)); },
+          .mount_offset_mm = [](const EffectValues& values, MuscleEnd end) -> Eigen::Vector2d {
+            if (end != endOf(values)) return {0, 0};
             return {values["offset_mm"], values["rise_mm"]};
           }};
 }
 
 void AttachmentOffset::attach(const EffectPlace& place) {
-  if (!place.robot.asksForOffset(place.muscle))
-    throw BadParameter("attachment_offset on " + place.component + ": the robot " + place.robot.name() +
-                       " has no such offset; it would have to build its muscles at mountedStart()");
+  if (place.robot.asksForOffset(place.muscle, end_)) return;
+  const bool start = end_ == MuscleEnd::start;
+  throw BadParameter("attachment_offset on " + place.component + ": the robot " + place.robot.name() +
+                     " has no such offset of the muscle's " + (start ? "start" : "end") + "; it would have to build its muscles at " +
+                     (start ? "mountedStart()" : "mountedEnd()"));
 }
 
 }  // namespace musclesim

@@ -1,6 +1,6 @@
 /// Foreign laws of the body stage: LuGre friction with Stribeck curve (Canudas de Wit et al. 1995), damping that grows with speed, a
-/// hardening spring, a payload that is held back by the air, a base that sways, a start displaced in a slanting direction, stops of rubber,
-/// a force from a weak spring, contact after Hunt and Crossley (1975).
+/// hardening spring, a payload that is held back by the air, a base that sways, attachments displaced in a slanting direction, stops of
+/// rubber, a force from a weak spring, contact after Hunt and Crossley (1975).
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -160,13 +160,14 @@ class HuntCrossley final : public JointEffect {
   double stiffness_, plane_deg_;
 };
 
-/// The start beside its place in a direction between the lever arm and the muscle's line: any, as brackets are mounted.
-/// Where the catalogue's slope is fitted as well, that is the same law.
-EffectInfo turnedAttachment() {
-  EffectInfo info = entry("turned_attachment", Stage::body, {ComponentKind::muscle}, "start' = start + d (e cos a + up sin a)",
+/// One end beside its place in a direction between the lever arm and the muscle's line: any, as brackets are mounted.
+/// Where the catalogue's two distances are fitted, that is the same law.
+EffectInfo turnedAttachment(const std::string& id, MuscleEnd displaced) {
+  EffectInfo info = entry(id, Stage::body, {ComponentKind::muscle}, "place' = place + d (e cos a + up sin a)",
                           {{"offset_mm", "mm", 0, -200, 200, -8, 8, "d"}, {"turn_deg", "deg", 4, -90, 90, -25, 25, "a", true}},
-                          [](const EffectValues&) { return std::make_unique<AttachmentOffset>(); });
-  info.start_offset_mm = [](const EffectValues& values) -> Eigen::Vector2d {
+                          [displaced](const EffectValues&) { return std::make_unique<AttachmentOffset>(displaced); });
+  info.mount_offset_mm = [displaced](const EffectValues& values, MuscleEnd end) -> Eigen::Vector2d {
+    if (end != displaced) return {0, 0};
     const double turn_rad = values["turn_deg"] * rad_per_deg;
     return values["offset_mm"] * Eigen::Vector2d(std::cos(turn_rad), std::sin(turn_rad));
   };
@@ -200,7 +201,8 @@ std::vector<ForeignEffect> bodyLaws() {
               {"frequency_Hz", "Hz", 1.7, 0, 100, 0.5, 4, "f", true}},
              [](const EffectValues& v) { return std::make_unique<SwayingBase>(v); }),
        "base_tilt"},
-      {turnedAttachment(), "attachment_offset"},
+      {turnedAttachment("turned_attachment", MuscleEnd::start), "attachment_offset"},
+      {turnedAttachment("turned_end", MuscleEnd::end), "attachment_offset"},
       {entry("rubber_stops", Stage::body, joint, "exponential bumpers at shifted stops",
              {{"offset_deg", "deg", 0, -90, 90, -60, 60, "shift"}}, [](const EffectValues& v) { return std::make_unique<RubberStops>(v); }),
        "joint_stop_offset"},

@@ -76,6 +76,15 @@ TEST(Diagnose, FindsAnAttachmentThatIsOffInAnyDirection) {
   EXPECT_NEAR(found.effects.front().parameters.at("rise_mm").value, -3 * std::sin(0.2618), 0.05);
 }
 
+/// The forearm's attachment is off: the moment arm is longer, which no place of the start brings about.
+TEST(Diagnose, FindsAnAttachmentThatIsOffOnWhatMoves) {
+  const ActiveEffect bracket = {"foreign.turned_end", "muscle_0", {{"offset_mm", 2.0}, {"turn_deg", 10.0}}};
+  const Diagnosis found = diagnose(elbow(bracket), few({"attachment_offset", "force_gain", "length_offset"}));
+  ASSERT_EQ(found.chosen, std::vector<std::string>{"attachment_offset@muscle_0"}) << diagnosisSummary(found);
+  EXPECT_EQ(std::get<std::string>(found.chosen_effects.front().parameters.at("attachment")), "end");
+  EXPECT_NEAR(found.effects.front().parameters.at("offset_mm").value, 2 * std::cos(0.1745), 0.1);
+}
+
 /// After a few steps the one is a multiple of the noise behind the other, both are far from where they lead.
 TEST(Diagnose, FitsLookAlikesToTheEnd) {
   const Diagnosis found =

@@ -1,6 +1,7 @@
 /// Body stage: limit cases in closed form, on a pendulum without muscles and on the elbow.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -266,6 +267,35 @@ TEST(AttachmentOffset, MayRise) {
   EXPECT_NEAR(straight.build("elbow").truth().length_mm[0], 262, 1e-6);
 }
 
+TEST(AttachmentOffset, MovesTheEndOfTheMuscleWithTheForearm) {
+  // Elbow at 0 deg: from (35, 240) to (35 + 8, -20 + 2); the lever arm about the hinge grows with it, wherever the forearm is.
+  Simulation simulation(
+      optionsWith({{"attachment_offset", "muscle_0", {{"offset_mm", 8.0}, {"rise_mm", 2.0}, {"attachment", std::string("end")}}}}));
+  Robot& robot = simulation.build("elbow");
+  EXPECT_NEAR(robot.truth().length_mm[0], std::hypot(258, 8), 1e-6);
+  EXPECT_NEAR(robot.truth().length_mm[1], 260, 1e-6);
+  robot.settle({0.6, 0.4});
+  const double angle_rad = robot.truth().angle_deg[0] * rad_per_deg;
+  EXPECT_GT(angle_rad, 0.1);
+  const Vector end = Eigen::AngleAxisd(angle_rad, Vector::UnitZ()) * Vector(43, -18, 0);
+  EXPECT_NEAR(robot.truth().length_mm[0], (Vector(35, 240, 0) - end).norm(), 1e-3);
+}
+
+TEST(AttachmentOffset, OfTheWristsLeverTurnsWithTheHand) {
+  Simulation clean(optionsWith({}));
+  const double clean_mm = clean.build("wrist").truth().length_mm[0];
+  Simulation simulation(optionsWith({{"attachment_offset", "muscle_0", {{"rise_mm", 2.0}, {"attachment", std::string("end")}}}}));
+  EXPECT_NEAR(simulation.build("wrist").truth().length_mm[0], clean_mm - 2, 0.1);
+}
+
+TEST(AttachmentOffset, OfTheEndIsRefusedWhereTheStartDoesTheSame) {
+  for (const char* robot : {"rig", "spring_bench"})
+    EXPECT_THROW(
+        Simulation(optionsWith({{"attachment_offset", "muscle_0", {{"offset_mm", 8.0}, {"attachment", std::string("end")}}}})).build(robot),
+        BadParameter)
+        << robot;
+}
+
 TEST(AttachmentOffset, OfTheForeignLawIsTurnedToTheVertical) {
   // The muscle runs from (35 + 8 cos, 240 + 8 sin) to (35, -20).
   Simulation simulation(optionsWith({{"foreign.turned_attachment", "muscle_0", {{"offset_mm", 8.0}, {"turn_deg", 25.0}}}}));
@@ -304,6 +334,7 @@ TEST(Settling, EquilibriumIncludesTheEffects) {
       {{"series_elasticity", "all", {{"stiffness_N_per_mm", 3.0}}}},
       {{"creep", "all", {{"amount", 0.2}, {"time_constant_s", 0.5}}}},
       {{"attachment_offset", "muscle_0", {{"offset_mm", 8.0}}}},
+      {{"attachment_offset", "muscle_0", {{"offset_mm", 8.0}, {"attachment", std::string("end")}}}},
       {{"leak", "all", {{"leak_per_s", 3.0}}}},
       {{"contact", "joint_elbow", {{"plane_deg", -3.0}, {"side", "below"}, {"stiffness_Nm_per_deg", 2.0}}}}};
   const Recording commands = commandsFor("elbow", 0.5, [](double) { return Action{0.45, 0.5}; });

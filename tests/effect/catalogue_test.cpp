@@ -82,7 +82,7 @@ TEST(Catalogue, KnowsWhichParametersCountOnAComponent) {
   EXPECT_EQ(relevantNames("sensor_backlash", "signal_angle_elbow"), Names{"width_deg"});
   EXPECT_EQ(relevantNames("sensor_backlash", "signal_length_0"), Names{"width_mm"});
   EXPECT_EQ(relevantNames("sensor_backlash", "all").size(), 2u);
-  EXPECT_EQ(relevantNames("attachment_offset", "muscle_0"), (Names{"offset_mm", "rise_mm"}));
+  EXPECT_EQ(relevantNames("attachment_offset", "muscle_0"), (Names{"offset_mm", "rise_mm", "attachment"}));
   EXPECT_EQ(relevantNames("joint_stiffness", "joint_elbow").size(), 2u);
 }
 

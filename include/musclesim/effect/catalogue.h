@@ -9,6 +9,7 @@
 
 #include "musclesim/effect/active_effect.h"
 #include "musclesim/effect/effect.h"
+#include "musclesim/robot/actuator.h"
 
 namespace musclesim {
 
@@ -23,8 +24,8 @@ struct EffectInfo {
   std::string source;
   std::vector<EffectParameter> parameters;
   std::function<std::unique_ptr<Effect>(const EffectValues&)> make;
-  /// Given: how far beside its place the robot builds the muscle's start, along the lever arm and upward.
-  std::function<Eigen::Vector2d(const EffectValues&)> start_offset_mm = {};
+  /// Given: how far beside its place the robot builds an end of the muscle, along the lever arm and upward.
+  std::function<Eigen::Vector2d(const EffectValues&, MuscleEnd)> mount_offset_mm = {};
 };
 
 /// All effects in the order in which they act within their stages: those of the library, then registered ones.

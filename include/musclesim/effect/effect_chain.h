@@ -8,6 +8,7 @@
 
 #include "musclesim/effect/active_effect.h"
 #include "musclesim/effect/effect.h"
+#include "musclesim/robot/actuator.h"
 
 namespace musclesim {
 
@@ -58,8 +59,8 @@ class EffectChain {
   double lengthRateMmPerS(std::size_t muscle) const;
   /// Whether an effect of that id acts on anything.
   bool has(const std::string& id) const;
-  /// How far beside its place a muscle starts, mm; `lever`: unit vector along its lever arm.
-  Vector startOffsetMm(int muscle, const Vector& lever) const;
+  /// How far beside its place an end of a muscle is, mm; `lever`: unit vector along its lever arm.
+  Vector mountOffsetMm(int muscle, MuscleEnd end, const Vector& lever) const;
 
  private:
   struct Muscle;

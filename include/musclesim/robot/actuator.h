@@ -20,6 +20,9 @@ class LineOfPull;
 class Primitive;
 class Simulation;
 
+/// A muscle's ends in the order in which it is built.
+enum class MuscleEnd { start, end };
+
 /// Numbers of all muscles, read from the parameters "muscle.*".
 struct MuscleSettings {
   explicit MuscleSettings(Parameters& parameters);

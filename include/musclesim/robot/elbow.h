@@ -21,10 +21,10 @@ class Elbow : public Robot {
  private:
   void placeForearm(double angle_rad);
   double torqueNmm(double angle_rad);
-  Vector lowerAttachment(double side, double angle_rad) const;
+  Vector lowerAttachment(int muscle, double angle_rad) const;
 
-  double lever_mm_, lower_mm_;
-  Vector upper_mm_[2];  ///< upper attachments
+  Vector upper_mm_[2];  ///< attachments in the world
+  Vector lower_mm_[2];  ///< attachments on the forearm, at angle 0
   Primitive* forearm_;
   Joint* hinge_;
   Actuator* muscles_[2];

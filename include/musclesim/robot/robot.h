@@ -66,8 +66,8 @@ class Robot {
   /// Adds a point mass at the hand, negative to take one away, before the robot has moved. The reported point stays where it is.
   /// Throws BadParameter as Primitive::addPointMass.
   void loadHand(double mass_g);
-  /// Whether the robot built a muscle at mountedStart().
-  bool asksForOffset(int muscle) const { return offset_muscles_.contains(muscle); }
+  /// Whether the robot built an end of a muscle where mountedStart() or mountedEnd() said.
+  bool asksForOffset(int muscle, MuscleEnd end) const { return mounted_ends_.contains({muscle, end}); }
   const std::string& name() const { return name_; }
 
   /// Registers a robot class under a name; a later registration of the same name replaces the earlier one.
@@ -97,8 +97,10 @@ class Robot {
   void setHand(Primitive* primitive, const Vector& offset_mm = Vector::Zero());
   /// A primitive whose centre carries what effects hang on the hand, but is not reported.
   void setLoad(Primitive* primitive);
-  /// Where the next muscle starts: at `start_mm`, unless an effect displaces it along the direction of its lever arm.
-  Vector mountedStart(const Vector& start_mm, const Vector& lever);
+  /// Where the next muscle starts or ends in the pose as built: at the given place, unless an effect displaces it along the direction of
+  /// its lever arm or upward.
+  Vector mountedStart(const Vector& start_mm, const Vector& lever) { return mounted(MuscleEnd::start, start_mm, lever); }
+  Vector mountedEnd(const Vector& end_mm, const Vector& lever) { return mounted(MuscleEnd::end, end_mm, lever); }
 
  private:
   using Factory = std::function<std::unique_ptr<Robot>(Simulation&)>;
@@ -108,11 +110,12 @@ class Robot {
   };
   static std::map<std::string, Registered>& registry();
   static void registerFactory(const std::string& name, const std::string& description, Factory factory);
+  Vector mounted(MuscleEnd end, const Vector& place_mm, const Vector& lever);
 
   Simulation& simulation_;
   std::vector<Actuator*> actuators_;
   std::vector<Angle> angles_;
-  std::set<int> offset_muscles_;
+  std::set<std::pair<int, MuscleEnd>> mounted_ends_;
   Primitive* hand_ = nullptr;
   bool hand_reported_ = false;
   Vector hand_offset_mm_ = Vector::Zero();

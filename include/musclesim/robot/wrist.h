@@ -30,6 +30,7 @@ class Wrist : public Robot {
 
   double center_of_mass_mm_, lever_mm_, middle_rad_;
   Vector upper_mm_[2];  ///< attachments in the world
+  Vector lower_mm_[2];  ///< attachments on the lever, at angle 0
   Primitive* hand_;
   Joint* hinge_;
   Actuator* muscles_[2];
