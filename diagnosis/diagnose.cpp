@@ -271,6 +271,7 @@ class Run {
           effect.id = suspect.info().id;
           effect.component = suspect.component();
           effect.parameters = estimates(suspect, explanation, first);
+          effect.choices = suspect.choices();
         }
         effect.probability += explanation.probability;
         first += suspect.coordinateCount();

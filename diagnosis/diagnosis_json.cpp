@@ -31,11 +31,13 @@ Json toJson(const FoundEffect& effect) {
     parameters[name] = {{"value", toJson(estimate.value)}, {"ci95", {toJson(estimate.low), toJson(estimate.high)}}};
     if (!estimate.is_determined) parameters[name]["determined"] = false;
   }
-  return {{"id", effect.id},
-          {"component", effect.component},
-          {"probability", effect.probability},
-          {"parameters", parameters},
-          {"shrink_percent", effect.shrink_percent}};
+  Json json = {{"id", effect.id},
+               {"component", effect.component},
+               {"probability", effect.probability},
+               {"parameters", parameters},
+               {"shrink_percent", effect.shrink_percent}};
+  if (!effect.choices.empty()) json["choices"] = effect.choices;
+  return json;
 }
 
 Json toJson(const Place& place) {

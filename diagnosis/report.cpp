@@ -107,6 +107,7 @@ std::string remarkOn(const EffectParameter& parameter, double value) {
 std::string parameterRows(const FoundEffect& effect) {
   std::string rows;
   const EffectInfo info = effectInfo(effect.id);
+  for (const auto& [name, word] : effect.choices) rows += fmt::format("{}{} = {}", rows.empty() ? "" : "<br>", breakable(name), word);
   for (const auto& [name, estimate] : effect.parameters) {
     if (isLeftOut(estimate)) continue;
     const auto parameter = std::ranges::find(info.parameters, name, &EffectParameter::name);
@@ -218,6 +219,8 @@ std::string attemptWords(const Attempt& attempt) {
         const auto parameter = std::ranges::find(info.parameters, name, &EffectParameter::name);
         values.push_back(
             fmt::format("{} = {:.3g}{}", name, *number, parameter == info.parameters.end() ? "" : remarkOn(*parameter, *number)));
+      } else if (const auto* word = std::get_if<std::string>(&value)) {
+        values.push_back(fmt::format("{} = {}", name, *word));
       }
     words.push_back(fmt::format("{}@{} ({})", effect.id, effect.component, fmt::join(values, ", ")));
   }

@@ -21,6 +21,7 @@ constexpr double nearly_all = 99.95;  ///< percent; what is above must not read 
 /// "a = 1.0 (0.9 to 1.1), b = 2 (1 to 3)", without what the data left out.
 std::string parameterWords(const FoundEffect& effect) {
   std::vector<std::string> words;
+  for (const auto& [name, word] : effect.choices) words.push_back(fmt::format("{} = {}", name, word));
   for (const auto& [name, estimate] : effect.parameters)
     if (!isLeftOut(estimate)) words.push_back(fmt::format("{} = {}", name, estimateWords(estimate)));
   return fmt::format("{}", fmt::join(words, ", "));

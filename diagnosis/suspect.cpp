@@ -208,6 +208,13 @@ std::vector<std::pair<std::string, double>> Suspect::valuesAt(const Eigen::Vecto
   return values;
 }
 
+std::map<std::string, std::string> Suspect::choices() const {
+  std::map<std::string, std::string> result;
+  for (const std::size_t i : relevantParameters(info_, component_))
+    if (const EffectParameter& p = info_.parameters[i]; !p.choices.empty()) result[p.name] = p.choices[static_cast<std::size_t>(base_[i])];
+  return result;
+}
+
 ActiveEffect Suspect::at(const Eigen::VectorXd& z) const {
   std::vector<double> values = base_;
   for (std::size_t i = 0; i < coordinates_.size(); ++i) {
@@ -294,8 +301,8 @@ std::vector<Suspect> Suspect::ends(const Plant& plant) const {
   return result;
 }
 
-/// All strengths together, and each by itself: about an axis that lies in the plane of motion a tilt acts by its square, which no small step
-/// shows, and beside another strength it is not looked for farther.
+/// All strengths together, and each by itself: about an axis that lies in the plane of motion a tilt acts by its square, which no small
+/// step shows, and beside another strength it is not looked for farther.
 std::vector<Suspect> Suspect::togetherAndAlone() const {
   std::vector<Suspect> result = {*this};
   for (int kept = 0; kept < coordinateCount(); ++kept) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,6 +43,8 @@ class Suspect {
   ActiveEffect at(const Eigen::VectorXd& z) const;
   /// Names and values of the parameters that z changes, and of those that are set to something else than neutral.
   std::vector<std::pair<std::string, double>> valuesAt(const Eigen::VectorXd& z) const;
+  /// Names and words of the parameters that are words and matter on this component.
+  std::map<std::string, std::string> choices() const;
   /// How far strengths lie beyond their usual range: sum of ln(distance from neutral / largest usual one), 0 within the range. Strengths in
   /// units of the signal have no usual range.
   double excess(const Eigen::VectorXd& z) const;

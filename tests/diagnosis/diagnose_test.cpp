@@ -82,6 +82,8 @@ TEST(Diagnose, FindsAnAttachmentThatIsOffOnWhatMoves) {
   const Diagnosis found = diagnose(elbow(bracket), few({"attachment_offset", "force_gain", "length_offset"}));
   ASSERT_EQ(found.chosen, std::vector<std::string>{"attachment_offset@muscle_0"}) << diagnosisSummary(found);
   EXPECT_EQ(std::get<std::string>(found.chosen_effects.front().parameters.at("attachment")), "end");
+  EXPECT_EQ(found.effects.front().choices.at("attachment"), "end");
+  EXPECT_NE(diagnosisSummary(found).find("attachment = end"), std::string::npos) << diagnosisSummary(found);
   EXPECT_NEAR(found.effects.front().parameters.at("offset_mm").value, 2 * std::cos(0.1745), 0.1);
 }
 

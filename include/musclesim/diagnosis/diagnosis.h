@@ -55,7 +55,8 @@ struct FoundEffect {
   std::string id, component;
   double probability = 0;
   std::map<std::string, Estimate> parameters;
-  double shrink_percent = 0;  ///< of the gap on the held-out data, by this effect alone
+  double shrink_percent = 0;                        ///< of the gap on the held-out data, by this effect alone
+  std::map<std::string, std::string> choices = {};  ///< parameters that are words: which end of a muscle, which side of a wall
   std::string label() const { return id + "@" + component; }
 };
 
