@@ -87,6 +87,13 @@ TEST(Diagnose, FindsAnAttachmentThatIsOffOnWhatMoves) {
   EXPECT_NEAR(found.effects.front().parameters.at("offset_mm").value, 2 * std::cos(0.1745), 0.1);
 }
 
+/// About an axis in the plane of motion a tilt acts by its square.
+TEST(Diagnose, FindsATiltThatSmallStepsDoNotShow) {
+  const Diagnosis found = diagnose(elbow({"base_tilt", "base", {{"tilt_x_deg", 14.0}}}), few({"base_tilt", "external_force", "payload"}));
+  ASSERT_EQ(found.chosen, std::vector<std::string>{"base_tilt@base"}) << diagnosisSummary(found);
+  EXPECT_NEAR(std::abs(found.effects.front().parameters.at("tilt_x_deg").value), 14, 0.3);
+}
+
 /// After a few steps the one is a multiple of the noise behind the other, both are far from where they lead.
 TEST(Diagnose, FitsLookAlikesToTheEnd) {
   const Diagnosis found =
