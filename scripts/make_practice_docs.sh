@@ -55,8 +55,8 @@ def wilson(p, n, z=1.96):
 print(f'# Practice cases, {which} numbers\n')
 print(f'Written by `scripts/make_practice_docs.sh`, version {commit}. ' +
       ('These cases were used for tuning: the numbers are flattering.' if which == 'odd' else
-       'These cases were never used for tuning. An earlier answer to case06 was looked into, and led to attachments that are off at either end ' +
-       'of a muscle ([earlier checks](blind_history.md)); the other answers were not.') + '\n')
+       'No number was tuned on these cases. An earlier answer to case06 and its key were looked into, and led to attachments that are off at ' +
+       'either end of a muscle ([earlier checks](blind_history.md)): that case is no longer unseen; the other eleven are.') + '\n')
 columns = [('verdict', 'verdict'), ('top1', 'top 1 by id'), ('top3', 'top 3 by id'), ('acceptable', 'acceptable first'), ('covered', 'truth in the set'), ('stage', 'first stage right')]
 print('| kind | cases | ' + ' | '.join(title for _, title in columns) + ' | mean probability on the truth | size of the set | median shrink |')
 print('|---' * (len(columns) + 5) + '|')
