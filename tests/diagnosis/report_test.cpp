@@ -62,6 +62,20 @@ TEST(Report, RemarksOnNumbersThatNoPlantIsKnownToHave) {
   EXPECT_TRUE(contains(diagnosisReport(d), "at its bound"));
 }
 
+TEST(Report, TellsParametersThatAreWords) {
+  Diagnosis d = answer(Verdict::effects_found);
+  d.effects = {{"attachment_offset", "muscle_0", 0.9, {{"offset_mm", {4.3, 4.2, 4.4}}}, 99, {{"attachment", "end"}}}};
+  d.chosen = {"attachment_offset@muscle_0"};
+  EXPECT_TRUE(contains(diagnosisReport(d), "attachment = end<br>offset_<wbr>mm = 4.3"));
+  EXPECT_TRUE(contains(diagnosisJson(d), "\"choices\": {"));
+  d.effects.front().choices.clear();
+  EXPECT_FALSE(contains(diagnosisJson(d), "\"choices\""));
+  d = answer(Verdict::unexplained);
+  d.attempt.effects = {"attachment_offset@muscle_0"};
+  d.attempt.active_effects = {{"attachment_offset", "muscle_0", {{"offset_mm", 4.3}, {"attachment", std::string("end")}}}};
+  EXPECT_TRUE(contains(diagnosisReport(d), "attachment_offset@muscle_0 (attachment = end, offset_mm = 4.3)"));
+}
+
 TEST(Report, ListsEffectsThatActTogetherTogether) {
   Diagnosis d = answer(Verdict::effects_found);
   d.effects = {{"payload", "hand", 0.98, {}, 84}, {"leak", "all", 0.2, {}, 10}};
