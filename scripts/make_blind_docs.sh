@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Writes docs/blind.md and three figures: makes cases with withheld causes from a seed, diagnoses them without the key, scores.
-# Resumable: the same call goes on where it was stopped. A case on rig or elbow takes one to six CPU minutes, a null one a second, and as
-# much again to follow up on (FOLLOW=no leaves that out); one on the arm more than a quarter of an hour. 120 cases on rig and elbow: about
-# two and a quarter hours on two free cores without follow-ups, and a quarter of an hour to make them; the arm's twelve, as long again.
+# Resumable: the same call goes on where it was stopped. On two free cores, recordings of 4 s: 180 cases on rig and elbow and 12 on the arm
+# took 25 minutes to make, an hour and a half (rig and elbow) and an hour and twenty minutes (arm) to diagnose; following up takes as long
+# again (FOLLOW=no leaves that out, an interrupt ends it where it is). The defaults, 120 and 12 cases of 6 s: about four hours in all
+# without follow-ups.
 # Usage: scripts/make_blind_docs.sh SEED CASES KEYS [build folder] [options of `blind make`]
 #     SEED           of all draws; one that has not been used since the diagnosis was changed last. That of the cases where there are any
 #     CASES          folder for the cases; new, or of a call that was stopped
