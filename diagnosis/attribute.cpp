@@ -22,9 +22,21 @@ constexpr std::size_t fewer_pairs = 3;      ///< further effects that are fitted
 constexpr double likely_share = 0.1;        ///< of the best one's probability, that those have at least
 constexpr double least_hope = -1;           ///< ln of the odds of one more effect that leaves nothing; below, none is looked for
 constexpr int few_effects = 2;              ///< up to that many, the first look serves for all of them
-constexpr int first_rounds = 2, last_rounds = 2;
-constexpr int many_rounds = 12;  ///< in place of the last rounds where many effects act together
+constexpr int first_rounds = 2, square_rounds = 3, last_rounds = 2;
+constexpr Eigen::Index many_coordinates = 3;  ///< from so many on, a fit also begins by plain least squares: the misfit has many minima
+constexpr int many_rounds = 12;               ///< in place of the last rounds where many effects act together
 constexpr Reach single_reach = {{0.8, 0.5}, {0.4, 0.15}}, pair_reach = {{0.25, 0}, {0.1, 0}};
+
+/// A step of one coordinate as derivatives() takes it, to the side where there is room; 0 between two bounds.
+double stepOf(const FitProblem& problem, const Eigen::VectorXd& z, Eigen::Index coordinate) {
+  constexpr double difference = 0.2;
+  for (const double side : {1.0, -1.0}) {
+    Eigen::VectorXd moved = z;
+    moved[coordinate] += side * difference * std::max(1.0, std::abs(z[coordinate]));
+    if (const double step = problem.clamped(moved)[coordinate] - z[coordinate]; step != 0) return step;
+  }
+  return 0;
+}
 
 }  // namespace
 
@@ -201,6 +213,7 @@ void Attributor::fitTogether(std::vector<Candidate> candidates, Reach reach) {
   auto all = [](const Candidate&) { return true; };
   forEach(all, [&](Candidate& candidate) {
     weakenStart(candidate);
+    if (candidate.begins_by_squares) refit(candidate.explanation, look_.bySquares(look_residual_), square_rounds, Fidelity::coarse);
     refit(candidate.explanation, look_, first_rounds, Fidelity::coarse);
   });
   forEach([&, within = limit(reach.on_look)](
@@ -259,8 +272,12 @@ std::vector<std::size_t> Attributor::withSecondVariants(const std::vector<std::s
 void Attributor::fitAlone(const std::vector<std::size_t>& chosen) {
   const double without = look_.logMisfit(look_residual_);
   std::vector<Candidate> candidates;
-  for (const std::size_t index : withSecondVariants(chosen))
-    candidates.push_back({{{index}, startOf(index, result_.signatures[index]), {}, {}, 0, 0}, without});
+  for (const std::size_t index : withSecondVariants(chosen)) {
+    Candidate candidate{{{index}, startOf(index, result_.signatures[index]), {}, {}, 0, 0}, without};
+    candidates.push_back(candidate);
+    candidate.begins_by_squares = true;
+    if (candidate.explanation.z.size() >= many_coordinates) candidates.push_back(std::move(candidate));
+  }
   fitTogether(std::move(candidates), single_reach);
 }
 
@@ -384,6 +401,28 @@ const Explanation& Attributor::nearest() const {
     const double hollow = explanation.is_hollow ? std::numeric_limits<double>::infinity() : 0;
     return explanation.log_misfit + worth_an_effect * static_cast<double>(explanation.suspects.size()) + hollow;
   });
+}
+
+/// With the steps of derivatives().
+Contender Attributor::contender(const Explanation& explanation, const std::string& label) const {
+  Contender result{label, modelOf(explanation), explanation.probability, {}, {}};
+  const FitProblem problem = problemOf(explanation, fit_, Fidelity::coarse);
+  const Eigen::MatrixXd slopes = fit_.weights(explanation.residual).asDiagonal() * derivatives(fit_, problem, problem.start);
+  std::vector<Eigen::Index> moving;
+  for (Eigen::Index k = 0; k < problem.start.size(); ++k)
+    if (slopes.col(k).squaredNorm() > 0) moving.push_back(k);
+  result.slopes.resize(slopes.rows(), static_cast<Eigen::Index>(moving.size()));
+  for (std::size_t i = 0; i < moving.size(); ++i) {
+    Eigen::VectorXd z = problem.start;
+    const double step = stepOf(problem, z, moving[i]);
+    z[moving[i]] += step;
+    Explanation moved = explanation;
+    moved.z = z.head(explanation.z.size());
+    moved.tuning = z.tail(explanation.tuning.size());
+    result.beside.push_back(modelOf(moved));
+    result.slopes.col(static_cast<Eigen::Index>(i)) = step * slopes.col(moving[i]);
+  }
+  return result;
 }
 
 void Attributor::decide() {

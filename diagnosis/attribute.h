@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "comparison.h"
+#include "next_experiment.h"
 #include "odds.h"
 #include "refit.h"
 #include "screen.h"
@@ -50,12 +51,15 @@ class Attributor {
   const Attribution& result() const { return result_; }
   Model modelOf(const Explanation& explanation) const;
   const Explanation& nearest() const;
+  /// What planning an experiment needs to know of an explanation.
+  Contender contender(const Explanation& explanation, const std::string& label) const;
 
  private:
   /// An explanation that is yet to be fitted.
   struct Candidate {
     Explanation explanation;
     double without;  ///< misfit on the look without its last suspect
+    bool begins_by_squares = false;
   };
 
   void keepBetterOfSame(std::vector<Candidate>& candidates) const;
@@ -69,6 +73,7 @@ class Attributor {
   bool isHollow(const Explanation& explanation) const;
   Comparison firstOfLook() const;
   void keepNearestVariants();
+  void keepNearestVariants(const Comparison& comparison, std::size_t kept);
   std::vector<std::size_t> worthLookingAt() const;
   void lookAtSuspects(const Eigen::VectorXd& nominal);
   void lookForExcitation(const std::vector<Suspect>& typical);

@@ -121,6 +121,13 @@ const Comparison::Cell& Comparison::cellLike(const Cell& other) const {
   return *std::ranges::find_if(cells_, [&](const Cell& cell) { return cell.signal == other.signal && cell.block == other.block; });
 }
 
+Comparison Comparison::bySquares(const Eigen::VectorXd& residual) const {
+  Comparison result = *this;
+  result.by_squares_ = true;
+  for (Cell& cell : result.cells_) cell.floor = std::sqrt(cell.floor * cell.floor + meanSquare(cell, residual));
+  return result;
+}
+
 double Comparison::meanSquare(const Cell& cell, const Eigen::VectorXd& residual) const {
   return residual.segment(cell.first, cell.count()).squaredNorm() / static_cast<double>(cell.count());
 }
@@ -128,14 +135,17 @@ double Comparison::meanSquare(const Cell& cell, const Eigen::VectorXd& residual)
 double Comparison::logMisfit(const Eigen::VectorXd& residual) const {
   if (residual.size() != size_ || !residual.allFinite()) return std::numeric_limits<double>::infinity();
   double sum = 0;
-  for (const Cell& cell : cells_) sum += 0.5 * std::log(std::max(1.0, meanSquare(cell, residual) / (cell.floor * cell.floor)));
+  for (const Cell& cell : cells_) {
+    const double over_floor = meanSquare(cell, residual) / (cell.floor * cell.floor);
+    sum += 0.5 * (by_squares_ ? over_floor : std::log(std::max(1.0, over_floor)));
+  }
   return sum;
 }
 
 Eigen::VectorXd Comparison::weights(const Eigen::VectorXd& residual) const {
   Eigen::VectorXd result(size_);
   for (const Cell& cell : cells_) {
-    const double rms = std::max(cell.floor, std::sqrt(meanSquare(cell, residual)));
+    const double rms = by_squares_ ? cell.floor : std::max(cell.floor, std::sqrt(meanSquare(cell, residual)));
     result.segment(cell.first, cell.count()).setConstant(1 / (rms * std::sqrt(static_cast<double>(cell.count()))));
   }
   return result;

@@ -53,6 +53,11 @@ class Comparison {
   Eigen::VectorXd predicted(const std::vector<Prediction>& per_stretch, Fidelity fidelity) const;
   const Eigen::VectorXd& measured() const { return measured_; }
 
+  /// The same where logMisfit and weights are those of plain least squares, every cell in units of its floor and its part of a residual
+  /// together (root of the sum of squares). Far from the best fit that has fewer minima: the logarithm rewards one cell that fits very
+  /// well.
+  Comparison bySquares(const Eigen::VectorXd& residual) const;
+
   /// Mean square of a vector's part in one cell.
   double meanSquare(const Cell& cell, const Eigen::VectorXd& residual) const;
   /// ln of the RMS residual over the floor, 0 below the floor, summed over all cells; infinite for an empty vector.
@@ -70,6 +75,7 @@ class Comparison {
   Eigen::VectorXd gathered(const std::vector<Prediction>& per_stretch) const;
 
   const Plant& plant_;
+  bool by_squares_ = false;
   Fidelity fidelity_ = Fidelity::fine;
   Eigen::VectorXd correction_;  ///< fine minus coarse
   std::vector<Stretch> stretches_;

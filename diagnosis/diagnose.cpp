@@ -17,6 +17,7 @@
 #include "parallel.h"
 #include "plant.h"
 #include "regimes.h"
+#include "schedule.h"
 #include "shrink.h"
 #include "tune.h"
 
@@ -390,15 +391,11 @@ class Run {
     std::vector<const Explanation*> likely = asGood();
     if (likely.size() < 2) return;
     likely.resize(std::min(most, likely.size()));
-    std::vector<std::string> labels;
-    std::vector<Model> models;
-    for (const Explanation* explanation : likely) {
-      labels.push_back(ownWords(*explanation, likely));
-      models.push_back(attributor_.modelOf(*explanation));
-    }
-    monitor_.phase("planning the next experiment", static_cast<long>(6 * models.size()));
+    monitor_.phase("planning the next experiment", static_cast<long>(2 * scheduleBank().size() * likely.size()));
+    std::vector<Contender> contenders;
+    for (const Explanation* explanation : likely) contenders.push_back(attributor_.contender(*explanation, ownWords(*explanation, likely)));
     const Fidelity fidelity = std::min(attributor_.lookComparison().fidelity(), Fidelity::coarse);
-    diagnosis_.next_experiment = nextExperiment(plant_, labels, models, fidelity, options_.job_count, [this] { monitor_.count(); });
+    diagnosis_.next_experiment = nextExperiment(plant_, contenders, fidelity, options_.job_count, [this] { monitor_.count(); });
   }
 
   void finish() {

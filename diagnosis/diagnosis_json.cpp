@@ -116,11 +116,9 @@ std::string diagnosisJson(const Diagnosis& d, const std::string& schedule_file) 
   json["unexplained_percent"] = d.unexplained_percent;
   json["not_excited"] = d.not_excited;
   if (!d.next_experiment.commands.empty())
-    json["next_experiment"] = {{"separates", d.next_experiment.separates},
-                               {"name", d.next_experiment.schedule},
-                               {"amplitude", d.next_experiment.amplitude},
-                               {"why", d.next_experiment.why},
-                               {"schedule", schedule_file}};
+    json["next_experiment"] = {
+        {"separates", d.next_experiment.separates}, {"name", d.next_experiment.schedule}, {"amplitude", d.next_experiment.amplitude},
+        {"level", d.next_experiment.level},         {"why", d.next_experiment.why},       {"schedule", schedule_file}};
   json["fitted"] = fittedJson(d);
   json["notes"] = d.notes;
   json["where_method"] = d.where_method;

@@ -26,11 +26,15 @@ Comparison Attributor::firstOfLook() const {
   return result;
 }
 
-/// Of variants without any strength (numbers of bits), those of one component that leave least on the first stretch of the look: simulating
-/// all of them on all of it would take as long as everything else.
+/// Of variants without any strength (numbers of bits), the two of one component that leave least on the look, among the six that leave
+/// least on its first stretch: simulating all of them on all of it would take as long as everything else, and one stretch alone may
+/// hardly tell them.
 void Attributor::keepNearestVariants() {
-  constexpr std::size_t kept = 2;
-  const Comparison brief = firstOfLook();
+  keepNearestVariants(firstOfLook(), 6);
+  keepNearestVariants(look_, 2);
+}
+
+void Attributor::keepNearestVariants(const Comparison& comparison, std::size_t kept) {
   std::vector<Suspect>& all = result_.suspects;
   std::map<std::string, std::vector<std::size_t>> variants;
   for (std::size_t i = 0; i < all.size(); ++i)
@@ -42,8 +46,9 @@ void Attributor::keepNearestVariants() {
   parallelFor(static_cast<int>(tried.size()), options_.job_count, [&](int i) {
     const std::size_t index = tried[static_cast<std::size_t>(i)];
     if (plant_.interrupted()) return;
-    const Eigen::VectorXd predicted = brief.predicted(Model{{all[index].at({})}, {}});
-    log_misfit[index] = predicted.size() ? brief.logMisfit(brief.measured() - predicted) : std::numeric_limits<double>::infinity();
+    const Eigen::VectorXd predicted = comparison.predicted(Model{{all[index].at({})}, {}});
+    log_misfit[index] =
+        predicted.size() ? comparison.logMisfit(comparison.measured() - predicted) : std::numeric_limits<double>::infinity();
     on_simulation_();
   });
   std::set<std::size_t> dropped;

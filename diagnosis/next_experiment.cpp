@@ -2,194 +2,289 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <numbers>
+#include <map>
+#include <optional>
+#include <string>
 
-#include "musclesim/error.h"
+#include "comparison.h"
+#include "musclesim/robot/actuator.h"
+#include "musclesim/robot/robot.h"
+#include "musclesim/simulation/simulation.h"
+#include "odds.h"
 #include "parallel.h"
+#include "schedule.h"
 
 namespace musclesim {
 
 namespace {
 
-constexpr double duration_s = 12, step_s = 0.01;
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// A schedule: -1..1 for each muscle at a time, of the range that its command has in the recordings.
-struct Excitation {
-  std::string name, words;
-  std::function<double(double time_s, int muscle)> shape;
+/// Between which values a signal is, or may be predicted to stay; nowhere as yet.
+struct Span {
+  double low = infinity, high = -infinity;
+  void include(double value) { low = std::min(low, value), high = std::max(high, value); }
+  bool holds(double value) const { return value >= low && value <= high; }
 };
+using Spans = std::map<std::string, Span>;
 
-double triangle(double time_s, double period_s) {
-  const double phase = time_s / period_s - std::floor(time_s / period_s);
-  return phase < 0.5 ? 4 * phase - 1 : 3 - 4 * phase;
+bool isPosition(const std::string& signal) {
+  return signal.starts_with("length_") || signal.starts_with("angle_") || signal.starts_with("hand_");
 }
 
-double sign(int muscle) {
-  return muscle % 2 == 0 ? 1 : -1;
-}
-
-/// Muscles with even and odd numbers move against each other unless the schedule is a co-contraction.
-const std::vector<Excitation>& bank() {
-  static const std::vector<Excitation> excitations = {
-      {"slow reversals", "triangles of six seconds", [](double t, int m) { return sign(m) * triangle(t, 6); }},
-      {"three speeds", "the same path in 6, 1.5 and 0.5 s",
-       [](double t, int m) {
-         return sign(m) * triangle(t, t < 6 ? 6 : t < 9 ? 1.5 : 0.5);
-       }},
-      {"steps of two sizes", "small ones, then large ones",
-       [](double t, int m) { return sign(m) * (t < 6 ? 0.25 : 1) * (std::fmod(t, 3) < 1.5 ? 1 : -1); }},
-      {"co-contraction", "all muscles filled and emptied together, slowly", [](double t, int) { return triangle(t, 6); }},
-      {"vent and hold", "one side emptied for five seconds, then the other",
-       [](double t, int m) { return t < 1   ? 0.0
-                                    : t < 6 ? (m % 2 == 0 ? -1.0 : 1.0)
-                                            : (m % 2 == 0 ? 1.0 : -1.0); }},
-      {"one muscle at a time", "every second muscle for two seconds, then the others",
-       [](double t, int m) { return static_cast<int>(t / 2) % 2 == m % 2 ? std::sin(std::numbers::pi * t) : 0.0; }},
-  };
-  return excitations;
-}
-
-struct CommandRange {
-  double low = 1, high = 0;
-};
-
-/// The range of a muscle's command over all recordings: where the plant is known to go.
-CommandRange rangeOf(const std::vector<Recording>& recordings, int muscle) {
-  CommandRange range;
-  for (const Recording& recording : recordings)
-    for (const double u : recording.find(fmt::format("command_{}", muscle))->values) {
-      range.low = std::min(range.low, u);
-      range.high = std::max(range.high, u);
-    }
-  return range;
-}
-
-Recording scheduled(const std::vector<Recording>& recordings, const Excitation& excitation, double amplitude) {
-  Recording recording;
-  recording.info = recordings.front().info;
-  recording.info.trial = excitation.name;
-  for (int row = 0; row * step_s < duration_s; ++row) recording.time_s.push_back(row * step_s);
-  for (int muscle = 0; muscle < recordings.front().muscleCount(); ++muscle) {
-    const CommandRange range = rangeOf(recordings, muscle);
-    Signal signal{fmt::format("command_{}", muscle), {}};
-    for (const double t : recording.time_s)
-      signal.values.push_back((range.low + range.high) / 2 + amplitude * (range.high - range.low) / 2 * excitation.shape(t, muscle));
-    recording.signals.push_back(std::move(signal));
+/// What stops allow of the model's angles and lengths.
+Spans travelsOf(Simulation& model) {
+  Spans travels;
+  for (const Robot::Angle& angle : model.robot().angles()) {
+    const auto [low, high] = angle.joint->stopsDeg(angle.axis);
+    travels["angle_" + angle.name + "_deg"] = {low, high};
   }
-  return recording;
+  for (std::size_t i = 0; i < model.actuators().size(); ++i)
+    travels[fmt::format("length_{}_mm", i)] = {model.actuators()[i]->minimumLengthMm(), model.actuators()[i]->maximumLengthMm()};
+  return travels;
 }
 
-/// How far two predictions differ.
-struct Difference {
-  double overall = 0;  ///< RMS over all signals and rows in units of the floor; 0 if one diverges
-  std::string signal;  ///< that differs most
+/// Measured positions may go a quarter of their range farther than they have been. All keep a thirtieth of their travel from stops, but for
+/// where they have been.
+Spans roomsOf(const Plant& plant) {
+  constexpr double farther = 0.25, margin = 1.0 / 30;
+  Spans been, rooms;
+  for (std::size_t s = 0; s < plant.signals().size(); ++s) {
+    const ComparedSignal& signal = plant.signals()[s];
+    if (!isPosition(signal.name)) continue;
+    Span& span = been[signal.name];
+    for (std::size_t i = 0; i < plant.recordings().size(); ++i)
+      for (const double y : plant.measured(static_cast<int>(i), static_cast<int>(s)))
+        if (std::isfinite(y)) span.include(y);
+    const double more = farther * (span.high - span.low) + 4 * signal.floor.value;
+    rooms[signal.name] = {span.low - more, span.high + more};
+  }
+  for (const auto& [name, travel] : travelsOf(plant.model())) {
+    const double clear = margin * (travel.high - travel.low);
+    if (!std::isfinite(clear)) continue;
+    Span& room = rooms.try_emplace(name, Span{-infinity, infinity}).first->second;
+    room.low = std::max(room.low, std::min(travel.low + clear, been[name].low));
+    room.high = std::min(room.high, std::max(travel.high - clear, been[name].high));
+  }
+  return rooms;
+}
+
+bool keepsWithin(const Spans& rooms, const Recording& predicted) {
+  return std::ranges::all_of(rooms, [&](const auto& room) {
+    const Signal* signal = predicted.find(room.first);
+    return !signal || std::ranges::all_of(signal->values, [&](double value) { return room.second.holds(value); });
+  });
+}
+
+/// A schedule with what the contenders predict.
+struct TriedSchedule {
+  ScheduleChoice choice;
+  Recording commands;
+  std::vector<Recording> predicted;  ///< of every contender; fewer: one of them would go too far
+  std::optional<Recording> nominal;  ///< without effects; none if that diverges
+};
+
+/// The schedule at the largest of a few shares of its amplitude at which all contenders keep within the rooms.
+TriedSchedule triedOut(const Plant& plant, ScheduleChoice choice, const std::vector<Contender>& contenders, const Spans& rooms,
+                       Fidelity fidelity, const OnSimulation& on_simulation) {
+  constexpr double smaller = 0.7, smallest = 0.2;
+  TriedSchedule trial;
+  for (; choice.amplitude > smallest && trial.predicted.size() < contenders.size(); choice.amplitude *= smaller) {
+    trial = {choice, scheduled(choice, plant.recordings()), {}, {}};
+    for (const Contender& contender : contenders) {
+      std::optional<Recording> predicted = plant.predictSchedule(trial.commands, contender.model, fidelity);
+      on_simulation();
+      if (!predicted || !keepsWithin(rooms, *predicted)) break;
+      trial.predicted.push_back(std::move(*predicted));
+    }
+  }
+  if (trial.predicted.size() == contenders.size()) trial.nominal = plant.predictSchedule(trial.commands, Model{}, fidelity);
+  return trial;
+}
+
+/// What a schedule's readings and their averages over blocks of rows are, in units of their floors: signal after signal, readings first.
+class InFloors {
+ public:
+  InFloors(const Plant& plant, const Recording& commands)
+      : plant_(plant),
+        row_count_(static_cast<Eigen::Index>(commands.time_s.size())),
+        block_count_(row_count_ / block),
+        signal_count_(static_cast<Eigen::Index>(plant.signals().size())) {}
+
+  /// a - b
+  Eigen::VectorXd difference(const Recording& a, const Recording& b) const {
+    Eigen::VectorXd result(signal_count_ * perSignal());
+    for (Eigen::Index s = 0; s < signal_count_; ++s) {
+      const ComparedSignal& signal = plant_.signals()[static_cast<std::size_t>(s)];
+      auto readings = result.segment(s * perSignal(), row_count_);
+      readings = (valuesOf(a, signal) - valuesOf(b, signal)) / signal.floor.value;
+      for (Eigen::Index k = 0; k < block_count_; ++k)
+        result[s * perSignal() + row_count_ + k] = readings.segment(k * block, block).mean() / averaged_floor;
+    }
+    return result;
+  }
+  /// Every part of mean square 1 becomes one of length 1.
+  Eigen::VectorXd perPart(const Eigen::VectorXd& difference) const {
+    Eigen::VectorXd result = difference;
+    for (Eigen::Index s = 0; s < signal_count_; ++s) {
+      result.segment(s * perSignal(), row_count_) /= std::sqrt(static_cast<double>(row_count_));
+      result.segment(s * perSignal() + row_count_, block_count_) /= std::sqrt(static_cast<double>(block_count_));
+    }
+    return result;
+  }
+  double meanSquare(const Eigen::VectorXd& difference, Eigen::Index signal) const {
+    return difference.segment(signal * perSignal(), row_count_).squaredNorm() / static_cast<double>(row_count_);
+  }
+  /// Mean over signals and averages of ln(RMS over floor) where a difference is measured on top of the noise and of what the law of the
+  /// right cause, which is not quite ours, leaves of a gap (Odds).
+  double logMisfit(const Eigen::VectorXd& difference, const Eigen::VectorXd& gap) const {
+    const double mismatch = Weighing{}.law_mismatch;
+    double sum = 0;
+    for (Eigen::Index s = 0; s < signal_count_; ++s) {
+      auto add = [&](Eigen::Index first, Eigen::Index count) {
+        sum += 0.5 * std::log1p(difference.segment(first, count).squaredNorm() /
+                                (static_cast<double>(count) + mismatch * mismatch * gap.segment(first, count).squaredNorm()));
+      };
+      add(s * perSignal(), row_count_);
+      add(s * perSignal() + row_count_, block_count_);
+    }
+    return sum / static_cast<double>(2 * signal_count_);
+  }
+
+ private:
+  static constexpr auto block = static_cast<Eigen::Index>(block_rows);
+  static inline const double averaged_floor = std::sqrt(1.0 / static_cast<double>(block_rows) + steady_share * steady_share);
+  Eigen::Index perSignal() const { return row_count_ + block_count_; }
+  Eigen::Map<const Eigen::VectorXd> valuesOf(const Recording& recording, const ComparedSignal& signal) const {
+    return {recording.find(signal.name)->values.data(), row_count_};
+  }
+
+  const Plant& plant_;
+  Eigen::Index row_count_, block_count_, signal_count_;
+};
+
+/// What changes of a contender's numbers change under a schedule; without columns where they are not looked at.
+using Slopes = std::vector<Eigen::MatrixXd>;
+
+Slopes slopesOf(const Plant& plant, const TriedSchedule& trial, const std::vector<Contender>& contenders, Fidelity fidelity, int job_count,
+                const OnSimulation& on_simulation) {
+  const InFloors in_floors(plant, trial.commands);
+  Slopes slopes(contenders.size());
+  parallelFor(static_cast<int>(contenders.size()), job_count, [&](int i) {
+    const auto index = static_cast<std::size_t>(i);
+    const Contender& contender = contenders[index];
+    const Recording& predicted = trial.predicted[index];
+    slopes[index].resize(in_floors.difference(predicted, predicted).size(), static_cast<Eigen::Index>(contender.beside.size()));
+    parallelFor(static_cast<int>(contender.beside.size()), job_count, [&](int k) {
+      const auto moved = plant.predictSchedule(trial.commands, contender.beside[static_cast<std::size_t>(k)], fidelity);
+      on_simulation();
+      slopes[index].col(k) = in_floors.difference(moved ? *moved : predicted, predicted);
+    });
+  });
+  return slopes;
+}
+
+/// What is left of a difference when the contender is fitted to its recordings and to that difference together.
+Eigen::VectorXd leftBy(const Contender& contender, const Eigen::MatrixXd& slopes, const InFloors& in_floors,
+                       const Eigen::VectorXd& difference) {
+  if (slopes.cols() == 0) return difference;
+  Eigen::MatrixXd both(contender.slopes.rows() + slopes.rows(), slopes.cols());
+  for (Eigen::Index k = 0; k < slopes.cols(); ++k) both.col(k) << contender.slopes.col(k), in_floors.perPart(slopes.col(k));
+  Eigen::VectorXd aim(both.rows());
+  aim << Eigen::VectorXd::Zero(contender.slopes.rows()), in_floors.perPart(difference);
+  Eigen::MatrixXd normal = both.transpose() * both;
+  normal.diagonal().array() += 1e-9 * (1 + normal.diagonal().maxCoeff());
+  return difference - slopes * normal.ldlt().solve(both.transpose() * aim);
+}
+
+/// What a schedule is worth, and the difference between the likeliest contender and what is most like it.
+struct Worth {
+  double told = 0;
+  double nearest = std::numeric_limits<double>::infinity();  ///< RMS over all signals and rows in units of the floor
+  std::string signal;                                        ///< that differs most
   double in_signal = 0;
 };
 
-Difference difference(const Plant& plant, const Prediction& a, const Prediction& b) {
-  Difference result;
-  if (a.diverged || b.diverged) return result;
-  double sum = 0;
-  long count = 0;
-  for (std::size_t s = 0; s < plant.signals().size(); ++s) {
-    const double floor = plant.signals()[s].floor.value;
-    double own_sum = 0;
-    long own_count = 0;
-    for (std::size_t row = 0; row < a.values[s].size(); ++row) {
-      const double d = (a.values[s][row] - b.values[s][row]) / floor;
-      if (!std::isfinite(d)) continue;
-      own_sum += d * d;
-      ++own_count;
+Worth worthOf(const Plant& plant, const TriedSchedule& trial, const std::vector<Contender>& contenders, const Slopes& slopes) {
+  const double per_log_misfit = Weighing{}.per_misfit / (static_cast<double>(plant.split().fit.size()) + 1);
+  const InFloors in_floors(plant, trial.commands);
+  const Recording& likeliest = trial.predicted.front();
+  const Eigen::VectorXd gap = in_floors.difference(likeliest, trial.nominal ? *trial.nominal : likeliest);
+  Worth worth;
+  auto compare = [&](std::size_t likelier, const Eigen::VectorXd& difference, double weight) {
+    worth.told += weight * -std::expm1(-per_log_misfit * in_floors.logMisfit(difference, gap));
+    if (likelier > 0) return;
+    double sum = 0, largest = 0;
+    std::size_t most = 0;
+    for (std::size_t s = 0; s < plant.signals().size(); ++s) {
+      const double mean_square = in_floors.meanSquare(difference, static_cast<Eigen::Index>(s));
+      sum += mean_square;
+      if (mean_square > largest) largest = mean_square, most = s;
     }
-    sum += own_sum;
-    count += own_count;
-    if (const double own = own_count ? std::sqrt(own_sum / static_cast<double>(own_count)) : 0; own > result.in_signal) {
-      result.in_signal = own;
-      result.signal = plant.signals()[s].name;
+    const double overall = std::sqrt(sum / static_cast<double>(plant.signals().size()));
+    if (overall >= worth.nearest) return;
+    worth.nearest = overall;
+    worth.signal = plant.signals()[most].name;
+    worth.in_signal = std::sqrt(largest);
+  };
+  for (std::size_t a = 0; a < contenders.size(); ++a)
+    for (std::size_t b = a + 1; b < contenders.size(); ++b) {
+      const Eigen::VectorXd difference = in_floors.difference(trial.predicted[a], trial.predicted[b]);
+      const double weight = contenders[a].probability * contenders[b].probability / 2;
+      for (const std::size_t refitted : {a, b})
+        compare(a, slopes.empty() ? difference : leftBy(contenders[refitted], slopes[refitted], in_floors, difference), weight);
     }
-  }
-  result.overall = count ? std::sqrt(sum / static_cast<double>(count)) : 0;
+  return worth;
+}
+
+Experiment experimentOf(const TriedSchedule& trial, const std::vector<Contender>& contenders, const Worth& worth) {
+  Experiment result;
+  result.schedule = trial.choice.name;
+  result.amplitude = trial.choice.amplitude;
+  result.level = trial.choice.level;
+  result.difference = worth.nearest;
+  result.why =
+      fmt::format("{}; the likeliest and what is most like it, fitted anew, differ by {:.1f} times the noise there, most in {} ({:.1f})",
+                  scheduleWords(trial.choice), worth.nearest, worth.signal, worth.in_signal);
+  for (const Contender& contender : contenders) result.separates.push_back(contender.label);
+  result.time_s = trial.commands.time_s;
+  result.commands.resize(result.time_s.size());
+  for (const Signal& signal : trial.commands.signals)
+    for (std::size_t row = 0; row < result.commands.size(); ++row) result.commands[row].push_back(signal.values[row]);
   return result;
-}
-
-/// Whether a predicted signal stays where the plant has been, give or take a quarter of the range that it had there: beyond may be a stop.
-bool staysInReach(const Plant& plant, const Prediction& prediction) {
-  constexpr double further = 0.25;
-  for (std::size_t s = 0; s < plant.signals().size(); ++s) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (std::size_t i = 0; i < plant.recordings().size(); ++i)
-      for (const double y : plant.measured(static_cast<int>(i), static_cast<int>(s)))
-        if (std::isfinite(y)) low = std::min(low, y), high = std::max(high, y);
-    const double room = further * (high - low) + 4 * plant.signals()[s].floor.value;
-    for (const double y : prediction.values[s])
-      if (!(y > low - room && y < high + room)) return false;
-  }
-  return true;
-}
-
-/// The largest of a few shares of the commands' ranges with which the schedule stays in reach; the smallest if none does.
-double safeAmplitude(const Plant& plant, const Excitation& excitation, const Model& model, Fidelity fidelity,
-                     const OnSimulation& on_simulation) {
-  constexpr double smaller = 0.7, smallest = 0.2;
-  double amplitude = 1;
-  for (; amplitude * smaller > smallest; amplitude *= smaller) {
-    on_simulation();
-    const Prediction prediction = plant.predictSchedule(scheduled(plant.recordings(), excitation, amplitude), model, fidelity);
-    if (!prediction.diverged && staysInReach(plant, prediction)) break;
-  }
-  return amplitude;
 }
 
 }  // namespace
 
-Experiment nextExperiment(const Plant& plant, const std::vector<std::string>& labels, const std::vector<Model>& models, Fidelity fidelity,
-                          int job_count, const OnSimulation& on_simulation) {
+Experiment nextExperiment(const Plant& plant, const std::vector<Contender>& contenders, Fidelity fidelity, int job_count,
+                          const OnSimulation& on_simulation) {
+  constexpr std::size_t closer_look = 6;
+  if (contenders.size() < 2) return {};
+  const std::vector<ScheduleChoice> bank = scheduleBank();
+  const Spans rooms = roomsOf(plant);
+  std::vector<TriedSchedule> trials(bank.size());
+  parallelFor(static_cast<int>(bank.size()), job_count, [&](int i) {
+    const auto index = static_cast<std::size_t>(i);
+    trials[index] = triedOut(plant, bank[index], contenders, rooms, fidelity, on_simulation);
+  });
+  std::erase_if(trials, [&](const TriedSchedule& trial) { return trial.predicted.size() < contenders.size(); });
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t i = 0; i < trials.size(); ++i) order.emplace_back(-worthOf(plant, trials[i], contenders, {}).told, i);
+  std::ranges::sort(order);
   Experiment best;
-  if (models.size() < 2) return best;
-  const std::vector<Excitation>& excitations = bank();
-  std::vector<double> amplitudes(excitations.size());
-  std::vector<Recording> recordings(excitations.size());
-  parallelFor(static_cast<int>(excitations.size()), job_count, [&](int i) {
-    const auto index = static_cast<std::size_t>(i);
-    amplitudes[index] = safeAmplitude(plant, excitations[index], models.front(), fidelity, on_simulation);
-    recordings[index] = scheduled(plant.recordings(), excitations[index], amplitudes[index]);
-  });
-  std::vector<Prediction> predictions(excitations.size() * models.size());
-  parallelFor(static_cast<int>(predictions.size()), job_count, [&](int i) {
-    const auto index = static_cast<std::size_t>(i);
-    predictions[index] = plant.predictSchedule(recordings[index / models.size()], models[index % models.size()], fidelity);
-    on_simulation();
-  });
-  for (std::size_t e = 0; e < excitations.size(); ++e) {
-    Difference smallest;
-    smallest.overall = std::numeric_limits<double>::infinity();
-    for (std::size_t a = 0; a < models.size(); ++a)
-      for (std::size_t b = a + 1; b < models.size(); ++b)
-        smallest = std::ranges::min(smallest, difference(plant, predictions[e * models.size() + a], predictions[e * models.size() + b]), {},
-                                    &Difference::overall);
-    if (smallest.overall <= best.difference) continue;
-    best.difference = smallest.overall;
-    best.schedule = excitations[e].name;
-    best.amplitude = amplitudes[e];
-    best.separates = labels;
-    best.why = fmt::format("{} ({}); the predictions that are most alike differ by {:.1f} times the noise there, most in {} ({:.1f})",
-                           excitations[e].name, excitations[e].words, smallest.overall, smallest.signal, smallest.in_signal);
-    best.time_s = recordings[e].time_s;
-    best.commands.assign(best.time_s.size(), {});
-    for (const Signal& signal : recordings[e].signals)
-      for (std::size_t row = 0; row < best.commands.size(); ++row) best.commands[row].push_back(signal.values[row]);
+  double most = 1e-6;
+  for (std::size_t rank = 0; rank < std::min(closer_look, order.size()); ++rank) {
+    const TriedSchedule& trial = trials[order[rank].second];
+    const Worth worth = worthOf(plant, trial, contenders, slopesOf(plant, trial, contenders, fidelity, job_count, on_simulation));
+    if (worth.told <= most) continue;
+    most = worth.told;
+    best = experimentOf(trial, contenders, worth);
   }
   return best;
-}
-
-Recording experimentSchedule(const std::string& name, double amplitude, const std::vector<Recording>& recordings) {
-  const auto found = std::ranges::find(bank(), name, &Excitation::name);
-  if (found == bank().end()) throw BadParameter("schedule", name, "be one that a diagnosis proposed");
-  return scheduled(recordings, *found, amplitude);
 }
 
 }  // namespace musclesim

@@ -1,18 +1,36 @@
 /// Which commands would tell explanations apart that the recordings do not.
 #pragma once
 
-#include "attribute.h"
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "musclesim/diagnosis/diagnosis.h"
+#include "plant.h"
+#include "screen.h"
 
 namespace musclesim {
 
-/// Simulates each model, as fitted, under a small bank of schedules and returns that under which the two most alike differ most, in units
-/// of the noise floor. Commands are made smaller until the plant is predicted to stay about where it was in the recordings. Without
-/// commands if there are fewer than two models.
-Experiment nextExperiment(const Plant& plant, const std::vector<std::string>& labels, const std::vector<Model>& models, Fidelity fidelity,
-                          int job_count, const OnSimulation& on_simulation);
+/// An explanation as fitted, with what is made of it so far and what its numbers can still take up.
+struct Contender {
+  std::string label;
+  Model model;
+  double probability;           ///< need not sum to 1
+  std::vector<Model> beside{};  ///< with one coordinate each moved by any step
+  Eigen::MatrixXd
+      slopes{};  ///< what those steps change in the recordings that it was fitted to, times the weights of the fit: [rows, steps]
+};
 
-/// A schedule of that bank for the plant of some recordings, as a recording without measurements: Experiment::schedule names it.
-/// `amplitude` 0..1: share of the range that each command has in the recordings. Throws BadParameter for an unknown name.
-Recording experimentSchedule(const std::string& name, double amplitude, const std::vector<Recording>& recordings);
+/// Simulates contenders, the likeliest first, under the schedules of the bank and returns the one that is expected to tell most: the sum
+/// over pairs of the product of their probabilities and 1 - exp(-e), e = per_misfit / (recordings + 1) * mean of ln(RMS difference over
+/// floor) over signals and their averages, the floor that of Odds, about what a recording of it would add to the log odds (a sum over pairs
+/// of models as in Box and Hill 1967, eq. 3.5, but bounded, so that it counts pairs and not how far apart they are). Of the six best by
+/// that, the best by what is left of the differences when either contender is fitted anew to its recordings and the other's prediction
+/// together, linearised (T-optimality, Atkinson and Fedorov 1975): what a change of its numbers takes up tells nothing. Schedules are made
+/// smaller until every contender is predicted to keep about where the plant has been, and clear of the stops of joints and muscles, where
+/// small differences decide what happens next. Without commands if there are fewer than two contenders, or if nothing tells any of them
+/// apart.
+Experiment nextExperiment(const Plant& plant, const std::vector<Contender>& contenders, Fidelity fidelity, int job_count,
+                          const OnSimulation& on_simulation);
 
 }  // namespace musclesim

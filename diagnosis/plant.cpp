@@ -303,37 +303,47 @@ bool Plant::takesForEver(const Recording& recording, const ReplayOptions& option
   return changed.substeps() > most_ratio * reference_->substeps();
 }
 
+/// Nothing if such an effect cannot act on this plant, for example a payload that takes away more than there is, or if it would take for
+/// ever.
+std::optional<ReplayResult> Plant::simulated(const Recording& recording, const Model& model, Fidelity fidelity, HeldSamples held) const {
+  ReplayOptions options = options_.model;
+  const bool unchanged = model.effects.empty() && model.parameters.empty();
+  if (!unchanged) options.interrupted = options_.interrupted;  // a partial report compares with the unchanged model too
+  if (const int ratio = ratioOf(possible(fidelity)); ratio > 1) options.substeps = (reference_->substeps() + ratio - 1) / ratio;
+  for (const ActiveEffect& effect : model.effects)
+    if (effect.id != held_effect || held == HeldSamples::drawn) options.effects.push_back(effect);
+  for (const auto& [name, value] : model.parameters) options.parameters.set(name, value, "diagnosis");
+  try {
+    if (!model.parameters.empty() && takesForEver(recording, options)) return std::nullopt;
+    return replayRecording(recording, options);
+  } catch (const BadParameter&) {
+    if (unchanged) throw;
+    return std::nullopt;
+  }
+}
+
 Prediction Plant::replay(Recording recording, const Model& model, int end_row, Fidelity fidelity) const {
   const std::size_t all_rows = recording.time_s.size();
   if (end_row > 0 && static_cast<std::size_t>(end_row) < all_rows) {
     recording.time_s.resize(static_cast<std::size_t>(end_row));
     for (Signal& signal : recording.signals) signal.values.resize(static_cast<std::size_t>(end_row));
   }
-  ReplayOptions options = options_.model;
-  const bool unchanged = model.effects.empty() && model.parameters.empty();
-  if (!unchanged) options.interrupted = options_.interrupted;  // a partial report compares with the unchanged model too
-  if (const int ratio = ratioOf(possible(fidelity)); ratio > 1) options.substeps = (reference_->substeps() + ratio - 1) / ratio;
-  for (const ActiveEffect& effect : model.effects)
-    if (effect.id != held_effect) options.effects.push_back(effect);
-  for (const auto& [name, value] : model.parameters) options.parameters.set(name, value, "diagnosis");
-  const Prediction refused = {std::vector<std::vector<double>>(signals_.size(), std::vector<double>(all_rows, nan)), true, true};
-  ReplayResult result;
-  try {
-    if (!model.parameters.empty() && takesForEver(recording, options)) return refused;
-    result = replayRecording(recording, options);
-  } catch (const BadParameter&) {
-    // Such an effect cannot act on this plant, for example a payload that takes away more than there is.
-    if (unchanged) throw;
-    return refused;
-  }
-
+  const std::optional<ReplayResult> result = simulated(recording, model, fidelity, HeldSamples::as_measured);
+  if (!result) return {std::vector<std::vector<double>>(signals_.size(), std::vector<double>(all_rows, nan)), true, true};
   Prediction prediction;
-  prediction.diverged = result.divergence.has_value() || result.interrupted;
+  prediction.diverged = result->divergence.has_value() || result->interrupted;
   for (const ComparedSignal& signal : signals_) {
-    prediction.values.push_back(result.simulated.find(signal.name)->values);
+    prediction.values.push_back(result->simulated.find(signal.name)->values);
     prediction.values.back().resize(all_rows, nan);
   }
   return prediction;
+}
+
+std::optional<Recording> Plant::predictSchedule(const Recording& schedule, const Model& model, Fidelity fidelity) const {
+  count(schedule.time_s.back() - schedule.time_s.front());
+  std::optional<ReplayResult> result = simulated(schedule, model, fidelity, HeldSamples::drawn);
+  if (!result || result->divergence || result->interrupted) return std::nullopt;
+  return std::move(result->simulated);
 }
 
 /// The same held samples in a stored prediction, which does not depend on them.

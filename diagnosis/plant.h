@@ -4,11 +4,13 @@
 #include <Eigen/Core>
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "musclesim/diagnosis/diagnosis.h"
 #include "musclesim/effect/catalogue.h"
+#include "musclesim/simulation/replay.h"
 #include "musclesim/units.h"
 #include "noise_floor.h"
 #include "prediction_store.h"
@@ -92,11 +94,8 @@ class Plant {
   /// The same with other commands in place of the recorded ones; `commands[row][muscle]`.
   Prediction predict(int recording, const Model& model, const std::vector<std::vector<double>>& commands, int end_row,
                      Fidelity fidelity) const;
-  /// The same for a schedule that was never recorded.
-  Prediction predictSchedule(const Recording& schedule, const Model& model, Fidelity fidelity) const {
-    count(schedule.time_s.back() - schedule.time_s.front());
-    return replay(schedule, model, 0, fidelity);
-  }
+  /// All signals of the model under a schedule that was never recorded; samples that an effect loses are drawn. Nothing if it diverges.
+  std::optional<Recording> predictSchedule(const Recording& schedule, const Model& model, Fidelity fidelity) const;
 
   /// The model as built, to be asked, never to be stepped.
   Simulation& model() const { return *reference_; }
@@ -120,6 +119,8 @@ class Plant {
   Parameter numberNamed(const std::string& name) const;
   Fidelity possible(Fidelity fidelity) const;
   void count(double simulated_s) const;
+  enum class HeldSamples { as_measured, drawn };
+  std::optional<ReplayResult> simulated(const Recording& recording, const Model& model, Fidelity fidelity, HeldSamples held) const;
   Prediction replay(Recording recording, const Model& model, int end_row, Fidelity fidelity) const;
   bool takesForEver(const Recording& recording, const ReplayOptions& options) const;
   void holdSamples(int recording, const Model& model, Prediction& prediction) const;

@@ -59,6 +59,18 @@ double Joint::angleDeg(int axis) const {
   throw BadParameter("joint " + name_ + " has no angle about axis " + std::to_string(axis));
 }
 
+std::pair<double, double> Joint::stopsDeg(int axis) const {
+  auto inDegrees = [this](dReal (*get)(dJointID, int), int low, int high) {
+    return std::pair<double, double>{get(id_, low) * deg_per_rad, get(id_, high) * deg_per_rad};
+  };
+  if (kind_ == Kind::hinge && axis == 0) return inDegrees(dJointGetHingeParam, dParamLoStop, dParamHiStop);
+  if (kind_ == Kind::hinge2 && axis == 0) return inDegrees(dJointGetHinge2Param, dParamLoStop1, dParamHiStop1);
+  if (kind_ == Kind::universal && axis == 0) return inDegrees(dJointGetUniversalParam, dParamLoStop1, dParamHiStop1);
+  if (kind_ == Kind::universal && axis == 1) return inDegrees(dJointGetUniversalParam, dParamLoStop2, dParamHiStop2);
+  angleDeg(axis);  // throws where there is no such axis
+  return {-dInfinity, dInfinity};
+}
+
 Vector Joint::separation() const {
   const dBodyID first = dJointGetBody(id_, 0), second = dJointGetBody(id_, 1);
   if (!first) return rotationOf(second).transpose() * -positionOf(second);

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <mutex>
 
-#include "../next_experiment.h"
 #include "../parallel.h"
+#include "../schedule.h"
 #include "follow_up_score.h"
 #include "musclesim/diagnosis/diagnosis.h"
 #include "musclesim/effect/effects_file.h"
@@ -80,8 +80,8 @@ json leftOut(const Answered& one, const FollowUpOptions& options) {
 json experimented(const Answered& one, const FollowUpOptions& options) {
   if (!one.answer.contains("next_experiment")) return {{"verdict", "failed"}, {"message", "no schedule was proposed"}};
   const json& proposed = one.answer["next_experiment"];
-  const Recording schedule =
-      experimentSchedule(proposed.at("name").get<std::string>(), proposed.at("amplitude").get<double>(), one.recordings);
+  const ScheduleChoice choice{proposed.at("name").get<std::string>(), proposed.at("amplitude").get<double>(), proposed.value("level", 0.0)};
+  const Recording schedule = scheduled(choice, one.recordings);
   std::vector<Recording> recordings = one.recordings;
   recordings.insert(recordings.begin(), measuredUnder(schedule, one, "next.csv", 1));
   return diagnosed(std::move(recordings), oneThread(options));

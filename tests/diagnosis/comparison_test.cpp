@@ -42,6 +42,20 @@ TEST_F(Rig, MisfitIsTheLogarithmOfTheResidualOverTheFloorPerCell) {
   EXPECT_TRUE(std::isinf(both.logMisfit(residual)));
 }
 
+/// Two cells, their residuals three and five floors: half of the sum of mean square over (floor^2 + residual^2).
+TEST_F(Rig, BySquaresWeighsCellsByAResidual) {
+  const double floor = planted::noise_mm;
+  Eigen::VectorXd residual = Eigen::VectorXd::Constant(300, 3 * floor);
+  residual.tail(150).setConstant(5 * floor);
+  const Comparison squares = both.bySquares(residual);
+  EXPECT_NEAR(squares.logMisfit(residual), 0.5 * (9.0 / 10 + 25.0 / 26), 1e-12);
+  EXPECT_NEAR(squares.logMisfit(residual / 2), squares.logMisfit(residual) / 4, 1e-12);
+  const Eigen::VectorXd weights = squares.weights(0.1 * residual);
+  EXPECT_NEAR(weights[0], 1 / (floor * std::sqrt(10.0 * 150)), 1e-9);
+  EXPECT_NEAR(weights[299], 1 / (floor * std::sqrt(26.0 * 150)), 1e-9);
+  EXPECT_EQ(squares.predicted(Model{}), both.predicted(Model{}));
+}
+
 TEST_F(Rig, NumbersThatNeedFarMoreStepsAreRefused) {
   Recording machine = planted::recorded({}, 0.1, 1);
   machine.info.extra_json = "{}";  // a measured recording's model takes as many as it needs

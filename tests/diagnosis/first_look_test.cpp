@@ -94,5 +94,34 @@ TEST_F(FirstLook, OfFewMusclesTakesAll) {
   EXPECT_EQ(look.looked_at_count, look.suspects.size());
 }
 
+/// A command between two values, each for a quarter of a second.
+Recording betweenTwo(const std::vector<ActiveEffect>& effects, double low, double high, std::uint64_t seed) {
+  Recording plan;
+  plan.file = "two_" + std::to_string(seed) + ".csv";
+  plan.info.robot = "rig";
+  plan.signals = {{"command_0", {}}};
+  for (int row = 0; row < 150; ++row) {
+    plan.time_s.push_back(0.01 * row);
+    plan.signals[0].values.push_back(row / 25 % 2 == 0 ? low : high);
+  }
+  return planted::measuredUnder(effects, plan, seed);
+}
+
+/// The first recording's levels are as exact with five bits as with six or ten: only the others tell.
+TEST_F(FirstLook, ChoosesNumbersOfBitsByAllOfItsRecordings) {
+  const ActiveEffect effect{"command_quantisation", "muscle_0", {{"bits", 6.0}, {"rounding_point", 0.5}, {"top_level", 0.0}}};
+  const std::vector<ActiveEffect> six_bits = {effect};
+  const std::vector<Recording> recordings = {betweenTwo(six_bits, 10.0 / 32, 15.0 / 32, 1), betweenTwo(six_bits, 20.4 / 64, 30.7 / 64, 2),
+                                             betweenTwo(six_bits, 21.3 / 64, 29.2 / 64, 3), planted::recorded(six_bits, 0.1, 4)};
+  const Attribution look = lookedAt(recordings, planted::few({}));
+  std::vector<double> bits;
+  for (const Suspect& suspect : look.suspects)
+    if (suspect.info().id == "command_quantisation" && suspect.component() == "muscle_0")
+      for (const auto& [name, value] : suspect.valuesAt({}))
+        if (name == "bits") bits.push_back(value);
+  ASSERT_EQ(bits.size(), 2u);
+  EXPECT_TRUE(std::ranges::find(bits, 6) != bits.end()) << bits[0] << ", " << bits[1];
+}
+
 }  // namespace
 }  // namespace musclesim

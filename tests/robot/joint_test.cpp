@@ -133,6 +133,14 @@ TEST_P(JointAxis, MovesOrHoldsUnderATorqueInBothDirections) {
     if (c.reported_axis >= 0) {
       const double reported_deg = joint->angleDeg(c.reported_axis);
       EXPECT_NEAR(std::remainder(reported_deg - turned_deg, 360), 0, 1e-3) << "reported " << reported_deg << ", turned " << turned_deg;
+      const auto [low_deg, high_deg] = joint->stopsDeg(c.reported_axis);
+      const bool own_stops = c.behaviour == Case::limited && !(joint->kind() == Joint::Kind::hinge2 && c.reported_axis == 1);
+      if (own_stops) {
+        EXPECT_NEAR(low_deg, c.low_deg, 1e-9);
+        EXPECT_NEAR(high_deg, c.high_deg, 1e-9);
+      } else {
+        EXPECT_TRUE(std::isinf(low_deg) && std::isinf(high_deg)) << low_deg << " .. " << high_deg;
+      }
     }
     EXPECT_LT(joint->gapMm(), 0.01);
     EXPECT_LT((pair.body->getPosition()).norm(), 0.01);
@@ -214,6 +222,7 @@ TEST(Joint, HasNoAngleAboutAnAxisThatItLacks) {
   EXPECT_EQ(hinge->angleDeg(0), 0);
   EXPECT_THROW(hinge->angleDeg(1), BadParameter);
   EXPECT_THROW(hinge->angleDeg(-1), BadParameter);
+  EXPECT_THROW(hinge->stopsDeg(1), BadParameter);
   EXPECT_THROW(pair.body->attachBall(nullptr, {0, 0, 0})->angleDeg(), BadParameter);
 }
 

@@ -79,9 +79,10 @@ struct Experiment {
   std::vector<std::string> separates;
   std::string schedule, why;  ///< name of the schedule, and what it is good for
   double amplitude = 1;       ///< of the commands' range in the recordings
+  double level = 0;           ///< of the commands above the middle of that range, in units of it
   std::vector<double> time_s;
   std::vector<std::vector<double>> commands;  ///< per row, one per muscle; empty: there is nothing to tell apart
-  double difference = 0;                      ///< RMS between the predictions, in units of the noise floor
+  double difference = 0;  ///< RMS between the predictions of the likeliest and of what is most like it, in units of the noise floor
 };
 
 /// One signal of one recording (or part of one) that explanations are fitted to.

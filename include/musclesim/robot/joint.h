@@ -4,6 +4,7 @@
 #include <ode/ode.h>
 
 #include <string>
+#include <utility>
 
 #include "musclesim/robot/state.h"
 
@@ -33,6 +34,9 @@ class Joint {
   /// Angle about axis 0 or 1 in degrees, 0 in the pose as built, right-handed about the axis for a positive turn of the first body
   /// against the second. Throws BadParameter for joints without that axis.
   double angleDeg(int axis = 0) const;
+  /// Least and greatest angle about axis 0 or 1 that stops of the joint allow, in degrees; infinite where it has none, and about the second
+  /// axis of a two-axis hinge, whose stops are not the joint's own. Throws as angleDeg.
+  std::pair<double, double> stopsDeg(int axis = 0) const;
   /// Distance in mm by which the joint is torn: between the anchor on one body and on the other; for sliders across the axis.
   double gapMm() const;
   /// Makes the present pose the reference, after a body's centre of mass has been moved.

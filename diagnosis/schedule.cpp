@@ -1,0 +1,107 @@
+#include "schedule.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "musclesim/error.h"
+
+namespace musclesim {
+
+namespace {
+
+constexpr double duration_s = 12, step_s = 0.01;
+constexpr double beside = 0.5;  ///< of a command's range, by which levels lie apart
+
+/// -1..1 for each muscle at a time, of the range that its command has in the recordings.
+struct Excitation {
+  std::string name, words;
+  std::function<double(double time_s, int muscle)> shape;
+};
+
+double triangle(double time_s, double period_s) {
+  const double phase = time_s / period_s - std::floor(time_s / period_s);
+  return phase < 0.5 ? 4 * phase - 1 : 3 - 4 * phase;
+}
+
+double sign(int muscle) {
+  return muscle % 2 == 0 ? 1 : -1;
+}
+
+/// Muscles with even and odd numbers move against each other unless the schedule is a co-contraction.
+const std::vector<Excitation>& excitations() {
+  static const std::vector<Excitation> all = {
+      {"slow reversals", "triangles of six seconds", [](double t, int m) { return sign(m) * triangle(t, 6); }},
+      {"three speeds", "the same path in 6, 1.5 and 0.5 s",
+       [](double t, int m) {
+         return sign(m) * triangle(t, t < 6 ? 6 : t < 9 ? 1.5 : 0.5);
+       }},
+      {"steps of two sizes", "small ones, then large ones",
+       [](double t, int m) { return sign(m) * (t < 6 ? 0.25 : 1) * (std::fmod(t, 3) < 1.5 ? 1 : -1); }},
+      {"co-contraction", "all muscles filled and emptied together, slowly", [](double t, int) { return triangle(t, 6); }},
+      {"vent and hold", "one side emptied for five seconds, then the other",
+       [](double t, int m) { return t < 1   ? 0.0
+                                    : t < 6 ? (m % 2 == 0 ? -1.0 : 1.0)
+                                            : (m % 2 == 0 ? 1.0 : -1.0); }},
+      {"one muscle at a time", "every second muscle for two seconds, then the others",
+       [](double t, int m) { return static_cast<int>(t / 2) % 2 == m % 2 ? std::sin(std::numbers::pi * t) : 0.0; }},
+  };
+  return all;
+}
+
+const Excitation& excitationOf(const ScheduleChoice& choice) {
+  const auto found = std::ranges::find(excitations(), choice.name, &Excitation::name);
+  if (found == excitations().end()) throw BadParameter("schedule", choice.name, "be one that a diagnosis proposed");
+  return *found;
+}
+
+struct CommandRange {
+  double low = 1, high = 0;
+};
+
+/// The range of a muscle's command over all recordings: where the plant is known to go.
+CommandRange rangeOf(const std::vector<Recording>& recordings, int muscle) {
+  CommandRange range;
+  for (const Recording& recording : recordings)
+    for (const double u : recording.find(fmt::format("command_{}", muscle))->values) {
+      range.low = std::min(range.low, u);
+      range.high = std::max(range.high, u);
+    }
+  return range;
+}
+
+}  // namespace
+
+std::vector<ScheduleChoice> scheduleBank() {
+  std::vector<ScheduleChoice> bank;
+  for (const double level : {0.0, -beside, beside})
+    for (const Excitation& excitation : excitations()) bank.push_back({excitation.name, 1, level});
+  return bank;
+}
+
+std::string scheduleWords(const ScheduleChoice& choice) {
+  const char* level = choice.level < 0 ? ", at lower pressures than in the recordings" : choice.level > 0 ? ", at higher pressures" : "";
+  return fmt::format("{} ({}){}", choice.name, excitationOf(choice).words, level);
+}
+
+Recording scheduled(const ScheduleChoice& choice, const std::vector<Recording>& recordings) {
+  const Excitation& excitation = excitationOf(choice);
+  Recording recording;
+  recording.info = recordings.front().info;
+  recording.info.trial = choice.name;
+  for (int row = 0; row * step_s < duration_s; ++row) recording.time_s.push_back(row * step_s);
+  for (int muscle = 0; muscle < recordings.front().muscleCount(); ++muscle) {
+    const CommandRange range = rangeOf(recordings, muscle);
+    const double size = range.high - range.low, middle = (range.low + range.high) / 2 + choice.level * size;
+    Signal signal{fmt::format("command_{}", muscle), {}};
+    for (const double t : recording.time_s)
+      signal.values.push_back(std::clamp(middle + choice.amplitude * size / 2 * excitation.shape(t, muscle), 0.0, 1.0));
+    recording.signals.push_back(std::move(signal));
+  }
+  return recording;
+}
+
+}  // namespace musclesim
