@@ -410,7 +410,7 @@ Contender Attributor::contender(const Explanation& explanation, const std::strin
   const Eigen::MatrixXd slopes = fit_.weights(explanation.residual).asDiagonal() * derivatives(fit_, problem, problem.start);
   std::vector<Eigen::Index> moving;
   for (Eigen::Index k = 0; k < problem.start.size(); ++k)
-    if (slopes.col(k).squaredNorm() > 0) moving.push_back(k);
+    if (stepOf(problem, problem.start, k) != 0) moving.push_back(k);
   result.slopes.resize(slopes.rows(), static_cast<Eigen::Index>(moving.size()));
   for (std::size_t i = 0; i < moving.size(); ++i) {
     Eigen::VectorXd z = problem.start;

@@ -73,7 +73,8 @@ class Attributor {
   bool isHollow(const Explanation& explanation) const;
   Comparison firstOfLook() const;
   void keepNearestVariants();
-  void keepNearestVariants(const Comparison& comparison, std::size_t kept);
+  enum class Ties { kept, dropped };  ///< of the last one kept
+  void keepNearestVariants(const Comparison& comparison, std::size_t kept, Ties ties);
   std::vector<std::size_t> worthLookingAt() const;
   void lookAtSuspects(const Eigen::VectorXd& nominal);
   void lookForExcitation(const std::vector<Suspect>& typical);

@@ -31,8 +31,20 @@ Comparison::Comparison(const Plant& plant, std::vector<Stretch> stretches, Avera
   average(measured_);
 }
 
-/// floor^2 = floor^2 (1 / n + share^2), n readings per block: a reading that is held in the next rows is one. What repeats differ by need
-/// not be white: it is not averaged.
+double averagedShareOfFloor(const std::vector<double>& values) {
+  std::size_t rows = 0, readings = 0;
+  double last = std::numeric_limits<double>::quiet_NaN();
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    ++rows;
+    readings += value != last ? 1 : 0;
+    last = value;
+  }
+  const double per_block = std::max(1.0, static_cast<double>(block_rows * readings) / static_cast<double>(std::max<std::size_t>(rows, 1)));
+  return std::sqrt(1.0 / per_block + steady_share * steady_share);
+}
+
+/// What repeats differ by need not be white: it is not averaged.
 void Comparison::addAverages() {
   const std::size_t plain_count = cells_.size();
   for (std::size_t i = 0; i < plain_count; ++i) {
@@ -40,12 +52,9 @@ void Comparison::addAverages() {
     const NoiseFloor& floor = plant_.signals()[static_cast<std::size_t>(plain.signal)].floor;
     if (floor.source == NoiseFloor::Source::repeats || plain.rows.size() < 4 * block_rows) continue;
     const std::vector<double>& y = plant_.measured(stretches_[plain.stretch].recording, plain.signal);
-    std::size_t readings = 1;
-    for (std::size_t k = 1; k < plain.rows.size(); ++k)
-      readings += y[static_cast<std::size_t>(plain.rows[k])] != y[static_cast<std::size_t>(plain.rows[k - 1])] ? 1 : 0;
-    const double per_block = std::max(1.0, static_cast<double>(block_rows * readings) / static_cast<double>(plain.rows.size()));
-    Cell cell{plain.stretch, plain.signal, {}, size_, plain.floor * std::sqrt(1.0 / per_block + steady_share * steady_share),
-              block_rows,    plain.first};
+    std::vector<double> values;
+    for (const int row : plain.rows) values.push_back(y[static_cast<std::size_t>(row)]);
+    Cell cell{plain.stretch, plain.signal, {}, size_, plain.floor * averagedShareOfFloor(values), block_rows, plain.first};
     for (std::size_t row = 0; row + block_rows <= plain.rows.size(); row += block_rows) cell.rows.push_back(plain.rows[row]);
     size_ += cell.count();
     cells_.push_back(std::move(cell));

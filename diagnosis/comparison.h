@@ -11,6 +11,10 @@ namespace musclesim {
 inline constexpr std::size_t block_rows = 16;  ///< that many rows are averaged
 inline constexpr double steady_share = 0.2;    ///< of a noise floor that does not average out: what the model's own steps leave
 
+/// What part of a signal's noise floor is left in averages over blocks: sqrt(1 / n + steady_share^2), n readings per block, where a
+/// reading that is held in the next rows is one. Values that are no numbers are left out.
+double averagedShareOfFloor(const std::vector<double>& values);
+
 /// The compared rows of some stretches. A cell is one signal in one stretch, or the same averaged over blocks of rows: there noise is
 /// smaller, and what is weak but slow stands out.
 class Comparison {

@@ -27,14 +27,14 @@ Comparison Attributor::firstOfLook() const {
 }
 
 /// Of variants without any strength (numbers of bits), the two of one component that leave least on the look, among the six that leave
-/// least on its first stretch: simulating all of them on all of it would take as long as everything else, and one stretch alone may
-/// hardly tell them.
+/// least on its first stretch, and what does as well as the sixth: simulating all of them on all of it would take as long as everything
+/// else, and one stretch alone may hardly tell them.
 void Attributor::keepNearestVariants() {
-  keepNearestVariants(firstOfLook(), 6);
-  keepNearestVariants(look_, 2);
+  keepNearestVariants(firstOfLook(), 6, Ties::kept);
+  keepNearestVariants(look_, 2, Ties::dropped);
 }
 
-void Attributor::keepNearestVariants(const Comparison& comparison, std::size_t kept) {
+void Attributor::keepNearestVariants(const Comparison& comparison, std::size_t kept, Ties ties) {
   std::vector<Suspect>& all = result_.suspects;
   std::map<std::string, std::vector<std::size_t>> variants;
   for (std::size_t i = 0; i < all.size(); ++i)
@@ -55,7 +55,10 @@ void Attributor::keepNearestVariants(const Comparison& comparison, std::size_t k
   for (auto& [label, members] : variants) {
     std::ranges::stable_sort(members, {}, [&](std::size_t i) { return log_misfit[i]; });
     if (members.size() <= kept) continue;
-    dropped.insert(members.begin() + static_cast<std::ptrdiff_t>(kept), members.end());
+    auto end = members.begin() + static_cast<std::ptrdiff_t>(kept);
+    if (ties == Ties::kept) end = std::find_if(end, members.end(), [&](std::size_t i) { return log_misfit[i] > log_misfit[*(end - 1)]; });
+    if (end == members.end()) continue;
+    dropped.insert(end, members.end());
     result_.thinned.insert(label);
   }
   std::vector<Suspect> rest;

@@ -23,6 +23,9 @@ namespace musclesim {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double scatter = 4;      ///< noise floors that readings scatter by
+constexpr double worth_it = 1e-3;  ///< probability that a schedule tells contenders apart, below which it is not proposed
+constexpr double apart = 0.5;      ///< noise floors that contenders differ by whom a schedule is said to separate
 
 /// Between which values a signal is, or may be predicted to stay; nowhere as yet.
 struct Span {
@@ -36,22 +39,29 @@ bool isPosition(const std::string& signal) {
   return signal.starts_with("length_") || signal.starts_with("angle_") || signal.starts_with("hand_");
 }
 
-/// What stops allow of the model's angles and lengths.
-Spans travelsOf(Simulation& model) {
-  Spans travels;
+/// What stops allow an angle or a length, and where it is as built.
+struct Travel {
+  Span stops;
+  double built;
+};
+
+std::map<std::string, Travel> travelsOf(Simulation& model) {
+  std::map<std::string, Travel> travels;
   for (const Robot::Angle& angle : model.robot().angles()) {
     const auto [low, high] = angle.joint->stopsDeg(angle.axis);
-    travels["angle_" + angle.name + "_deg"] = {low, high};
+    travels["angle_" + angle.name + "_deg"] = {{low, high}, angle.joint->angleDeg(angle.axis)};
   }
-  for (std::size_t i = 0; i < model.actuators().size(); ++i)
-    travels[fmt::format("length_{}_mm", i)] = {model.actuators()[i]->minimumLengthMm(), model.actuators()[i]->maximumLengthMm()};
+  for (std::size_t i = 0; i < model.actuators().size(); ++i) {
+    const Actuator& actuator = *model.actuators()[i];
+    travels[fmt::format("length_{}_mm", i)] = {{actuator.minimumLengthMm(), actuator.maximumLengthMm()}, actuator.lengthMm()};
+  }
   return travels;
 }
 
 /// Measured positions may go a quarter of their range farther than they have been. All keep a thirtieth of their travel from stops, but for
-/// where they have been.
+/// where they have been or are as built, and a hundredth more: what rests on a stop is pressed into it.
 Spans roomsOf(const Plant& plant) {
-  constexpr double farther = 0.25, margin = 1.0 / 30;
+  constexpr double farther = 0.25, margin = 1.0 / 30, pressed_in = 0.01;
   Spans been, rooms;
   for (std::size_t s = 0; s < plant.signals().size(); ++s) {
     const ComparedSignal& signal = plant.signals()[s];
@@ -59,16 +69,17 @@ Spans roomsOf(const Plant& plant) {
     Span& span = been[signal.name];
     for (std::size_t i = 0; i < plant.recordings().size(); ++i)
       for (const double y : plant.measured(static_cast<int>(i), static_cast<int>(s)))
-        if (std::isfinite(y)) span.include(y);
-    const double more = farther * (span.high - span.low) + 4 * signal.floor.value;
+        if (std::isfinite(y)) span.include(y - scatter * signal.floor.value), span.include(y + scatter * signal.floor.value);
+    const double more = farther * (span.high - span.low);
     rooms[signal.name] = {span.low - more, span.high + more};
   }
   for (const auto& [name, travel] : travelsOf(plant.model())) {
-    const double clear = margin * (travel.high - travel.low);
-    if (!std::isfinite(clear)) continue;
+    const double whole = travel.stops.high - travel.stops.low;
+    if (!std::isfinite(whole)) continue;
+    been[name].include(travel.built);
     Span& room = rooms.try_emplace(name, Span{-infinity, infinity}).first->second;
-    room.low = std::max(room.low, std::min(travel.low + clear, been[name].low));
-    room.high = std::min(room.high, std::max(travel.high - clear, been[name].high));
+    room.low = std::max(room.low, std::min(travel.stops.low + margin * whole, been[name].low - pressed_in * whole));
+    room.high = std::min(room.high, std::max(travel.stops.high - margin * whole, been[name].high + pressed_in * whole));
   }
   return rooms;
 }
@@ -113,7 +124,14 @@ class InFloors {
       : plant_(plant),
         row_count_(static_cast<Eigen::Index>(commands.time_s.size())),
         block_count_(row_count_ / block),
-        signal_count_(static_cast<Eigen::Index>(plant.signals().size())) {}
+        signal_count_(static_cast<Eigen::Index>(plant.signals().size())) {
+    for (std::size_t s = 0; s < plant.signals().size(); ++s) {
+      double floor = 1;
+      for (std::size_t i = 0; i < plant.recordings().size() && plant.signals()[s].floor.source != NoiseFloor::Source::repeats; ++i)
+        floor = std::min(floor, averagedShareOfFloor(plant.measured(static_cast<int>(i), static_cast<int>(s))));
+      averaged_floors_.push_back(floor);
+    }
+  }
 
   /// a - b
   Eigen::VectorXd difference(const Recording& a, const Recording& b) const {
@@ -123,7 +141,8 @@ class InFloors {
       auto readings = result.segment(s * perSignal(), row_count_);
       readings = (valuesOf(a, signal) - valuesOf(b, signal)) / signal.floor.value;
       for (Eigen::Index k = 0; k < block_count_; ++k)
-        result[s * perSignal() + row_count_ + k] = readings.segment(k * block, block).mean() / averaged_floor;
+        result[s * perSignal() + row_count_ + k] =
+            readings.segment(k * block, block).mean() / averaged_floors_[static_cast<std::size_t>(s)];
     }
     return result;
   }
@@ -157,7 +176,6 @@ class InFloors {
 
  private:
   static constexpr auto block = static_cast<Eigen::Index>(block_rows);
-  static inline const double averaged_floor = std::sqrt(1.0 / static_cast<double>(block_rows) + steady_share * steady_share);
   Eigen::Index perSignal() const { return row_count_ + block_count_; }
   Eigen::Map<const Eigen::VectorXd> valuesOf(const Recording& recording, const ComparedSignal& signal) const {
     return {recording.find(signal.name)->values.data(), row_count_};
@@ -165,6 +183,7 @@ class InFloors {
 
   const Plant& plant_;
   Eigen::Index row_count_, block_count_, signal_count_;
+  std::vector<double> averaged_floors_;  ///< in units of the floor, as Comparison takes them
 };
 
 /// What changes of a contender's numbers change under a schedule; without columns where they are not looked at.
@@ -201,12 +220,28 @@ Eigen::VectorXd leftBy(const Contender& contender, const Eigen::MatrixXd& slopes
   return difference - slopes * normal.ldlt().solve(both.transpose() * aim);
 }
 
-/// What a schedule is worth, and the difference between the likeliest contender and what is most like it.
+/// How far a contender's prediction is from the likeliest one's.
+struct Difference {
+  double overall = infinity;  ///< RMS over all signals and rows in units of the floor
+  std::string signal;         ///< that differs most
+  double in_signal = 0;
+};
+
+Difference differenceOf(const Plant& plant, const InFloors& in_floors, const Eigen::VectorXd& difference) {
+  double sum = 0, largest = 0;
+  std::size_t most = 0;
+  for (std::size_t s = 0; s < plant.signals().size(); ++s) {
+    const double mean_square = in_floors.meanSquare(difference, static_cast<Eigen::Index>(s));
+    sum += mean_square;
+    if (mean_square > largest) largest = mean_square, most = s;
+  }
+  return {std::sqrt(sum / static_cast<double>(plant.signals().size())), plant.signals()[most].name, std::sqrt(largest)};
+}
+
+/// What a schedule is worth, and how far every contender is from the likeliest there; 0 for itself.
 struct Worth {
   double told = 0;
-  double nearest = std::numeric_limits<double>::infinity();  ///< RMS over all signals and rows in units of the floor
-  std::string signal;                                        ///< that differs most
-  double in_signal = 0;
+  std::vector<Difference> from_likeliest;
 };
 
 Worth worthOf(const Plant& plant, const TriedSchedule& trial, const std::vector<Contender>& contenders, const Slopes& slopes) {
@@ -214,43 +249,45 @@ Worth worthOf(const Plant& plant, const TriedSchedule& trial, const std::vector<
   const InFloors in_floors(plant, trial.commands);
   const Recording& likeliest = trial.predicted.front();
   const Eigen::VectorXd gap = in_floors.difference(likeliest, trial.nominal ? *trial.nominal : likeliest);
-  Worth worth;
-  auto compare = [&](std::size_t likelier, const Eigen::VectorXd& difference, double weight) {
-    worth.told += weight * -std::expm1(-per_log_misfit * in_floors.logMisfit(difference, gap));
-    if (likelier > 0) return;
-    double sum = 0, largest = 0;
-    std::size_t most = 0;
-    for (std::size_t s = 0; s < plant.signals().size(); ++s) {
-      const double mean_square = in_floors.meanSquare(difference, static_cast<Eigen::Index>(s));
-      sum += mean_square;
-      if (mean_square > largest) largest = mean_square, most = s;
-    }
-    const double overall = std::sqrt(sum / static_cast<double>(plant.signals().size()));
-    if (overall >= worth.nearest) return;
-    worth.nearest = overall;
-    worth.signal = plant.signals()[most].name;
-    worth.in_signal = std::sqrt(largest);
-  };
+  double all = 0;
+  for (const Contender& contender : contenders) all += contender.probability;
+  Worth worth{0, std::vector<Difference>(contenders.size())};
+  worth.from_likeliest.front() = {0, "", 0};
   for (std::size_t a = 0; a < contenders.size(); ++a)
     for (std::size_t b = a + 1; b < contenders.size(); ++b) {
-      const Eigen::VectorXd difference = in_floors.difference(trial.predicted[a], trial.predicted[b]);
-      const double weight = contenders[a].probability * contenders[b].probability / 2;
-      for (const std::size_t refitted : {a, b})
-        compare(a, slopes.empty() ? difference : leftBy(contenders[refitted], slopes[refitted], in_floors, difference), weight);
+      const Eigen::VectorXd between = in_floors.difference(trial.predicted[a], trial.predicted[b]);
+      for (const std::size_t refitted : {a, b}) {
+        const Eigen::VectorXd left = slopes.empty() ? between : leftBy(contenders[refitted], slopes[refitted], in_floors, between);
+        const double told = -std::expm1(-per_log_misfit * in_floors.logMisfit(left, gap));
+        worth.told += contenders[a].probability / all * contenders[b].probability / all * told;
+        if (a > 0) continue;
+        const Difference difference = differenceOf(plant, in_floors, left);
+        if (difference.overall < worth.from_likeliest[b].overall) worth.from_likeliest[b] = difference;
+      }
     }
   return worth;
 }
 
+/// Says what the schedule separates from the likeliest; where that is nothing, what it separates best.
 Experiment experimentOf(const TriedSchedule& trial, const std::vector<Contender>& contenders, const Worth& worth) {
+  const double farthest = std::ranges::max(worth.from_likeliest, {}, &Difference::overall).overall;
   Experiment result;
   result.schedule = trial.choice.name;
   result.amplitude = trial.choice.amplitude;
   result.level = trial.choice.level;
-  result.difference = worth.nearest;
+  result.separates = {contenders.front().label};
+  std::size_t nearest = 0;
+  for (std::size_t i = 1; i < contenders.size(); ++i) {
+    if (worth.from_likeliest[i].overall < std::min(apart, farthest)) continue;
+    result.separates.push_back(contenders[i].label);
+    if (nearest == 0 || worth.from_likeliest[i].overall < worth.from_likeliest[nearest].overall) nearest = i;
+  }
+  const Difference& difference = worth.from_likeliest[nearest];
+  result.difference = difference.overall;
   result.why =
-      fmt::format("{}; the likeliest and what is most like it, fitted anew, differ by {:.1f} times the noise there, most in {} ({:.1f})",
-                  scheduleWords(trial.choice), worth.nearest, worth.signal, worth.in_signal);
-  for (const Contender& contender : contenders) result.separates.push_back(contender.label);
+      fmt::format("{}; {} and {}, the most alike of these, fitted anew, differ by {:.1f} times the noise there, most in {} ({:.1f})",
+                  scheduleWords(trial.choice), contenders.front().label, contenders[nearest].label, difference.overall, difference.signal,
+                  difference.in_signal);
   result.time_s = trial.commands.time_s;
   result.commands.resize(result.time_s.size());
   for (const Signal& signal : trial.commands.signals)
@@ -276,7 +313,7 @@ Experiment nextExperiment(const Plant& plant, const std::vector<Contender>& cont
   for (std::size_t i = 0; i < trials.size(); ++i) order.emplace_back(-worthOf(plant, trials[i], contenders, {}).told, i);
   std::ranges::sort(order);
   Experiment best;
-  double most = 1e-6;
+  double most = worth_it;
   for (std::size_t rank = 0; rank < std::min(closer_look, order.size()); ++rank) {
     const TriedSchedule& trial = trials[order[rank].second];
     const Worth worth = worthOf(plant, trial, contenders, slopesOf(plant, trial, contenders, fidelity, job_count, on_simulation));

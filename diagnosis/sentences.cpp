@@ -223,6 +223,21 @@ std::string explanationWords(const std::string& labels) {
   return words;
 }
 
+/// What the next experiment tells from what, and how surely.
+std::string separatedWords(const Diagnosis& d) {
+  const std::vector<std::string>& separates = d.next_experiment.separates;
+  std::string words = "them apart";
+  if (separates.size() < d.alternatives.size()) {
+    std::vector<std::string> others;
+    for (auto other = separates.begin() + 1; other != separates.end(); ++other) others.push_back(explanationWords(*other));
+    words = fmt::format("{} from {}", explanationWords(separates.front()), fmt::join(others, " and "));
+  }
+  if (d.next_experiment.difference < 1)
+    words += fmt::format(", though even there {} differ by only {:.1f} times the noise",
+                         separates.size() > 2 ? "the two most alike" : "they", d.next_experiment.difference);
+  return words;
+}
+
 /// What else would do, and how to find out.
 std::string otherwise(const Diagnosis& d) {
   if (d.alternatives.size() < 2) return "";
@@ -230,12 +245,9 @@ std::string otherwise(const Diagnosis& d) {
   for (auto other = d.alternatives.begin() + 1; other != d.alternatives.end(); ++other) others.push_back(explanationWords(*other));
   const std::string place = d.chosen.size() > 1 ? " in place of " + explanationWords(d.alternatives.front()) : "";
   others.front().front() = static_cast<char>(std::toupper(static_cast<unsigned char>(others.front().front())));
-  const char* which = d.next_experiment.separates.size() > others.size() ? "them" : "the likeliest of them";
   const bool pairs = std::ranges::any_of(d.alternatives, [](const std::string& labels) { return labels.find(" + ") != std::string::npos; });
   std::string experiment;
-  if (!d.next_experiment.commands.empty()) experiment = fmt::format("; record the schedule in next.csv to tell {} apart", which);
-  if (!experiment.empty() && d.next_experiment.difference < 1)
-    experiment += fmt::format(", though even there they differ by no more than {:.1f} times the noise", d.next_experiment.difference);
+  if (!d.next_experiment.commands.empty()) experiment = "; record the schedule in next.csv to tell " + separatedWords(d);
   return fmt::format("{} would explain it as well{}{}.", fmt::join(others, pairs ? "; or " : " or "), place, experiment);
 }
 

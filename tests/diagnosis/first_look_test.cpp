@@ -107,12 +107,14 @@ Recording betweenTwo(const std::vector<ActiveEffect>& effects, double low, doubl
   return planted::measuredUnder(effects, plan, seed);
 }
 
-/// The first recording's levels are as exact with five bits as with six or ten: only the others tell.
-TEST_F(FirstLook, ChoosesNumbersOfBitsByAllOfItsRecordings) {
-  const ActiveEffect effect{"command_quantisation", "muscle_0", {{"bits", 6.0}, {"rounding_point", 0.5}, {"top_level", 0.0}}};
-  const std::vector<ActiveEffect> six_bits = {effect};
-  const std::vector<Recording> recordings = {betweenTwo(six_bits, 10.0 / 32, 15.0 / 32, 1), betweenTwo(six_bits, 20.4 / 64, 30.7 / 64, 2),
-                                             betweenTwo(six_bits, 21.3 / 64, 29.2 / 64, 3), planted::recorded(six_bits, 0.1, 4)};
+/// The first recording's levels are as exact with five bits as with six to ten: only the others tell.
+class NumbersOfBits : public FirstLook, public testing::WithParamInterface<double> {};
+INSTANTIATE_TEST_SUITE_P(Look, NumbersOfBits, testing::Values(6.0, 9.0));
+TEST_P(NumbersOfBits, AreChosenByAllRecordingsOfTheLook) {
+  const ActiveEffect effect{"command_quantisation", "muscle_0", {{"bits", GetParam()}, {"rounding_point", 0.5}, {"top_level", 0.0}}};
+  const std::vector<ActiveEffect> quantised = {effect};
+  const std::vector<Recording> recordings = {betweenTwo(quantised, 10.0 / 32, 15.0 / 32, 1), betweenTwo(quantised, 20.4 / 64, 30.7 / 64, 2),
+                                             betweenTwo(quantised, 21.3 / 64, 29.2 / 64, 3), planted::recorded(quantised, 0.1, 4)};
   const Attribution look = lookedAt(recordings, planted::few({}));
   std::vector<double> bits;
   for (const Suspect& suspect : look.suspects)
@@ -120,7 +122,7 @@ TEST_F(FirstLook, ChoosesNumbersOfBitsByAllOfItsRecordings) {
       for (const auto& [name, value] : suspect.valuesAt({}))
         if (name == "bits") bits.push_back(value);
   ASSERT_EQ(bits.size(), 2u);
-  EXPECT_TRUE(std::ranges::find(bits, 6) != bits.end()) << bits[0] << ", " << bits[1];
+  EXPECT_TRUE(std::ranges::find(bits, GetParam()) != bits.end()) << bits[0] << ", " << bits[1];
 }
 
 }  // namespace

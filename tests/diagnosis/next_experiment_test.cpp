@@ -104,12 +104,34 @@ TEST(NextExperiment, CountsWhatIsLeftWhenContendersAreFittedAnew) {
   EXPECT_LT(free, 0.1 * held);
 }
 
+/// A schedule that tells one contender from the likeliest does not tell the likeliest from its twin.
+TEST(NextExperiment, SaysWhatItSeparatesAndWhatNot) {
+  DiagnosisOptions options;
+  const Plant plant(planted::plant({}), options);
+  const Experiment experiment =
+      nextExperiment(plant, {{"lag", {{lag()}, {}}, 0.45}, {"twin", {{lag()}, {}}, 0.45}, {"weaker", {{weaker(0.97)}, {}}, 0.05}},
+                     Fidelity::coarse, 2, [] {});
+  EXPECT_EQ(experiment.separates, (std::vector<std::string>{"lag", "weaker"}));
+  EXPECT_GT(experiment.difference, 3);
+  EXPECT_TRUE(contains(experiment.why, "lag and weaker"));
+}
+
+/// An experiment is no less worth where nothing that is known is likely.
+TEST(NextExperiment, DoesNotAskHowLikelyContendersAreInAll) {
+  DiagnosisOptions options;
+  const Plant plant(planted::plant({}), options);
+  const std::vector<Contender> contenders = {{"lag", {{lag()}, {}}, 6e-4}, {"weaker", {{weaker(0.98)}, {}}, 4e-4}};
+  EXPECT_FALSE(nextExperiment(plant, contenders, Fidelity::coarse, 2, [] {}).commands.empty());
+}
+
 /// A contender that no schedule tells from the likeliest is no reason for an experiment.
 TEST(NextExperiment, ProposesNothingWhereAllPredictTheSame) {
   DiagnosisOptions options;
   const Plant plant(planted::plant({}), options);
   const Model same{{lag()}, {}};
   EXPECT_TRUE(nextExperiment(plant, {{"lag", same, 0.5}, {"twin", same, 0.5}}, Fidelity::coarse, 2, [] {}).commands.empty());
+  const Model nearly{{weaker(0.98)}, {}}, as_good_as{{weaker(0.980001)}, {}};
+  EXPECT_TRUE(nextExperiment(plant, {{"a", nearly, 0.5}, {"b", as_good_as, 0.5}}, Fidelity::coarse, 2, [] {}).commands.empty());
 }
 
 }  // namespace

@@ -160,9 +160,11 @@ TEST(VerdictSentence, SaysWhetherTheExperimentTellsAllApart) {
   d.next_experiment.difference = 3.2;
   EXPECT_TRUE(contains(verdictSentence(d), "record the schedule in next.csv to tell them apart."));
   d.next_experiment.difference = 0.7;
-  EXPECT_TRUE(contains(verdictSentence(d), "to tell them apart, though even there they differ by no more than 0.7 times the noise."));
+  EXPECT_TRUE(contains(verdictSentence(d), "to tell them apart, though even there they differ by only 0.7 times the noise."));
   d.alternatives.emplace_back("leak@muscle_1");
-  EXPECT_TRUE(contains(verdictSentence(d), "to tell the likeliest of them apart"));
+  EXPECT_TRUE(contains(verdictSentence(d), "to tell valve lag on muscle 1 from flow limit on muscle 1, though"));
+  d.next_experiment.separates.emplace_back("leak@muscle_1");
+  EXPECT_TRUE(contains(verdictSentence(d), "to tell them apart, though even there the two most alike differ by only 0.7 times the noise."));
 }
 
 TEST(VerdictSentence, SaysWhatAnotherPairWouldReplace) {

@@ -82,7 +82,7 @@ struct Experiment {
   double level = 0;           ///< of the commands above the middle of that range, in units of it
   std::vector<double> time_s;
   std::vector<std::vector<double>> commands;  ///< per row, one per muscle; empty: there is nothing to tell apart
-  double difference = 0;  ///< RMS between the predictions of the likeliest and of what is most like it, in units of the noise floor
+  double difference = 0;                      ///< RMS between what it separates at least, in units of the noise floor
 };
 
 /// One signal of one recording (or part of one) that explanations are fitted to.
