@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -195,6 +196,28 @@ void Attributor::keepBetterOfSame(std::vector<Candidate>& candidates) const {
   candidates = std::move(kept);
 }
 
+/// Candidates with one effect of many numbers once more, begun by plain least squares. Not where something explains the look already.
+std::vector<Attributor::Candidate> Attributor::begunBySquares(const std::vector<Candidate>& candidates) {
+  constexpr double little = 0.2;  // of the log misfit
+  double least = look_.logMisfit(look_residual_) / look_.affectedCells(look_residual_);
+  const double much = little * least;
+  for (const Candidate& candidate : candidates) least = std::min(least, candidate.explanation.log_misfit);
+  for (const Explanation& explanation : result_.explanations) least = std::min(least, explanation.log_misfit);
+  std::vector<Candidate> result;
+  for (const Candidate& candidate : candidates)
+    if (const std::size_t index = candidate.explanation.suspects.front();
+        least > much && candidate.explanation.suspects.size() == 1 && candidate.explanation.z.size() >= many_coordinates)
+      result.push_back({{{index}, startOf(index, result_.signatures[index]), {}, {}, 0, 0}, candidate.without});
+  parallelFor(static_cast<int>(result.size()), options_.job_count, [&](int i) {
+    Candidate& candidate = result[static_cast<std::size_t>(i)];
+    if (plant_.interrupted()) return;
+    weakenStart(candidate);
+    refit(candidate.explanation, look_.bySquares(look_residual_), square_rounds, Fidelity::coarse);
+    refit(candidate.explanation, look_, first_rounds, Fidelity::coarse);
+  });
+  return result;
+}
+
 /// In three rounds, each for those that the round before left within reach of the best: a few steps on the look, more steps, all recordings
 /// in fine steps (coarse ones blur what lasts some milliseconds). Those out of reach keep what they had, with their misfit on all
 /// recordings.
@@ -213,9 +236,9 @@ void Attributor::fitTogether(std::vector<Candidate> candidates, Reach reach) {
   auto all = [](const Candidate&) { return true; };
   forEach(all, [&](Candidate& candidate) {
     weakenStart(candidate);
-    if (candidate.begins_by_squares) refit(candidate.explanation, look_.bySquares(look_residual_), square_rounds, Fidelity::coarse);
     refit(candidate.explanation, look_, first_rounds, Fidelity::coarse);
   });
+  std::ranges::move(begunBySquares(candidates), std::back_inserter(candidates));
   forEach([&, within = limit(reach.on_look)](
               const Candidate& candidate) { return candidate.explanation.log_misfit <= within && gainsOnLook(candidate); },
           [&](Candidate& candidate) { refit(candidate.explanation, look_, more_rounds, Fidelity::coarse); });
@@ -272,12 +295,8 @@ std::vector<std::size_t> Attributor::withSecondVariants(const std::vector<std::s
 void Attributor::fitAlone(const std::vector<std::size_t>& chosen) {
   const double without = look_.logMisfit(look_residual_);
   std::vector<Candidate> candidates;
-  for (const std::size_t index : withSecondVariants(chosen)) {
-    Candidate candidate{{{index}, startOf(index, result_.signatures[index]), {}, {}, 0, 0}, without};
-    candidates.push_back(candidate);
-    candidate.begins_by_squares = true;
-    if (candidate.explanation.z.size() >= many_coordinates) candidates.push_back(std::move(candidate));
-  }
+  for (const std::size_t index : withSecondVariants(chosen))
+    candidates.push_back({{{index}, startOf(index, result_.signatures[index]), {}, {}, 0, 0}, without});
   fitTogether(std::move(candidates), single_reach);
 }
 

@@ -59,9 +59,9 @@ class Attributor {
   struct Candidate {
     Explanation explanation;
     double without;  ///< misfit on the look without its last suspect
-    bool begins_by_squares = false;
   };
 
+  std::vector<Candidate> begunBySquares(const std::vector<Candidate>& candidates);
   void keepBetterOfSame(std::vector<Candidate>& candidates) const;
   std::vector<std::size_t> withSecondVariants(const std::vector<std::size_t>& chosen) const;
   Eigen::VectorXd clampedAll(const std::vector<std::size_t>& members, const Eigen::VectorXd& z) const;

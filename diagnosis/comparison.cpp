@@ -83,11 +83,26 @@ void Comparison::goCoarse(const Eigen::VectorXd& nominal, Purpose purpose) {
       const double bearable = std::max(few_floors * cell.floor, looking ? share_of_gap * std::sqrt(meanSquare(cell, residual)) : 0);
       return std::sqrt(meanSquare(cell, correction)) <= bearable;
     });
-    if (!follows) continue;
+    if (!follows) {
+      if (fidelity == Fidelity::medium) unsteady_ = unsteadiness(correction, residual);
+      continue;
+    }
     correction_ = correction;
     fidelity_ = fidelity;
     return;
   }
+}
+
+/// The signal, as it is, that another step moves most.
+Unsteady Comparison::unsteadiness(const Eigen::VectorXd& change, const Eigen::VectorXd& residual) const {
+  Unsteady worst;
+  for (const Cell& cell : cells_) {
+    const double in_floors = std::sqrt(meanSquare(cell, change)) / cell.floor;
+    if (cell.block > 0 || in_floors <= worst.in_floors) continue;
+    worst = {plant_.signals()[static_cast<std::size_t>(cell.signal)].name, in_floors,
+             std::sqrt(meanSquare(cell, change) / std::max(1e-300, meanSquare(cell, residual)))};
+  }
+  return worst;
 }
 
 Eigen::VectorXd Comparison::predicted(const Model& model) const {

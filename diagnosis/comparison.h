@@ -49,6 +49,8 @@ class Comparison {
   /// steps is simulated in fine ones. `nominal` is the fine prediction of the model without effects.
   void goCoarse(const Eigen::VectorXd& nominal, Purpose purpose = Purpose::fitting);
   Fidelity fidelity() const { return fidelity_; }
+  /// Where even medium steps follow another motion, what they change; empty otherwise, and before goCoarse.
+  const Unsteady& unsteady() const { return unsteady_; }
 
   /// What a model predicts at the compared rows; empty if it diverges on one of the stretches.
   Eigen::VectorXd predicted(const Model& model) const;
@@ -76,11 +78,13 @@ class Comparison {
  private:
   void addAverages();
   void average(Eigen::VectorXd& values) const;
+  Unsteady unsteadiness(const Eigen::VectorXd& change, const Eigen::VectorXd& residual) const;
   Eigen::VectorXd gathered(const std::vector<Prediction>& per_stretch) const;
 
   const Plant& plant_;
   bool by_squares_ = false;
   Fidelity fidelity_ = Fidelity::fine;
+  Unsteady unsteady_;
   Eigen::VectorXd correction_;  ///< fine minus coarse
   std::vector<Stretch> stretches_;
   std::vector<Cell> cells_;

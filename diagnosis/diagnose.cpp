@@ -162,6 +162,7 @@ class Run {
   void look() {
     monitor_.phase("looking at every effect once", static_cast<long>(suspects(plant_, DiagnosisOptions{}).size()));
     attributor_.look();
+    diagnosis_.unsteady = attributor_.fitComparison().unsteady();
     listNotExcited();
   }
 

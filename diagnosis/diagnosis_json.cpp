@@ -121,6 +121,9 @@ std::string diagnosisJson(const Diagnosis& d, const std::string& schedule_file) 
         {"level", d.next_experiment.level},         {"why", d.next_experiment.why},       {"schedule", schedule_file}};
   json["fitted"] = fittedJson(d);
   json["notes"] = d.notes;
+  if (!d.unsteady.signal.empty())
+    json["unsteady"] = {
+        {"signal", d.unsteady.signal}, {"in_noise_floors", d.unsteady.in_floors}, {"share_of_gap", d.unsteady.share_of_gap}};
   json["where_method"] = d.where_method;
   json["partial"] = d.partial;
   json["cost"] = {{"simulated_s", d.simulated_s}, {"wall_s", d.wall_s}, {"simulations", d.simulation_count}};

@@ -251,6 +251,17 @@ std::string otherwise(const Diagnosis& d) {
   return fmt::format("{} would explain it as well{}{}.", fmt::join(others, pairs ? "; or " : " or "), place, experiment);
 }
 
+/// Where a hair's difference in a cause changes the motion as much as the cause does, a free rollout hardly tells causes.
+std::string unsteadyWords(const Unsteady& unsteady) {
+  constexpr double worth_saying = 0.1;
+  if (unsteady.share_of_gap < worth_saying) return "";
+  return fmt::format(
+      "Under these commands the model does not repeat itself: internal steps twice as long move {} by {:.0f} times the noise, {:.0f} % of "
+      "the "
+      "gap, as after impacts on stops. Such motions hardly tell causes apart; record gentler ones.",
+      unsteady.signal, unsteady.in_floors, 100 * unsteady.share_of_gap);
+}
+
 /// Where that the catalogue holds the cause is not taken for granted.
 std::string noneWords(const Diagnosis& d) {
   constexpr double worth_saying = 0.1;
@@ -344,6 +355,7 @@ std::vector<std::string> verdictSentences(const Diagnosis& d) {
     case Verdict::effects_found:
       sentences = foundSentences(d);
   }
+  sentences.push_back(unsteadyWords(d.unsteady));
   std::erase(sentences, "");
   return sentences;
 }

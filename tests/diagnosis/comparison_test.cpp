@@ -56,6 +56,17 @@ TEST_F(Rig, BySquaresWeighsCellsByAResidual) {
   EXPECT_EQ(squares.predicted(Model{}), both.predicted(Model{}));
 }
 
+/// As if usual steps led elsewhere than all others, 100 floors away.
+TEST_F(Rig, SaysWhatStepsChangeWhereCoarserOnesFollowAnotherMotion) {
+  const Eigen::VectorXd nominal = both.predicted(Model{});
+  both.goCoarse(nominal);
+  EXPECT_TRUE(both.unsteady().signal.empty());
+  both.goCoarse(nominal + Eigen::VectorXd::Constant(300, 100 * planted::noise_mm));
+  EXPECT_EQ(both.unsteady().signal, "length_0_mm");
+  EXPECT_NEAR(both.unsteady().in_floors, 100, 1);
+  EXPECT_NEAR(both.unsteady().share_of_gap, 1, 0.05);
+}
+
 TEST_F(Rig, NumbersThatNeedFarMoreStepsAreRefused) {
   Recording machine = planted::recorded({}, 0.1, 1);
   machine.info.extra_json = "{}";  // a measured recording's model takes as many as it needs

@@ -167,6 +167,14 @@ TEST(VerdictSentence, SaysWhetherTheExperimentTellsAllApart) {
   EXPECT_TRUE(contains(verdictSentence(d), "to tell them apart, though even there the two most alike differ by only 0.7 times the noise."));
 }
 
+TEST(VerdictSentence, SaysWhereTheModelDoesNotRepeatItself) {
+  Diagnosis d = lagFound();
+  d.unsteady = {"angle_elbow_deg", 6, 0.05};
+  EXPECT_FALSE(contains(verdictSentence(d), "repeat itself"));
+  d.unsteady = {"angle_elbow_deg", 50.4, 0.3};
+  EXPECT_TRUE(contains(verdictSentence(d), "steps twice as long move angle_elbow_deg by 50 times the noise, 30 % of the gap"));
+}
+
 TEST(VerdictSentence, SaysWhatAnotherPairWouldReplace) {
   Diagnosis d = lagFound();
   d.chosen = {"valve_lag@muscle_1", "payload@hand"};

@@ -75,6 +75,12 @@ struct Gap {
   std::map<std::string, SignalGap> per_signal;
 };
 
+/// A motion that the model itself does not repeat in internal steps twice as long, as after an impact on a stop.
+struct Unsteady {
+  std::string signal;                      ///< that this moves most; empty: steady
+  double in_floors = 0, share_of_gap = 0;  ///< RMS over the noise floor, and over that of the gap
+};
+
 struct Experiment {
   std::vector<std::string> separates;
   std::string schedule, why;  ///< name of the schedule, and what it is good for
@@ -173,6 +179,7 @@ struct Diagnosis {
   std::vector<TunedParameter> tuned;     ///< of DiagnosisOptions::tune; before and after are gaps of the model with these
   std::vector<std::string> not_excited;  ///< effects that these recordings could not have shown
   std::vector<std::string> notes;        ///< what the user should know about data and answer
+  Unsteady unsteady;
   Experiment next_experiment;
   std::vector<FirstLook> looks;  ///< best first
   std::vector<FittedCell> cells;
