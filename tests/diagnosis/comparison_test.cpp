@@ -56,6 +56,23 @@ TEST_F(Rig, BySquaresWeighsCellsByAResidual) {
   EXPECT_EQ(squares.predicted(Model{}), both.predicted(Model{}));
 }
 
+/// Rows of a block that are readings of their own: all, every fourth, the first of them all, and all that are numbers.
+TEST(AveragedShareOfFloor, CountsReadingsNotRows) {
+  auto every = [](int held) {
+    std::vector<double> values;
+    for (int row = 0; row < 960; ++row) values.push_back(row / held);
+    return values;
+  };
+  auto share = [](double readings) { return std::sqrt(1 / readings + steady_share * steady_share); };
+  EXPECT_NEAR(averagedShareOfFloor(every(1)), share(block_rows), 1e-12);
+  EXPECT_NEAR(averagedShareOfFloor(every(4)), share(block_rows / 4.0), 1e-12);
+  EXPECT_NEAR(averagedShareOfFloor(every(960)), share(1), 1e-12);
+  std::vector<double> with_gaps = every(1);
+  for (std::size_t row = 0; row < with_gaps.size(); row += 3) with_gaps[row] = NAN;
+  EXPECT_NEAR(averagedShareOfFloor(with_gaps), share(block_rows), 1e-12);
+  EXPECT_NEAR(averagedShareOfFloor({}), share(1), 1e-12);
+}
+
 /// As if usual steps led elsewhere than all others, 100 floors away.
 TEST_F(Rig, SaysWhatStepsChangeWhereCoarserOnesFollowAnotherMotion) {
   const Eigen::VectorXd nominal = both.predicted(Model{});

@@ -1,6 +1,7 @@
 // Proposed schedules.
 #include "diagnosis/next_experiment.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 
 #include "diagnosis/schedule.h"
 #include "musclesim/error.h"
+#include "musclesim/simulation/replay.h"
 #include "planted.h"
 #include "support/support.h"
 
@@ -86,6 +88,43 @@ TEST(NextExperiment, KeepsAboutWhereThePlantHasBeenWhateverTheContender) {
     const auto [shortest, longest] = rangeOf(*predicted, "length_0_mm");
     EXPECT_GT(shortest, low - 0.3 * (high - low)) << contender.label;
     EXPECT_LT(longest, high + 0.3 * (high - low)) << contender.label;
+  }
+}
+
+/// An elbow whose first muscle is so much fuller that it never leaves its stop of 70 degrees: pressures tell contenders apart there too.
+TEST(NextExperiment, LetsThePlantRestOnAStopWhereItHasDoneSo) {
+  std::vector<Recording> recordings;
+  for (const double size : {0.06, 0.09}) {
+    Recording plan;
+    plan.file = fmt::format("pressed_{}.csv", recordings.size());
+    plan.info.robot = "elbow";
+    plan.info.initial_state = "settled";
+    plan.signals = {{"command_0", {}}, {"command_1", {}}};
+    for (int row = 0; row < 300; ++row) {
+      const double turn = size * (row % 100 < 50 ? 1 : -1);
+      plan.time_s.push_back(0.01 * row);
+      plan.signals[0].values.push_back(0.85 + turn);
+      plan.signals[1].values.push_back(0.15 - turn);
+    }
+    Recording measured = replayRecording(plan).simulated;
+    measured.file = plan.file;
+    measured.info.noise_std = {{"angle_elbow_deg", 0.05}, {"pressure_0", 0.003}};
+    std::erase_if(measured.signals,
+                  [](const Signal& s) { return !s.name.starts_with("command_") && s.name != "angle_elbow_deg" && s.name != "pressure_0"; });
+    recordings.push_back(std::move(measured));
+  }
+  EXPECT_GT(rangeOf(recordings.back(), "angle_elbow_deg").first, 69);
+  DiagnosisOptions options;
+  const Plant plant(recordings, options);
+  const std::vector<Contender> contenders = {{"lag", {{lag()}, {}}, 0.6}, {"weaker", {{weaker(0.98)}, {}}, 0.4}};
+  const Experiment experiment = nextExperiment(plant, contenders, Fidelity::coarse, 2, [] {});
+  ASSERT_FALSE(experiment.commands.empty());
+  EXPECT_TRUE(contains(experiment.why, "pressure")) << experiment.why;
+  const Recording schedule = scheduled({experiment.schedule, experiment.amplitude, experiment.level}, plant.recordings());
+  for (const Contender& contender : contenders) {
+    const auto predicted = plant.predictSchedule(schedule, contender.model, Fidelity::coarse);
+    ASSERT_TRUE(predicted);
+    EXPECT_LT(rangeOf(*predicted, "angle_elbow_deg").second, 70 + 0.02 * 140) << contender.label;
   }
 }
 
