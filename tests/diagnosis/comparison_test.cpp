@@ -56,11 +56,11 @@ TEST_F(Rig, BySquaresWeighsCellsByAResidual) {
   EXPECT_EQ(squares.predicted(Model{}), both.predicted(Model{}));
 }
 
-/// Rows of a block that are readings of their own: all, every fourth, the first of them all, and all that are numbers.
+/// Every row a reading of its own, every reading held for four rows, one reading held throughout, a third of the rows without a number.
 TEST(AveragedShareOfFloor, CountsReadingsNotRows) {
   auto every = [](int held) {
     std::vector<double> values;
-    for (int row = 0; row < 960; ++row) values.push_back(row / held);
+    for (int row = 0; row < 960; ++row) values.push_back(row / held);  // whole numbers
     return values;
   };
   auto share = [](double readings) { return std::sqrt(1 / readings + steady_share * steady_share); };
