@@ -20,8 +20,8 @@ constexpr std::size_t component_count = 8;  ///< suspects on the component of th
 constexpr std::size_t pair_count = 6;       ///< further effects that are fitted beside the best
 constexpr std::size_t base_count = 3;       ///< explanations beside which further effects are looked for
 constexpr std::size_t fewer_pairs = 3;      ///< further effects that are fitted beside the second and third of them
-constexpr double likely_share = 0.1;        ///< of the best one's probability, that those have at least
-constexpr double least_hope = -1;           ///< ln of the odds of one more effect that leaves nothing; below, none is looked for
+constexpr double likely_share = 0.03;       ///< of the best one's probability, that those have at least
+constexpr double least_hope = -1.5;         ///< ln of the odds of one more effect that leaves nothing; below, none is looked for
 constexpr int few_effects = 2;              ///< up to that many, the first look serves for all of them
 constexpr int first_rounds = 2, square_rounds = 3, last_rounds = 2;
 constexpr Eigen::Index many_coordinates = 3;  ///< from so many on, a fit also begins by plain least squares: the misfit has many minima
@@ -171,7 +171,7 @@ bool Attributor::gainsOnLook(const Candidate& candidate) const {
 
 /// Nor will one whose explanation is far behind the likeliest so far.
 bool Attributor::mayBeBelieved(const Explanation& explanation) const {
-  constexpr double far_behind = 9;  // ln of the odds; what a fit in fine steps may still gain
+  constexpr double far_behind = 13.5;  // ln of the odds; what a fit in fine steps may still gain
   if (explanation.suspects.size() == 1) return true;
   double best = -std::numeric_limits<double>::infinity();
   for (const Explanation& other : result_.explanations) best = std::max(best, odds().ofExplanation(other));

@@ -136,7 +136,7 @@ std::set<std::size_t> Attributor::sameCommandsAs(std::size_t stretch) const {
 /// Whether one of its effects does as well, as far as odds are made of it, at next to no strength, with its shape as it is: a leak without
 /// a leak is its regulator's lag.
 bool Attributor::isHollow(const Explanation& explanation) const {
-  constexpr double next_to_nothing = 1e-3, noticeable = 0.3;  // typical strengths; ln of the odds
+  constexpr double next_to_nothing = 1e-3, noticeable = 0.45;  // typical strengths; ln of the odds
   if (explanation.residual.size() != fit_.size()) return false;
   const Eigen::VectorXd as_it_is = fit_.predicted(modelOf(explanation));
   Eigen::Index first = 0;
@@ -161,7 +161,7 @@ bool Attributor::isHollow(const Explanation& explanation) const {
 /// Fits every explanation that is not out of the question to all recordings and judges it by stretches that it has not seen, and its
 /// effects alone with it, until all of those have been.
 void Attributor::crossCheck() {
-  constexpr double out_of_the_question = 0.003;
+  constexpr double out_of_the_question = 0.001;
   const bool some_unlike = sameCommandsAs(0).size() < fit_.stretches().size();
   if (some_unlike && one_by_one_.empty())
     for (const Stretch& stretch : fit_.stretches()) {

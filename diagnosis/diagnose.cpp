@@ -27,7 +27,7 @@ namespace {
 
 constexpr double listed = 0.01;   ///< least probability that is listed
 constexpr double named = 0.5;     ///< least probability of none_of_these that makes the verdict `unexplained`
-constexpr double as_good = 0.05;  ///< share of the best explanation's probability from which on one cannot be told from it
+constexpr double as_good = 0.01;  ///< share of the best explanation's probability from which on one cannot be told from it
 constexpr double excited = 1;     ///< a typical effect must change some signal by that many floors
 
 /// Of the program, for the model that is diagnosed, without what nominal.toml holds. Without a hand there is no task.

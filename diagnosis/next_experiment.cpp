@@ -24,7 +24,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double scatter = 4;      ///< noise floors that readings scatter by
-constexpr double worth_it = 1e-3;  ///< probability that a schedule tells contenders apart, below which it is not proposed
+constexpr double worth_it = 2e-4;  ///< probability that a schedule tells contenders apart, below which it is not proposed
 constexpr double apart = 0.5;      ///< noise floors that contenders differ by whom a schedule is said to separate
 
 /// Between which values a signal is, or may be predicted to stay; nowhere as yet.

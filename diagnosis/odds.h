@@ -28,13 +28,13 @@ struct Explanation {
 
 /// How answers are weighed; docs/diagnosing.md says on which cases the numbers were found.
 struct Weighing {
-  double per_misfit = 16;             ///< ln of the odds per unit of log misfit per affected cell, beyond what a law not quite ours leaves
-  double per_closer_misfit = 2;       ///< the same beyond what a law close to ours leaves
-  double per_parameter = 1.25;        ///< ln of the odds that a further parameter costs
-  double per_effect = 7;              ///< ln of the odds that a further effect costs
-  double per_same_place = 3;          ///< the same besides, where it acts on a component of an effect before it and may only mend its law
-  double per_excess = 1.5;            ///< ln of the odds per e-fold by which a parameter is beyond its usual range
-  double shared_sensor = 3;           ///< ln of the odds of one sensor's fault against one that all sensors share
+  double per_misfit = 24;             ///< ln of the odds per unit of log misfit per affected cell, beyond what a law not quite ours leaves
+  double per_closer_misfit = 3;       ///< the same beyond what a law close to ours leaves
+  double per_parameter = 1.875;       ///< ln of the odds that a further parameter costs
+  double per_effect = 10.5;           ///< ln of the odds that a further effect costs
+  double per_same_place = 4.5;        ///< the same besides, where it acts on a component of an effect before it and may only mend its law
+  double per_excess = 2.25;           ///< ln of the odds per e-fold by which a parameter is beyond its usual range
+  double shared_sensor = 4.5;         ///< ln of the odds of one sensor's fault against one that all sensors share
   double law_mismatch = 0.1;          ///< share of the gap that the right cause may leave since its law is not quite ours
   double close_law_mismatch = 0.01;   ///< and where the law is close to ours
   double per_share_left = 12;         ///< ln of the odds of "none of these" per share of the log misfit that the best explanation leaves
