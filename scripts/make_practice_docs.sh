@@ -57,6 +57,10 @@ print(f'Written by `scripts/make_practice_docs.sh`, version {commit}. ' +
       ('These cases were used for tuning: the numbers are flattering.' if which == 'odd' else
        'No number was tuned on these cases. An earlier answer to case06 and its key were looked into, and led to attachments that are off at ' +
        'either end of a muscle ([earlier checks](blind_history.md)): that case is no longer unseen; the other eleven are.') + '\n')
+print('An independent program made these recordings; each case has four of one plant. Kinds: *single* one cause of the catalogue, *double* two, *open* one that the ' +
+      'catalogue does not have, *null* none. *Verdict*, *top 1*, *top 3*: the right one by its id, on whatever component. *Acceptable*: the cause, or one ' +
+      'that the measured signals cannot separate from it, frozen with the key. *In the set*: among what the answer could not tell apart, or chosen. *Shrink*: ' +
+      'per cent of the gap removed on the recording held back.\n')
 columns = [('verdict', 'verdict'), ('top1', 'top 1 by id'), ('top3', 'top 3 by id'), ('acceptable', 'acceptable first'), ('covered', 'truth in the set'), ('stage', 'first stage right')]
 print('| kind | cases | ' + ' | '.join(title for _, title in columns) + ' | mean probability on the truth | size of the set | median shrink |')
 print('|---' * (len(columns) + 5) + '|')
@@ -68,7 +72,7 @@ for kind, s in list(kinds.items()) + [('all', score['overall'])]:
     rest = ['' if s.get(name) is None else f'{s[name]:.2f}' for name in ('p_truth', 'size', 'shrink_median')]
     print(f'| {kind} | {s["n"]} | ' + ' | '.join(cells + rest) + ' |')
 print('\nRates with 95 % Wilson intervals, over the cases of kinds to which they apply.\n')
-print('| case | robot | true | said | chosen | probability of the first | none of these | shrink |\n|---' + '|---' * 7 + '|')
+print('| case | robot | true | verdict | chosen | probability of the first | none of these | shrink |\n|---' + '|---' * 7 + '|')
 for name, key in keys.items():
     try:
         d = json.load(open(f'{answers}/{name}/diagnosis.json'))

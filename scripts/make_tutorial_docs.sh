@@ -71,7 +71,7 @@ text <<'TEXT'
 
 ## 2. Recordings
 
-A mapping says what the columns are, which robot this is, and how noisy the sensors are. The noise is what the reading scatters by while nothing moves. [Recordings](recordings.md#tables-of-other-programs) has all that a mapping can say.
+A mapping says what the columns are, which robot this is, and how noisy the sensors are. The noise is the standard deviation of a reading while nothing moves, in the unit of the name: `pressure_0` is a fraction of full scale, `pressure_0_bar = 0.018` would say the same. [Recordings](recordings.md#tables-of-other-programs) has all that a mapping can say.
 
 TEXT
 file bench.toml toml <<'TEXT'
@@ -98,7 +98,7 @@ TEXT
 show 'for run in 1 2 3 4; do musclesim import logger$run.csv bench.toml bench$run.csv --quiet; done'
 text <<'TEXT'
 
-A robot of your own is a subclass of `Robot`; see [Building a robot](building_a_robot.md). `spring_bench`, `wrist`, `rig`, `elbow` and `arm` come with the program, and `[robot_parameters]` sets their numbers.
+A robot of your own is a subclass of `Robot` that is built into the program; see [Building a robot](building_a_robot.md#registering). `spring_bench`, `wrist`, `rig`, `elbow` and `arm` come with the program, and `[robot_parameters]` sets their numbers.
 
 ## 3. The gap
 
@@ -110,7 +110,7 @@ The length is off by forty times the noise. Where does that come from?
 
 ## 4. The diagnosis
 
-Nobody measured the spring, so `--tune` names it. Two recordings are for fitting, the last one only measures the result; the fourth stays in the drawer.
+Nobody measured the spring, so `--tune` names it. Two recordings are for fitting, the last one only measures the result (of a real machine it should differ more from them than here); the fourth stays in the drawer.
 
 TEXT
 show 'musclesim diagnose bench1.csv bench2.csv bench3.csv --tune spring_bench.spring_N_per_mm --out answer'
@@ -118,7 +118,7 @@ text <<'TEXT'
 
 Read it from the top:
 
-- *where*: the stage. Here measured pressures tell: put in place of the simulated ones, they make the gap, so it arises before the force. Whether the command came late or the pressure did, only its shape says.
+- *where*: the stage. Here measured pressures tell: the model driven by them in place of its own shows the gap of the length too, so it arises before the force. Whether the command came late or the pressure did is told by the gap's shape alone.
 - *which*: the effects with their probabilities; "none of these" is one of the answers.
 - *how far*: on `bench3.csv`, which neither fitting nor choosing has seen. The nominal refit is what the simulation's own numbers could have gained without any effect, the sham what a meaningless disturbance gains.
 
@@ -149,10 +149,10 @@ text <<'TEXT'
 
 Real machines have several causes at once, laws that no catalogue follows to the letter, and data with faults of their own. The [case studies](case_studies.md) show what is left then and what to do:
 
-- `--max-effects 3` looks for more effects, one beside the other; `--effects` gives what was found to the next diagnosis.
-- A gap that grows with time is a clock, not a muscle: look at the curves in the report before you believe a number.
+- `--max-effects 3` looks for more effects, one beside the other; `--effects answer/effects.json --config answer/nominal.toml` gives what was found to the next diagnosis.
+- A gap that grows with time need not be a muscle that creeps or drifts. If readings fall ever further behind the commands, a clock is slow: look at the curves in the report before you believe a number.
 - A fault of a sensor that you know, take out in the mapping (`offset`, `factor`).
-- "I cannot explain" with a probability is an answer. `attempt.json` holds what comes nearest.
+- "I cannot explain" with a probability is an answer. `attempt.json`, where there is one, holds what comes nearest.
 
 [Recording data that can be diagnosed](diagnosing.md#recording-data-that-can-be-diagnosed) saves most of the trouble.
 TEXT
