@@ -46,8 +46,8 @@ Action addMake(CLI::App& command) {
   command.add_option("--arm-count", arguments->make.arm_count, "Further cases on the arm (default 12)");
   command.add_option("--seed", arguments->make.seed, "Of all draws (default 1)");
   command.add_option("--duration-s", arguments->make.duration_s, "Of each recording (default 6); half of it on the arm");
-  command.add_option("--kinds", arguments->make.kinds, "Only these: single, double, open, null")->delimiter(',');
-  command.add_option("--causes", arguments->make.causes, "Only these effects of the catalogue (default: all in turn)")->delimiter(',');
+  addList(command, "--kinds", arguments->make.kinds, "Only these: single, double, open, null");
+  addList(command, "--causes", arguments->make.causes, "Only these effects of the catalogue (default: all in turn)");
   command.add_option("--jobs", arguments->make.job_count, "Threads (default: one per core); the cases do not depend on it")
       ->check(CLI::Range(1, 1024));
   command.add_option("--commit", arguments->make.commit, "Version of the sources, noted in the seal");
@@ -76,7 +76,7 @@ Action addRunCases(CLI::App& command) {
   command.add_option("folder", arguments->folder, "Folder that `blind make` wrote")->required();
   command.add_option("--jobs", arguments->run.job_count, "Cases at once (default: one per core); the answers do not depend on it")
       ->check(CLI::Range(1, 1024));
-  command.add_option("--candidates", arguments->run.candidates, "Only these effects, by id")->delimiter(',');
+  addList(command, "--candidates", arguments->run.candidates, "Only these effects, by id, separated by commas");
   command.add_option("--commit", arguments->run.commit, "Version of the sources, noted with the answers");
   command.add_flag("--quiet", arguments->quiet, "No progress line");
   return [arguments] { return runCases(*arguments); };
@@ -104,7 +104,7 @@ Action addFollow(CLI::App& command) {
   command.add_option("--keys", arguments->key, "The key's file")->required();
   command.add_option("--jobs", arguments->follow.job_count, "Cases at once (default: one per core); the results do not depend on it")
       ->check(CLI::Range(1, 1024));
-  command.add_option("--candidates", arguments->follow.candidates, "Only these effects, by id")->delimiter(',');
+  addList(command, "--candidates", arguments->follow.candidates, "Only these effects, by id, separated by commas");
   command.add_flag("--quiet", arguments->quiet, "No progress line");
   return [arguments] { return followCases(*arguments); };
 }

@@ -145,18 +145,16 @@ Action addDiagnose(CLI::App& command, ModelOptions& model) {
   command
       .add_option("recordings", arguments->recordings, "Recordings of one plant; with several, the last is only used to measure the result")
       ->required();
-  command.add_option("--out", arguments->out, "Folder for diagnosis.json, report.html, effects.json (default: RECORDING-diagnosis)");
+  command.add_option("--out", arguments->out, "Folder for report.html, diagnosis.json, effects.json and the rest (default: RECORDING-diagnosis)");
   command.add_option("--jobs", arguments->jobs, "Threads (default: one per core); the answer does not depend on it")
       ->check(CLI::Range(1, 1024));
-  command.add_option("--candidates", arguments->candidates, "Only these effects, by id")->delimiter(',');
-  command.add_option("--exclude", arguments->exclude, "All effects but these")->delimiter(',');
-  command
-      .add_option("--tune", arguments->tune,
-                  "Numbers of the model that nobody measured, by name, separated by commas: fitted first, written to nominal.toml")
-      ->delimiter(',');
+  addList(command, "--candidates", arguments->candidates, "Only these effects, by id, separated by commas");
+  addList(command, "--exclude", arguments->exclude, "All effects but these");
+  addList(command, "--tune", arguments->tune,
+          "Numbers of the model that nobody measured, by name, separated by commas: fitted first, written to nominal.toml");
   command.add_option("--max-effects", arguments->max_effects, "Effects at once, found one after the other (default 2)")
       ->check(CLI::Range(1, 6));
-  command.add_option("--ignore-columns", arguments->ignore_columns, "Columns to skip, separated by commas")->delimiter(',');
+  addList(command, "--ignore-columns", arguments->ignore_columns, "Columns to skip, separated by commas");
   addModelOptions(command, model);
   command.remove_option(command.get_option("--json"));
   command.add_option("--json", arguments->json, "Write diagnosis.json also to FILE");

@@ -66,6 +66,10 @@ void addModelOptions(CLI::App& command, ModelOptions& options) {
   command.add_flag("--json", options.json, "Print the verdict as one JSON object, the last line of standard output")->group(model);
 }
 
+CLI::Option* addList(CLI::App& command, const std::string& name, std::vector<std::string>& values, const std::string& help) {
+  return command.add_option(name, values, help)->delimiter(',')->allow_extra_args(false);
+}
+
 Parameters parametersFrom(const ModelOptions& options) {
   Parameters parameters;
   if (options.config) parameters.readToml(*options.config);
@@ -86,12 +90,10 @@ std::vector<ActiveEffect> effectsFrom(const ModelOptions& options) {
 }
 
 void addPointsOptions(CLI::App& command, CLI::Option& table, PointsOptions& options) {
-  command
-      .add_option("--columns", options.columns,
-                  "pressure=NAME,length=NAME,force=NAME: other columns; NAME:unit gives a unit (else fraction, mm, N)")
-      ->delimiter(',')
+  addList(command, "--columns", options.columns,
+          "pressure=NAME,length=NAME,force=NAME: other columns; NAME:unit gives a unit (else fraction, mm, N)")
       ->needs(&table);
-  command.add_option("--where", options.where, "column=value: only these rows; may be repeated")->delimiter(',')->needs(&table);
+  addList(command, "--where", options.where, "column=value: only these rows; may be repeated")->needs(&table);
   command.add_option("--full-scale-kPa", options.full_scale_kPa, "Pressure of fraction 1 (default: the largest of the file)")
       ->check(CLI::Range(1.0, 1e4))
       ->needs(&table);

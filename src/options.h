@@ -29,6 +29,9 @@ struct ModelOptions {
 /// Adds the model options to a command; all commands write into the same ModelOptions, so their place among the arguments is free.
 void addModelOptions(CLI::App& command, ModelOptions& options);
 
+/// An option of values that commas separate. What follows behind a space is no part of it, so that a file named there is not taken for one.
+CLI::Option* addList(CLI::App& command, const std::string& name, std::vector<std::string>& values, const std::string& help);
+
 /// The named parameters: --config first, then --muscles, --muscle and --joint-friction, then --set.
 Parameters parametersFrom(const ModelOptions& options);
 

@@ -94,7 +94,7 @@ Action addReplay(CLI::App& command, ModelOptions& model) {
   auto arguments = std::make_shared<ReplayArguments>();
   command.add_option("recording", arguments->recording, "Recording, NAME.csv with NAME.json beside it")->required();
   command.add_option("--out", arguments->out, "Write what the model measures, at the recording's times, to SIM.csv");
-  command.add_option("--ignore-columns", arguments->ignore_columns, "Columns to skip, separated by commas")->delimiter(',');
+  addList(command, "--ignore-columns", arguments->ignore_columns, "Columns to skip, separated by commas");
   addPictureOptions(command, arguments->pictures, "Pictures");
   addModelOptions(command, model);
   return [&model, arguments] { return replay(model, *arguments); };

@@ -56,6 +56,16 @@ TEST_F(DiagnoseCommand, BadRecordingsAreBadFiles) {
   EXPECT_EQ(diagnose({"good.csv", "good.csv"}).status, 3);
 }
 
+TEST_F(DiagnoseCommand, RecordingsBehindAListAreNoPartOfIt) {
+  write("good", 60, 1);
+  for (const auto& [option, value] : {std::pair("--ignore-columns", "activity"), std::pair("--exclude", "creep,leak"),
+                                      std::pair("--candidates", "leak"), std::pair("--tune", "rig.load_kg")}) {
+    const ProgramResult result = diagnose({option, value, "missing.csv", "good.csv"});
+    EXPECT_EQ(result.status, 5) << option << ": " << result.err;
+    EXPECT_TRUE(contains(result.err, "missing.csv")) << option << ": " << result.err;
+  }
+}
+
 TEST_F(DiagnoseCommand, WhatIsReadIsNotWrittenOver) {
   fs::create_directories(folder_ / "out");
   write("out/next", 60, 1);
@@ -92,7 +102,7 @@ TEST_F(DiagnoseCommand, TheProposedScheduleCanBeReplayed) {
     std::ofstream(folder_ / (of_plant + ".json")) << sidecar;
   }
   const ProgramResult result = diagnose(
-      {"plant1.csv", "plant2.csv", "--candidates", "payload", "force_gain", "--ignore-columns", "force_0_N,pressure_0", "--out", "out"});
+      {"plant1.csv", "plant2.csv", "--candidates", "payload,force_gain", "--ignore-columns", "force_0_N,pressure_0", "--out", "out"});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_TRUE(contains(result.out, "record next.csv")) << result.out;
   EXPECT_EQ(runProgram({"replay", "out/next.csv", "--quiet", "--out", "predicted.csv"}, folder_).status, 0);
