@@ -145,7 +145,8 @@ Action addDiagnose(CLI::App& command, ModelOptions& model) {
   command
       .add_option("recordings", arguments->recordings, "Recordings of one plant; with several, the last is only used to measure the result")
       ->required();
-  command.add_option("--out", arguments->out, "Folder for report.html, diagnosis.json, effects.json and the rest (default: RECORDING-diagnosis)");
+  command.add_option("--out", arguments->out,
+                     "Folder for report.html, diagnosis.json, effects.json and the rest (default: RECORDING-diagnosis)");
   command.add_option("--jobs", arguments->jobs, "Threads (default: one per core); the answer does not depend on it")
       ->check(CLI::Range(1, 1024));
   addList(command, "--candidates", arguments->candidates, "Only these effects, by id, separated by commas");
