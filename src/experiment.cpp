@@ -102,8 +102,9 @@ Action addExperiment(CLI::App& command, ModelOptions& model) {
   command.add_option("--config", model.config, "TOML file with named parameters, for example a fitted muscle");
   command
       .add_option("--set", model.set,
-                  "name=value: override one named parameter; may be repeated. Loads and lengths of the specimen are the experiment's own")
-      ->allow_extra_args(false);
+                  "Override one named parameter; may be repeated. Loads and lengths of the specimen are the experiment's own")
+      ->allow_extra_args(false)
+      ->option_text("NAME=VALUE");
   command.add_flag("--quiet", model.quiet, "No messages on standard error except errors");
   command.add_flag("--json", model.json, "Print the verdict as one JSON object, the last line of standard output");
   return [&model, arguments] { return experiment(model, *arguments); };

@@ -56,9 +56,10 @@ void addModelOptions(CLI::App& command, ModelOptions& options) {
         const auto read = std::from_chars(value.data(), end, seed);
         return read.ec == std::errc() && read.ptr == end ? "" : "must be a whole number in 0 .. 18446744073709551615";
       });
-  command.add_option("--set", options.set, "name=value: override one named parameter; may be repeated")
+  command.add_option("--set", options.set, "Override one named parameter; may be repeated")
       ->group(model)
-      ->allow_extra_args(false);
+      ->allow_extra_args(false)
+      ->option_text("NAME=VALUE");
   command.add_option("--config", options.config, "TOML file with named parameters")->group(model);
   command.add_option("--effects", options.effects, "JSON file with effects that the clean model leaves out (musclesim effects lists them)")
       ->group(model);
@@ -67,7 +68,7 @@ void addModelOptions(CLI::App& command, ModelOptions& options) {
 }
 
 CLI::Option* addList(CLI::App& command, const std::string& name, std::vector<std::string>& values, const std::string& help) {
-  return command.add_option(name, values, help)->delimiter(',')->allow_extra_args(false);
+  return command.add_option(name, values, help)->delimiter(',')->allow_extra_args(false)->option_text("VALUE,...");
 }
 
 Parameters parametersFrom(const ModelOptions& options) {
