@@ -59,14 +59,15 @@ print(f'Written by `scripts/make_practice_docs.sh`, version {commit}. ' +
        'either end of a muscle ([earlier checks](blind_history.md)): that case is no longer unseen; the other eleven are.') + '\n')
 print('An independent program made these recordings; each case has four of one plant. Kinds: *single* one cause of the catalogue, *double* two, *open* one that the ' +
       'catalogue does not have, *null* none. *Verdict*, *top 1*, *top 3*: the right one by its id, on whatever component. *Acceptable*: the cause, or one ' +
-      'that the measured signals cannot separate from it, frozen with the key. *In the set*: among what the answer could not tell apart, or chosen. *Shrink*: ' +
+      'that the measured signals cannot separate from it, frozen with the key. *Component*: where top 1 is right. *In the set*: among what the answer could not tell apart, or chosen. *Shrink*: ' +
       'per cent of the gap removed on the recording held back.\n')
-columns = [('verdict', 'verdict'), ('top1', 'top 1 by id'), ('top3', 'top 3 by id'), ('acceptable', 'acceptable first'), ('covered', 'truth in the set'), ('stage', 'first stage right')]
+columns = [('verdict', 'verdict'), ('top1', 'top 1 by id'), ('top3', 'top 3 by id'), ('acceptable', 'acceptable first'), ('component', 'component right'), ('covered', 'truth in the set'), ('stage', 'first stage right')]
 print('| kind | cases | ' + ' | '.join(title for _, title in columns) + ' | mean probability on the truth | size of the set | median shrink |')
 print('|---' * (len(columns) + 5) + '|')
 kinds = score['by_kind']
 def counted(kind, name):  # cases to which a rate applies
-    return sum(s['n'] for other, s in kinds.items() if kind in (other, 'all') and s.get(name) is not None)
+    applies = [s for other, s in kinds.items() if kind in (other, 'all') and s.get(name) is not None]
+    return sum(round(s['n'] * s['top1']) if name == 'component' else s['n'] for s in applies)
 for kind, s in list(kinds.items()) + [('all', score['overall'])]:
     cells = [wilson(s[name], counted(kind, name)) if s.get(name) is not None and counted(kind, name) else '' for name, _ in columns]
     rest = ['' if s.get(name) is None else f'{s[name]:.2f}' for name in ('p_truth', 'size', 'shrink_median')]
