@@ -165,15 +165,15 @@ def step_words():
     case = d['bench_step']
     trials = {tuple(t['effects']): t for t in case['fitted']['trials']}
     alone, both = trials.get(('flow_limit@muscle_0',)), trials.get(('flow_limit@muscle_0', 'transport_delay@muscle_0'))
-    if not alone or not both or 'transport_delay' in effects_of('bench_step'):
+    if not alone or not both or set(effects_of('bench_step')) != {'flow_limit'}:
         return f'The step: rate {any_of("bench_step", FROM_COMMAND)}, dead time {dead_time("bench_step")}.'
     signal = {cell['signal']: i for i, cell in reversed(list(enumerate(case['fitted']['cells'])))}
     pressure, stroke = signal['pressure_0'], signal['length_0_mm']
     probability = sum(e['probability'] for e in case['explanations'] if e['effects'] == both['effects'])
     return (f'In the step `flow_limit` alone comes out at {flow_words(alone["values"][0])}. Fitted together with `transport_delay` it is {flow_words(both["values"][0])} behind '
-            f'{1000 * both["values"][1]["delay_s"]:.0f} ms, near what the authors say, and leaves {both["rms"][pressure]:.3f} of pressure and {both["rms"][stroke]:.2f} mm of stroke on the fitted part '
+            f'{1000 * both["values"][1]["delay_s"]:.0f} ms, near the authors\' rate though later than they say, and leaves {both["rms"][pressure]:.3f} of pressure and {both["rms"][stroke]:.2f} mm of stroke on the fitted part '
             f'where `flow_limit` alone leaves {alone["rms"][pressure]:.3f} and {alone["rms"][stroke]:.2f} mm; the tool gives that pair {100 * probability:.0f} % and keeps the single effect: '
-            'too cautious, as it is with [second causes](blind_history.md#what-the-last-check-missed-and-why) in general.')
+            'too cautious here, as with some of the [second causes](blind_history.md#what-the-last-check-missed-and-why) that are withheld.')
 
 
 def loop_words():

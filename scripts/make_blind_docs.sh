@@ -2,8 +2,8 @@
 # Writes docs/blind.md and three figures: makes cases with withheld causes from a seed, diagnoses them without the key, scores.
 # Resumable: the same call goes on where it was stopped. On two free cores, recordings of 4 s: 300 cases on rig and elbow and 12 on the arm
 # took 22 minutes to make, two hours and three quarters (rig and elbow) and an hour and a half (arm) to diagnose; following up takes about a
-# minute and a half each (FOLLOW=no leaves that out, an interrupt ends it where it is). The defaults, 120 and 12 cases of 6 s: by that about
-# four hours without follow-ups.
+# minute each (FOLLOW=no leaves that out, an interrupt ends it where it is). The defaults, 120 and 12 cases of 6 s: by that about four hours
+# without follow-ups.
 # Usage: scripts/make_blind_docs.sh SEED CASES KEYS [build folder] [options of `blind make`]
 #     SEED           of all draws; one that has not been used since the diagnosis was changed last. That of the cases where there are any
 #     CASES          folder for the cases; new, or of a call that was stopped

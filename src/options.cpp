@@ -91,10 +91,11 @@ std::vector<ActiveEffect> effectsFrom(const ModelOptions& options) {
 }
 
 void addPointsOptions(CLI::App& command, CLI::Option& table, PointsOptions& options) {
-  addList(command, "--columns", options.columns,
-          "pressure=NAME,length=NAME,force=NAME: other columns; NAME:unit gives a unit (else fraction, mm, N)")
-      ->needs(&table);
-  addList(command, "--where", options.where, "column=value: only these rows; may be repeated")->needs(&table);
+  const std::string needed = " Needs: " + table.get_name();
+  addList(command, "--columns", options.columns, "Other columns; NAME:unit gives a unit (else fraction, mm, N)")
+      ->needs(&table)
+      ->option_text("pressure=NAME,length=NAME,force=NAME" + needed);
+  addList(command, "--where", options.where, "Only these rows; may be repeated")->needs(&table)->option_text("COLUMN=VALUE,..." + needed);
   command.add_option("--full-scale-kPa", options.full_scale_kPa, "Pressure of fraction 1 (default: the largest of the file)")
       ->check(CLI::Range(1.0, 1e4))
       ->needs(&table);
