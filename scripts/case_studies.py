@@ -154,8 +154,8 @@ def bar_words(v):
     return f'{v["offset"] * FULL_SCALE_BAR:+.2f} bar'
 
 
-def any_of(name, choices):
-    """What those of (effect, words) that were named say."""
+def all_named(name, choices):
+    """What each of (effect, words) that was named says."""
     effects = effects_of(name)
     return '; with '.join(f'`{effect}`: ' + words(effects[effect]) for effect, words in choices if effect in effects) or 'not named'
 
@@ -166,7 +166,7 @@ def step_words():
     trials = {tuple(t['effects']): t for t in case['fitted']['trials']}
     alone, both = trials.get(('flow_limit@muscle_0',)), trials.get(('flow_limit@muscle_0', 'transport_delay@muscle_0'))
     if not alone or not both or set(effects_of('bench_step')) != {'flow_limit'}:
-        return f'The step: rate {any_of("bench_step", FROM_COMMAND)}, dead time {dead_time("bench_step")}.'
+        return f'The step: rate {all_named("bench_step", FROM_COMMAND)}, dead time {dead_time("bench_step")}.'
     signal = {cell['signal']: i for i, cell in reversed(list(enumerate(case['fitted']['cells'])))}
     pressure, stroke = signal['pressure_0'], signal['length_0_mm']
     probability = sum(e['probability'] for e in case['explanations'] if e['effects'] == both['effects'])
@@ -218,9 +218,9 @@ A drumming robot's wrist: two pressure regulators, two muscles of unknown make, 
 ''')
 compare([
     ('command to pressure', 'dead time 53 ms and lag 126 ms filling, 59 and 89 ms venting (sum 179 and 148 ms); at 3 Hz 128 ms; "one linear lag does not fit both the step and 3 Hz"',
-     'sweep: ' + any_of('wrist_sweep', FROM_COMMAND) + '; step: ' + any_of('wrist_step', FROM_COMMAND)),
+     'sweep: ' + all_named('wrist_sweep', FROM_COMMAND) + '; step: ' + all_named('wrist_step', FROM_COMMAND)),
     ('dead time of its own', '44 to 96 ms on such regulators', 'sweep: ' + dead_time('wrist_sweep') + '; step: ' + dead_time('wrist_step')),
-    ('pressure to angle', '16 ms at 3 Hz; loop of 53 to 92 kPa; stick-slip', 'sweep: ' + any_of('wrist_sweep', [('joint_viscous_friction', lambda v: f'{v["damping_Nms_per_rad"]:.2f} N m s/rad'), *HYSTERESIS]) + '; slow loop: ' + any_of('wrist_loop', HYSTERESIS)),
+    ('pressure to angle', '16 ms at 3 Hz; loop of 53 to 92 kPa; stick-slip', 'sweep: ' + all_named('wrist_sweep', [('joint_viscous_friction', lambda v: f'{v["damping_Nms_per_rad"]:.2f} N m s/rad'), *HYSTERESIS]) + '; slow loop: ' + all_named('wrist_loop', HYSTERESIS)),
     ('gap of the authors\' own simulator', 'on other motions of this machine: 9.8 deg RMSE (sine), 5.0 deg (steps); with measured pressures 8.7 and 6.0 deg',
      f'sweep {outcome(d["wrist_sweep"])[1]["per_signal"]["angle_wrist_deg"]["rmse"]:.1f} deg, step {outcome(d["wrist_step"])[1]["per_signal"]["angle_wrist_deg"]["rmse"]:.1f} deg, both unseen'),
     ('swapped pressure columns', 'happened in later logs; not in these files', 'not named'),
@@ -244,10 +244,10 @@ A DMSP-10-250 behind a proportional valve, against a load that is not stated; va
 ''')
 compare([
     ('pressure sensor', 'calibration artefact: the vented muscle reads -0.30 bar; the loop\'s table is cut off at 0',
-     'loop: ' + any_of('bench_loop', [('sensor_bias', bar_words), ('pressure_calibration', bar_words)]) + '; step: ' + any_of('bench_step', [('sensor_bias', bar_words), ('pressure_calibration', bar_words)])),
-    ('hysteresis', '60 to 66 kPa, 2.0 to 6.8 mm of stroke, in the muscle', 'loop: ' + any_of('bench_loop', HYSTERESIS) + '; corrected: ' + any_of('bench_loop_corrected', HYSTERESIS)),
-    ('rate limit', '+7 bar/s', 'step: ' + any_of('bench_step', [('flow_limit', flow_words), ('valve_lag', lag_words)])),
-    ('dead time', '120 to 130 ms to 5 % of the step', 'step: ' + any_of('bench_step', [('transport_delay', lambda v: f'{1000 * v["delay_s"]:.0f} ms'), ('sensor_delay', lambda v: f'{1000 * v["delay_s"]:.0f} ms, of a sensor')])),
+     'loop: ' + all_named('bench_loop', [('sensor_bias', bar_words), ('pressure_calibration', bar_words)]) + '; step: ' + all_named('bench_step', [('sensor_bias', bar_words), ('pressure_calibration', bar_words)])),
+    ('hysteresis', '60 to 66 kPa, 2.0 to 6.8 mm of stroke, in the muscle', 'loop: ' + all_named('bench_loop', HYSTERESIS) + '; corrected: ' + all_named('bench_loop_corrected', HYSTERESIS)),
+    ('rate limit', '+7 bar/s', 'step: ' + all_named('bench_step', [('flow_limit', flow_words), ('valve_lag', lag_words)])),
+    ('dead time', '120 to 130 ms to 5 % of the step', 'step: ' + all_named('bench_step', [('transport_delay', lambda v: f'{1000 * v["delay_s"]:.0f} ms'), ('sensor_delay', lambda v: f'{1000 * v["delay_s"]:.0f} ms, of a sensor')])),
     ('creep', '7 to 25 %, 0.5 to 1 s', 'step: ' + told('bench_step', 'creep', lambda v: f'{100 * v["amount"]:.0f} %, {v["time_constant_s"]:.2f} s')),
 ])
 print()

@@ -274,12 +274,14 @@ TEST_F(RunCommand, ReportsFoldersThatCannotBeWritten) {
 TEST_F(RunCommand, HelpAndVersion) {
   const ProgramResult help = run({"--help"});
   EXPECT_EQ(help.status, 0);
-  for (const char* word : {"--simple", "--step", "--verbose", "replay", "Exit status"})
+  for (const char* word : {"--simple", "--step", "--verbose", "--set NAME=VALUE", "replay", "Exit status"})
     EXPECT_NE(help.out.find(word), std::string::npos) << word;
   const ProgramResult version = run({"--version"});
   EXPECT_EQ(version.status, 0);
   EXPECT_NE(version.out.find("musclesim 0."), std::string::npos);
   EXPECT_EQ(run({"replay", "--help"}).status, 0);
+  EXPECT_NE(run({"diagnose", "--help"}).out.find("--exclude VALUE,..."), std::string::npos) << "a list, no words behind spaces";
+  EXPECT_NE(run({"experiment", "--help"}).out.find("--where COLUMN=VALUE,... Needs: --data"), std::string::npos);
 }
 
 }  // namespace
