@@ -6,12 +6,12 @@
 #include <map>
 #include <mutex>
 
+#include "musclesim/base/error.h"
 #include "musclesim/controller/aasm.h"
 #include "musclesim/controller/asm.h"
 #include "musclesim/controller/hold.h"
 #include "musclesim/controller/random_pressures.h"
 #include "musclesim/controller/task.h"
-#include "musclesim/error.h"
 
 namespace musclesim {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 
 namespace musclesim {
 

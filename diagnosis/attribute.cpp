@@ -9,7 +9,7 @@
 #include <optional>
 #include <set>
 
-#include "parallel.h"
+#include "../base/parallel.h"
 
 namespace musclesim {
 

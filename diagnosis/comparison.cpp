@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "parallel.h"
+#include "../base/parallel.h"
 
 namespace musclesim {
 

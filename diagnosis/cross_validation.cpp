@@ -6,9 +6,9 @@
 #include <limits>
 #include <set>
 
+#include "../base/parallel.h"
 #include "attribute.h"
 #include "data_checks.h"
-#include "parallel.h"
 
 namespace musclesim {
 

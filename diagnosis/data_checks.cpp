@@ -9,7 +9,7 @@
 #include <limits>
 #include <map>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 
 namespace musclesim {
 

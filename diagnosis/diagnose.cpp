@@ -9,12 +9,12 @@
 #include <set>
 #include <variant>
 
+#include "../base/parallel.h"
 #include "attribute.h"
 #include "data_checks.h"
 #include "locate.h"
 #include "musclesim/diagnosis/diagnosis.h"
 #include "next_experiment.h"
-#include "parallel.h"
 #include "plant.h"
 #include "regimes.h"
 #include "schedule.h"

@@ -6,9 +6,9 @@
 #include <numeric>
 #include <set>
 
+#include "../base/parallel.h"
 #include "attribute.h"
-#include "musclesim/error.h"
-#include "parallel.h"
+#include "musclesim/base/error.h"
 
 namespace musclesim {
 

@@ -10,12 +10,12 @@
 #include <optional>
 #include <string>
 
+#include "../base/parallel.h"
 #include "comparison.h"
 #include "musclesim/robot/actuator.h"
 #include "musclesim/robot/robot.h"
 #include "musclesim/simulation/simulation.h"
 #include "odds.h"
-#include "parallel.h"
 #include "schedule.h"
 
 namespace musclesim {

@@ -11,7 +11,7 @@
 #include "comparison.h"
 #include "data_checks.h"
 #include "drawing.h"
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 
 namespace musclesim {
 

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "musclesim/base/units.h"
 #include "musclesim/diagnosis/diagnosis.h"
 #include "musclesim/effect/catalogue.h"
 #include "musclesim/simulation/replay.h"
-#include "musclesim/units.h"
 #include "noise_floor.h"
 #include "prediction_store.h"
 

@@ -7,7 +7,7 @@
 #include <functional>
 #include <numbers>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 
 namespace musclesim {
 

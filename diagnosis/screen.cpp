@@ -6,7 +6,7 @@
 #include <limits>
 #include <map>
 
-#include "parallel.h"
+#include "../base/parallel.h"
 
 namespace musclesim {
 

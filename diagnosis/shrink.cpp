@@ -7,8 +7,8 @@
 #include <numbers>
 #include <optional>
 
-#include "musclesim/random.h"
-#include "parallel.h"
+#include "../base/parallel.h"
+#include "musclesim/base/random.h"
 #include "refit.h"
 
 namespace musclesim {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "musclesim/random.h"
-#include "parallel.h"
+#include "../base/parallel.h"
+#include "musclesim/base/random.h"
 
 namespace musclesim {
 

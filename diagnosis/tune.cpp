@@ -6,7 +6,7 @@
 #include <mutex>
 
 #include "comparison.h"
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "refit.h"
 
 namespace musclesim {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <mutex>
 
 #include "body/attachment_offset.h"
@@ -28,8 +29,7 @@
 #include "force/series_elasticity.h"
 #include "force/threshold_pressure.h"
 #include "force/viscous_loss.h"
-#include "musclesim/effect/foreign.h"
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "pressure/flow_limit.h"
 #include "pressure/leak.h"
 #include "pressure/pressure_calibration.h"
@@ -126,7 +126,9 @@ double numberOf(const EffectParameter& parameter, const Parameter::Value& value,
 
 std::vector<EffectInfo> effectCatalogue() {
   const std::lock_guard lock(registryMutex());
-  return registry();
+  std::vector<EffectInfo> listed;
+  std::ranges::copy_if(registry(), std::back_inserter(listed), &EffectInfo::listed);
+  return listed;
 }
 
 EffectInfo effectInfo(const std::string& id) {
@@ -135,11 +137,9 @@ EffectInfo effectInfo(const std::string& id) {
     const std::lock_guard lock(registryMutex());
     for (const EffectInfo& info : registry()) {
       if (info.id == id) return info;
-      ids.push_back(info.id);
+      if (info.listed) ids.push_back(info.id);
     }
   }
-  for (const ForeignEffect& foreign : foreignEffects())
-    if (foreign.info.id == id) return foreign.info;
   const std::string nearest = nearestName(id, ids);
   throw BadParameter(fmt::format("there is no effect \"{}\"{} (musclesim effects lists all)", id,
                                  nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?"));

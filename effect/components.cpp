@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "musclesim/log/recording.h"
 #include "musclesim/robot/robot.h"
 #include "musclesim/simulation/simulation.h"

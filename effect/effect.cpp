@@ -6,11 +6,11 @@
 #include <stdexcept>
 
 #include "../robot/ode_vector.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/units.h"
 #include "musclesim/effect/effect_chain.h"
-#include "musclesim/error.h"
 #include "musclesim/robot/robot.h"
 #include "musclesim/simulation/simulation.h"
-#include "musclesim/units.h"
 
 namespace musclesim {
 

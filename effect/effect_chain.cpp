@@ -8,11 +8,11 @@
 #include "../robot/ode_vector.h"
 #include "components.h"
 #include "force_stack.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/units.h"
 #include "musclesim/effect/catalogue.h"
-#include "musclesim/error.h"
 #include "musclesim/robot/robot.h"
 #include "musclesim/simulation/simulation.h"
-#include "musclesim/units.h"
 #include "sensor_stage.h"
 
 namespace musclesim {

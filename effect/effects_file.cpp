@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include "../log/effect_json.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/file.h"
+#include "musclesim/base/json_document.h"
 #include "musclesim/effect/catalogue.h"
-#include "musclesim/error.h"
-#include "musclesim/log/file.h"
-#include "musclesim/log/json_document.h"
 
 namespace musclesim {
 

@@ -1,6 +1,6 @@
 #include "cross_validation.h"
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "point_groups.h"
 
 namespace musclesim {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 
 namespace musclesim {
 

@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "diagram.h"
+#include "musclesim/base/units.h"
 #include "musclesim/robot/force_law_choice.h"
-#include "musclesim/units.h"
 
 namespace musclesim {
 

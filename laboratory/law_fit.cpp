@@ -7,7 +7,7 @@
 
 #include "intervals.h"
 #include "least_squares.h"
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "point_checks.h"
 
 namespace musclesim {

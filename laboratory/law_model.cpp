@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "map_model.h"
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/units.h"
 #include "musclesim/robot/chou_hannaford.h"
 #include "musclesim/robot/sarosi.h"
-#include "musclesim/units.h"
 
 namespace musclesim {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 
 namespace musclesim {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "musclesim/error.h"
-#include "musclesim/units.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/units.h"
 
 namespace musclesim {
 

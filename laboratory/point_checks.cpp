@@ -5,7 +5,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "point_groups.h"
 
 namespace musclesim {

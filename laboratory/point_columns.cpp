@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "musclesim/error.h"
-#include "musclesim/parameters.h"
-#include "musclesim/units.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/text.h"
+#include "musclesim/base/parameters.h"
+#include "musclesim/base/units.h"
 
 namespace musclesim {
 

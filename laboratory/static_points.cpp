@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/file.h"
 #include "musclesim/log/csv.h"
-#include "musclesim/log/file.h"
 #include "point_checks.h"
 #include "point_columns.h"
 

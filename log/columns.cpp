@@ -7,9 +7,10 @@
 #include <optional>
 #include <set>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/text.h"
+#include "musclesim/base/units.h"
 #include "musclesim/log/csv.h"
-#include "musclesim/units.h"
 
 namespace musclesim {
 

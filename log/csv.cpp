@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "musclesim/error.h"
-#include "musclesim/log/text_place.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/text.h"
 
 namespace musclesim {
 
@@ -31,19 +31,6 @@ bool isNan(std::string_view text) {
 }
 
 }  // namespace
-
-std::string inQuotes(std::string_view text) {
-  constexpr std::size_t longest = 40;
-  std::string out = "\"";
-  for (const char character : text.substr(0, longest)) {
-    const auto code = static_cast<unsigned char>(character);
-    if (code >= 0x20 && code < 0x7F)
-      out += character;
-    else
-      out += fmt::format("\\x{:02X}", code);
-  }
-  return out + (text.size() > longest ? "...\"" : "\"");
-}
 
 CsvReader::CsvReader(std::string_view text, std::string file, const CsvLimits& limits)
     : file_(std::move(file)), limits_(limits), rest_(text) {

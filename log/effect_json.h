@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "musclesim/effect/active_effect.h"
+#include "musclesim/log/active_effect.h"
 
 namespace musclesim {
 

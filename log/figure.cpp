@@ -8,7 +8,7 @@
 #include "curve.h"
 #include "figure_panels.h"
 #include "figure_parts.h"
-#include "musclesim/log/file.h"
+#include "musclesim/base/file.h"
 #include "svg.h"
 
 namespace musclesim {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "musclesim/robot/muscle_colors.h"
+#include "musclesim/base/color.h"
 #include "svg.h"
 
 namespace musclesim {

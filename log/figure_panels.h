@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "curve.h"
-#include "musclesim/color.h"
+#include "musclesim/base/color.h"
 #include "musclesim/log/recording.h"
 
 namespace musclesim {

@@ -8,9 +8,9 @@
 #include <filesystem>
 #include <limits>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/file.h"
 #include "musclesim/log/csv.h"
-#include "musclesim/log/file.h"
 
 namespace musclesim {
 

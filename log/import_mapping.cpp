@@ -4,8 +4,8 @@
 #include <limits>
 #include <sstream>
 
-#include "../simulation/toml_document.h"
-#include "musclesim/error.h"
+#include "../base/toml_document.h"
+#include "musclesim/base/error.h"
 #include "musclesim/log/import.h"
 
 namespace musclesim {

@@ -9,8 +9,8 @@
 #include <cstring>
 #include <filesystem>
 
-#include "musclesim/error.h"
-#include "musclesim/log/file.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/file.h"
 #include "row_text.h"
 #include "sidecar.h"
 

@@ -9,9 +9,10 @@
 #include <numeric>
 
 #include "columns.h"
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/file.h"
+#include "musclesim/base/text.h"
 #include "musclesim/log/csv.h"
-#include "musclesim/log/file.h"
 #include "row_text.h"
 #include "sidecar.h"
 

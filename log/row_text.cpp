@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "columns.h"
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 
 namespace musclesim {
 

@@ -8,9 +8,9 @@
 
 #include "columns.h"
 #include "effect_json.h"
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/json_document.h"
 #include "musclesim/log/csv.h"
-#include "musclesim/log/json_document.h"
 
 namespace musclesim {
 

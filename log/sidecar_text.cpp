@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "effect_json.h"
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/json_document.h"
 #include "musclesim/log/csv.h"
-#include "musclesim/log/json_document.h"
 #include "sidecar.h"
 
 namespace musclesim {

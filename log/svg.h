@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "musclesim/color.h"
+#include "musclesim/base/color.h"
 
 namespace musclesim {
 

@@ -7,12 +7,12 @@
 #include <cmath>
 #include <limits>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/units.h"
 #include "musclesim/robot/force_law_choice.h"
 #include "musclesim/robot/line_of_pull.h"
 #include "musclesim/robot/primitive.h"
 #include "musclesim/simulation/simulation.h"
-#include "musclesim/units.h"
 #include "ode_vector.h"
 
 namespace musclesim {

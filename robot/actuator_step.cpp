@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "musclesim/base/units.h"
 #include "musclesim/robot/actuator.h"
 #include "musclesim/robot/line_of_pull.h"
 #include "musclesim/simulation/simulation.h"
-#include "musclesim/units.h"
 
 namespace musclesim {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "force_law_checks.h"
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 
 namespace musclesim {
 

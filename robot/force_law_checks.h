@@ -7,7 +7,7 @@
 #include <initializer_list>
 #include <string>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 
 namespace musclesim {
 

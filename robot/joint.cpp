@@ -1,7 +1,7 @@
 #include "musclesim/robot/joint.h"
 
-#include "musclesim/error.h"
-#include "musclesim/units.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/units.h"
 #include "ode_vector.h"
 
 namespace musclesim {

@@ -3,11 +3,11 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/units.h"
 #include "musclesim/robot/actuator.h"
 #include "musclesim/robot/primitive.h"
 #include "musclesim/simulation/physics.h"
-#include "musclesim/units.h"
 #include "ode_vector.h"
 
 namespace musclesim {

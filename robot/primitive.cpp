@@ -9,9 +9,9 @@
 #include <numbers>
 #include <utility>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/units.h"
 #include "musclesim/simulation/simulation.h"
-#include "musclesim/units.h"
 #include "ode_vector.h"
 
 namespace musclesim {

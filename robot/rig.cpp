@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "equilibrium.h"
+#include "musclesim/base/units.h"
 #include "musclesim/robot/muscle.h"
 #include "musclesim/simulation/simulation.h"
-#include "musclesim/units.h"
 
 namespace musclesim {
 

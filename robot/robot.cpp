@@ -6,7 +6,7 @@
 #include <limits>
 #include <mutex>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "musclesim/robot/elbow.h"
 #include "musclesim/robot/rig.h"
 #include "musclesim/robot/robotic_arm.h"
@@ -103,6 +103,13 @@ void Robot::setHand(Primitive* primitive, const Vector& offset_mm) {
 
 void Robot::setLoad(Primitive* primitive) {
   hand_ = primitive;
+}
+
+std::vector<Color> Robot::namedMuscleColors() const {
+  std::vector<Color> colors;
+  for (const Actuator* actuator : actuators_)
+    if (!actuator->color().name.empty()) colors.push_back(actuator->color());
+  return colors;
 }
 
 void Robot::loadHand(double mass_g) {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "force_law_checks.h"
-#include "musclesim/units.h"
+#include "musclesim/base/units.h"
 
 namespace musclesim {
 

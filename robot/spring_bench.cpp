@@ -4,11 +4,11 @@
 #include <functional>
 
 #include "equilibrium.h"
+#include "musclesim/base/units.h"
 #include "musclesim/robot/force_law_choice.h"
 #include "musclesim/robot/linear_actuator.h"
 #include "musclesim/robot/muscle.h"
 #include "musclesim/simulation/simulation.h"
-#include "musclesim/units.h"
 
 namespace musclesim {
 

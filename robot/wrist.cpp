@@ -5,10 +5,10 @@
 #include <Eigen/Geometry>
 
 #include "equilibrium.h"
+#include "musclesim/base/units.h"
 #include "musclesim/robot/force_law_choice.h"
 #include "musclesim/robot/muscle.h"
 #include "musclesim/simulation/simulation.h"
-#include "musclesim/units.h"
 
 namespace musclesim {
 

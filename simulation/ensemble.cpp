@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 
 namespace musclesim {
 

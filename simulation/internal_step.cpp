@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "bone_mobility.h"
+#include "musclesim/base/units.h"
 #include "musclesim/robot/line_of_pull.h"
-#include "musclesim/units.h"
 
 namespace musclesim {
 

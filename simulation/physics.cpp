@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "musclesim/error.h"
-#include "musclesim/units.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/units.h"
 
 namespace musclesim {
 

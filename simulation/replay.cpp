@@ -10,8 +10,8 @@
 
 #include "../effect/components.h"
 #include "internal_step.h"
+#include "musclesim/base/error.h"
 #include "musclesim/controller/replay.h"
-#include "musclesim/error.h"
 #include "musclesim/version.h"
 
 namespace musclesim {

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <mutex>
 
+#include "../base/ode_runtime.h"
 #include "../robot/ode_vector.h"
 #include "chain/chain_stepper.h"
 #include "contacts.h"
 #include "internal_step.h"
-#include "musclesim/error.h"
-#include "musclesim/units.h"
-#include "ode_runtime.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/units.h"
 
 namespace musclesim {
 

@@ -10,10 +10,10 @@
 #include "bench_report.h"
 #include "commands.h"
 #include "interrupt.h"
-#include "musclesim/error.h"
-#include "musclesim/log/file.h"
-#include "musclesim/random.h"
-#include "musclesim/units.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/file.h"
+#include "musclesim/base/random.h"
+#include "musclesim/base/units.h"
 
 namespace musclesim::program {
 

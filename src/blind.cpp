@@ -5,12 +5,12 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
-#include "diagnosis/blind/follow_up.h"
-#include "diagnosis/blind/make.h"
-#include "diagnosis/blind/page.h"
-#include "diagnosis/blind/run.h"
-#include "diagnosis/blind/score.h"
-#include "diagnosis/blind/seal.h"
+#include "evaluation/blind/follow_up.h"
+#include "evaluation/blind/make.h"
+#include "evaluation/blind/page.h"
+#include "evaluation/blind/run.h"
+#include "evaluation/blind/score.h"
+#include "evaluation/blind/seal.h"
 #include "interrupt.h"
 #include "progress.h"
 

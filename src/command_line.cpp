@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "musclesim/parameters.h"
+#include "../evaluation/out_of_catalogue/out_of_catalogue.h"
+#include "musclesim/base/parameters.h"
 #include "musclesim/version.h"
 
 namespace musclesim::program {
@@ -54,6 +55,7 @@ CommandLine::CommandLine()
   add("work", "Runs rows of a sweep that no other worker has taken, until none is left", addWork);
   add("collect", "Puts the results of a sweep into one table", addCollect);
   refuseEmptyValues(app_);
+  registerOutOfCatalogueLaws();  // recordings that a check of the diagnosis has made can be replayed
 }
 
 std::vector<std::string> CommandLine::commandNames() const {

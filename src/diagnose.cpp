@@ -6,10 +6,10 @@
 
 #include "commands.h"
 #include "interrupt.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/file.h"
 #include "musclesim/diagnosis/diagnosis.h"
 #include "musclesim/effect/effects_file.h"
-#include "musclesim/error.h"
-#include "musclesim/log/file.h"
 #include "output_folder.h"
 #include "progress.h"
 

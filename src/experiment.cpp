@@ -8,8 +8,8 @@
 #include "commands.h"
 #include "interrupt.h"
 #include "laboratory/frame_report.h"
-#include "musclesim/error.h"
-#include "musclesim/log/file.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/file.h"
 #include "output_folder.h"
 
 namespace musclesim::program {

@@ -8,8 +8,8 @@
 #include "interrupt.h"
 #include "laboratory/fit_figure.h"
 #include "laboratory/fit_report.h"
-#include "musclesim/error.h"
-#include "musclesim/log/file.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/file.h"
 #include "output_folder.h"
 
 namespace musclesim::program {

@@ -7,7 +7,7 @@
 
 #include "command_line.h"
 #include "interrupt.h"
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 
 namespace {
 

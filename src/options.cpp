@@ -3,8 +3,8 @@
 #include <charconv>
 #include <cstdio>
 
+#include "musclesim/base/error.h"
 #include "musclesim/effect/effects_file.h"
-#include "musclesim/error.h"
 
 namespace musclesim::program {
 

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "musclesim/log/recording.h"
 
 namespace musclesim::program {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "pictures.h"
 
 namespace musclesim::program {

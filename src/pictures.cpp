@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "output_folder.h"
 #include "simulation/scene/offscreen.h"
 #include "simulation/scene/video.h"

@@ -1,5 +1,5 @@
 /// Stands for pictures.cpp in a build without libraries for pictures.
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "pictures.h"
 
 namespace musclesim::program {

@@ -7,11 +7,11 @@
 
 #include "commands.h"
 #include "interrupt.h"
-#include "musclesim/error.h"
+#include "musclesim/base/color.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/units.h"
 #include "musclesim/log/figure.h"
 #include "musclesim/log/recorder.h"
-#include "musclesim/robot/muscle_colors.h"
-#include "musclesim/units.h"
 #include "output_folder.h"
 #include "progress.h"
 #include "run_output.h"
@@ -171,7 +171,7 @@ class Run {
       svg = fs::path(*options_.out) / svg.filename();
     }
     const Recording recording = readRecording(csv.string());
-    writeRunFigure(recording, namedMuscleColors(robot()), recording.info.description, svg.string());
+    writeRunFigure(recording, robot().namedMuscleColors(), recording.info.description, svg.string());
     return svg;
   }
 

@@ -8,7 +8,7 @@
 
 #include "commands.h"
 #include "interrupt.h"
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "output_folder.h"
 #include "sweep/collect.h"
 #include "sweep/plan.h"

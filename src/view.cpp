@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 
 namespace musclesim::program {
 

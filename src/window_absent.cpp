@@ -1,5 +1,5 @@
 /// Stands for window.cpp in a build without libraries for a window.
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "window.h"
 
 namespace musclesim::program {

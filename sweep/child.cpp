@@ -14,7 +14,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 
 namespace musclesim {
 

@@ -14,9 +14,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "musclesim/error.h"
-#include "musclesim/log/file.h"
-#include "musclesim/log/unique_name.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/file.h"
+#include "musclesim/base/unique_name.h"
 #include "sweep.h"
 
 namespace musclesim {

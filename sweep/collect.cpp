@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "musclesim/log/file.h"
+#include "musclesim/base/file.h"
 #include "result.h"
 #include "sweep.h"
 

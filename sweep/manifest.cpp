@@ -5,10 +5,10 @@
 #include <filesystem>
 
 #include "hash.h"
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/file.h"
+#include "musclesim/base/json_document.h"
 #include "musclesim/log/csv.h"
-#include "musclesim/log/file.h"
-#include "musclesim/log/json_document.h"
 #include "musclesim/version.h"
 #include "sweep.h"
 

@@ -8,8 +8,8 @@
 #include <numeric>
 #include <set>
 
-#include "../simulation/toml_document.h"
-#include "musclesim/error.h"
+#include "../base/toml_document.h"
+#include "musclesim/base/error.h"
 #include "plan_values.h"
 
 namespace musclesim {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 
 namespace musclesim {
 

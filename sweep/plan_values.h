@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "musclesim/random.h"
+#include "musclesim/base/random.h"
 #include "sweep/sweep.h"
 
 namespace musclesim {

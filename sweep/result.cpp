@@ -2,9 +2,9 @@
 
 #include <unistd.h>
 
-#include "musclesim/error.h"
-#include "musclesim/log/file.h"
-#include "musclesim/log/json_document.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/file.h"
+#include "musclesim/base/json_document.h"
 #include "sweep.h"
 
 namespace musclesim {

@@ -8,8 +8,8 @@
 #include <set>
 
 #include "hash.h"
-#include "musclesim/error.h"
-#include "musclesim/log/file.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/file.h"
 #include "musclesim/log/recording.h"
 
 namespace musclesim {

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "musclesim/parameters.h"
+#include "musclesim/base/parameters.h"
 
 namespace musclesim {
 

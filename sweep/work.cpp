@@ -13,8 +13,8 @@
 
 #include "claims.h"
 #include "hash.h"
-#include "musclesim/error.h"
-#include "musclesim/log/file.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/file.h"
 #include "musclesim/version.h"
 #include "result.h"
 #include "sweep.h"

@@ -1,6 +1,6 @@
 #include "attachment_offset.h"
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "musclesim/robot/robot.h"
 
 namespace musclesim {

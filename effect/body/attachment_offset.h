@@ -8,7 +8,7 @@
 /// -3 .. 3: upward a muscle's length shows it at once.  Source: definition.
 #pragma once
 
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

@@ -4,7 +4,7 @@
 /// Neutral: both 0. Range -180 .. 180 deg, usually -8 .. 8.  Source: definition.
 #pragma once
 
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

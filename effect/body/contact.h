@@ -5,7 +5,7 @@
 /// Neutral: both stiffnesses 0. Ranges 0 .. 1000 N m/deg and 0 .. 1e5 N/mm.  Source: penalty contact.
 #pragma once
 
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

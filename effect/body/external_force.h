@@ -3,7 +3,7 @@
 /// Neutral: all 0. Range -1e4 .. 1e4 N, usually -10 .. 10.  Source: definition.
 #pragma once
 
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

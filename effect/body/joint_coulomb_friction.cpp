@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "musclesim/units.h"
+#include "musclesim/base/units.h"
 
 namespace musclesim {
 

@@ -7,7 +7,7 @@
 /// of ODE; one Maxwell slip element, Al-Bender, Lampaert and Swevers 2005.
 #pragma once
 
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

@@ -1,6 +1,6 @@
 #include "joint_stiffness.h"
 
-#include "musclesim/units.h"
+#include "musclesim/base/units.h"
 
 namespace musclesim {
 

@@ -4,7 +4,7 @@
 /// Neutral: k = 0. Range 0 .. 1000 N m/rad, usually 0.05 .. 2.  Source: linear spring.
 #pragma once
 
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "musclesim/error.h"
-#include "musclesim/units.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/units.h"
 
 namespace musclesim {
 

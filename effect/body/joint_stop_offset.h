@@ -4,7 +4,7 @@
 /// Neutral: d = 0. Range -90 .. 90 deg, usually -15 .. 15.  Source: definition.
 #pragma once
 
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

@@ -5,7 +5,7 @@
 /// friction models, Armstrong-Helouvry, Dupont and Canudas de Wit 1994.
 #pragma once
 
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

@@ -1,7 +1,7 @@
 #include "payload.h"
 
+#include "musclesim/base/units.h"
 #include "musclesim/robot/robot.h"
-#include "musclesim/units.h"
 
 namespace musclesim {
 

@@ -4,7 +4,7 @@
 /// Neutral: 0. Range -1000 .. 1000 kg, usually -0.3 .. 1.  Source: parallel-axis theorem.
 #pragma once
 
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

@@ -4,7 +4,7 @@
 /// not.  Source: definition.
 #pragma once
 
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

@@ -4,7 +4,7 @@
 /// Neutral: u_t = 0. Range 0 .. 1, usually 0.02 .. 0.1.  Source: definition; 0.056 measured on a pneumatic muscle drive.
 #pragma once
 
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

@@ -5,7 +5,7 @@
 /// Neutral: bits infinite. Range 1 .. infinity, usually 6 .. 10; the compressor of Braun 2007 has 8.  Source: definition.
 #pragma once
 
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

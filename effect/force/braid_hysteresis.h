@@ -8,7 +8,7 @@
 /// between threads in proportion to pressure, Tondu and Lopez 2000.
 #pragma once
 
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

@@ -6,7 +6,7 @@
 /// 0.3 .. 30.  Source: Kelvin-Voigt element in series; amounts of 0.07 to 0.19 with 0.53 to 1.0 s measured over 4 s.
 #pragma once
 
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

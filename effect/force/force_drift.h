@@ -4,7 +4,7 @@
 /// Neutral: r = 0. Range -10 .. 10 per min, usually -0.05 .. 0.05.  Source: linear trend.
 #pragma once
 
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

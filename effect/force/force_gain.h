@@ -3,7 +3,7 @@
 /// F tension in N, g = gain. Neutral: g = 1. Range 0 .. 10, usually 0.7 .. 1.3.  Source: definition; ageing, another muscle type.
 #pragma once
 
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

@@ -6,7 +6,7 @@
 /// Neutral: law = own.  Source: Braun 2007; Chou and Hannaford 1996; Sarosi 2012.
 #pragma once
 
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 #include "musclesim/robot/force_law.h"
 
 namespace musclesim {

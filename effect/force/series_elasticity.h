@@ -5,7 +5,7 @@
 /// Neutral: k infinite. Range 0.01 .. infinity N/mm, usually 5 .. 1000.  Source: springs in series.
 #pragma once
 
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

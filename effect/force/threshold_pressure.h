@@ -7,7 +7,7 @@
 /// 0.05 to 0.12 of full scale measured.
 #pragma once
 
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "musclesim/base/units.h"
 #include "musclesim/simulation/simulation.h"
-#include "musclesim/units.h"
 
 namespace musclesim {
 

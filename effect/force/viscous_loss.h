@@ -6,7 +6,7 @@
 /// hundred). Source: Reynolds et al. 2003 measured 1570 (relaxing) to 2900 N s/m (contracting).
 #pragma once
 
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

@@ -7,7 +7,7 @@
 /// equal (ISO 6358); +7 and -2.7 bar/s of 6 bar measured on a pneumatic muscle drive.
 #pragma once
 
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

@@ -9,7 +9,7 @@
 /// upper end is an estimate, a hole that takes 5 % of the pressure from a regulator of 0.05 s.
 #pragma once
 
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

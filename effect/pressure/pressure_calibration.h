@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

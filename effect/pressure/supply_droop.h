@@ -6,7 +6,7 @@
 /// the supply measured over working cycles.
 #pragma once
 
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

@@ -6,7 +6,7 @@
 /// 0.084 s, 0.126 and 0.089 s (filling and venting) measured on two pneumatic muscle drives (see docs/effects.md).
 #pragma once
 
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

@@ -9,7 +9,7 @@
 /// virtual work as in Chou and Hannaford 1996.
 #pragma once
 
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "musclesim/log/recording.h"
 #include "musclesim/robot/robot.h"
 

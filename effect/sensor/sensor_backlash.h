@@ -4,7 +4,7 @@
 /// Neutral: both 0. Range 0 .. 90 deg and 0 .. 1000 mm, usually 0.3 .. 5.  Source: play operator, Krasnosel'skii and Pokrovskii 1989.
 #pragma once
 
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

@@ -3,7 +3,7 @@
 /// b = offset, in the unit of the signal. Neutral: b = 0.  Source: definition.
 #pragma once
 
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

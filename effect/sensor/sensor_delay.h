@@ -6,7 +6,7 @@
 #pragma once
 
 #include "../history.h"
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

@@ -7,8 +7,8 @@
 
 #include <optional>
 
-#include "musclesim/effect/catalogue.h"
-#include "musclesim/random.h"
+#include "musclesim/base/random.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

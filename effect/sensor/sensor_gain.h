@@ -3,7 +3,7 @@
 /// g = gain. Neutral: g = 1. Range -10 .. 10, usually 0.85 .. 1.15.  Source: definition.
 #pragma once
 
-#include "musclesim/effect/catalogue.h"
+#include "musclesim/effect/effect_info.h"
 
 namespace musclesim {
 

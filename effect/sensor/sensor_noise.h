@@ -5,8 +5,8 @@
 
 #include <optional>
 
+#include "musclesim/base/random.h"
 #include "musclesim/effect/effect.h"
-#include "musclesim/random.h"
 
 namespace musclesim {
 

@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "shared.h"
 #include "window.h"
 

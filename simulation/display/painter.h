@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "musclesim/color.h"
+#include "musclesim/base/color.h"
 
 namespace musclesim {
 

@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "painter.h"
 #include "simulation/scene/scene_error.h"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "musclesim/units.h"
+#include "musclesim/base/units.h"
 
 namespace musclesim {
 

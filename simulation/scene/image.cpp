@@ -4,8 +4,8 @@
 
 #include <string_view>
 
-#include "musclesim/error.h"
-#include "musclesim/log/file.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/file.h"
 
 namespace musclesim {
 

@@ -1,7 +1,7 @@
 /// What is thrown when there is nothing to draw with.
 #pragma once
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 
 namespace musclesim {
 

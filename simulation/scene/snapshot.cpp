@@ -3,8 +3,8 @@
 #include <limits>
 
 #include "../../robot/ode_vector.h"
+#include "musclesim/base/color.h"
 #include "musclesim/robot/line_of_pull.h"
-#include "musclesim/robot/muscle_colors.h"
 
 namespace musclesim {
 
@@ -102,7 +102,7 @@ std::optional<float> floorOf(dSpaceID space) {
 }  // namespace
 
 SnapshotTaker::SnapshotTaker(Simulation& simulation) : simulation_(simulation) {
-  const std::vector<Color> own = namedMuscleColors(simulation.robot());
+  const std::vector<Color> own = simulation.robot().namedMuscleColors();
   for (int i = 0; i < simulation.robot().actuatorCount(); ++i) muscle_colors_.push_back(muscleColor(static_cast<std::size_t>(i), own));
 }
 

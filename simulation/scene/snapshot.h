@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "musclesim/color.h"
+#include "musclesim/base/color.h"
 #include "musclesim/robot/primitive.h"
 #include "musclesim/simulation/simulation.h"
 

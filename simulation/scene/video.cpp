@@ -11,8 +11,8 @@
 #include <system_error>
 #include <vector>
 
-#include "musclesim/error.h"
-#include "musclesim/log/file.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/file.h"
 
 namespace musclesim {
 

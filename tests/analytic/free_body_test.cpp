@@ -3,9 +3,9 @@
 
 #include <cmath>
 
+#include "musclesim/base/units.h"
 #include "musclesim/robot/muscle.h"
 #include "musclesim/simulation/simulation.h"
-#include "musclesim/units.h"
 
 namespace musclesim {
 namespace {

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "musclesim/base/units.h"
 #include "musclesim/simulation/simulation.h"
-#include "musclesim/units.h"
 
 namespace musclesim {
 namespace {

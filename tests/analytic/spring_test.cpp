@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "musclesim/base/units.h"
 #include "musclesim/robot/linear_actuator.h"
 #include "musclesim/simulation/simulation.h"
-#include "musclesim/units.h"
 
 namespace musclesim {
 namespace {

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "equilibrium.h"
+#include "musclesim/base/units.h"
 #include "musclesim/simulation/simulation.h"
-#include "musclesim/units.h"
 
 namespace musclesim {
 

@@ -10,8 +10,8 @@
 #include "log/axis.h"
 #include "log/curve.h"
 #include "log/svg.h"
+#include "musclesim/base/file.h"
 #include "musclesim/effect/relevance.h"
-#include "musclesim/log/file.h"
 #include "study.h"
 
 using namespace musclesim;

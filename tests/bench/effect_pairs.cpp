@@ -8,7 +8,7 @@
 #include <cstring>
 
 #include "effect_recordings.h"
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "study.h"
 
 using namespace musclesim;

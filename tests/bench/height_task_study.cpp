@@ -13,7 +13,7 @@
 #include <optional>
 
 #include "../../log/svg.h"
-#include "musclesim/log/file.h"
+#include "musclesim/base/file.h"
 #include "musclesim/simulation/simulation.h"
 #include "study.h"
 

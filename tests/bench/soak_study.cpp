@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "musclesim/base/random.h"
 #include "musclesim/log/recorder.h"
-#include "musclesim/random.h"
 #include "musclesim/simulation/simulation.h"
 
 using namespace musclesim;

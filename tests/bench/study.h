@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "musclesim/base/random.h"
 #include "musclesim/log/recording.h"
-#include "musclesim/random.h"
 #include "musclesim/robot/state.h"
 
 namespace musclesim {

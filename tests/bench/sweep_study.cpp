@@ -17,7 +17,7 @@
 #include <sstream>
 #include <thread>
 
-#include "musclesim/random.h"
+#include "musclesim/base/random.h"
 #include "sweep/collect.h"
 #include "sweep/plan.h"
 #include "sweep/sweep.h"

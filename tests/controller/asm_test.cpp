@@ -7,8 +7,8 @@
 
 #include "controller/request.h"
 #include "controller/surrogate_plant.h"
+#include "musclesim/base/error.h"
 #include "musclesim/controller/random_pressures.h"
-#include "musclesim/error.h"
 #include "support/support.h"
 
 namespace musclesim {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "support/support.h"
 
 namespace musclesim {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "controller/request.h"
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "support/support.h"
 
 namespace musclesim {

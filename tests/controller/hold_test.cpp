@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "controller/request.h"
+#include "musclesim/base/error.h"
 #include "musclesim/controller/random_pressures.h"
-#include "musclesim/error.h"
 #include "support/support.h"
 
 namespace musclesim {

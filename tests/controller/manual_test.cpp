@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 
 namespace musclesim {
 namespace {

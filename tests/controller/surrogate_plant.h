@@ -3,8 +3,8 @@
 
 #include <Eigen/Core>
 
+#include "musclesim/base/random.h"
 #include "musclesim/controller/controller.h"
-#include "musclesim/random.h"
 
 namespace musclesim::test {
 

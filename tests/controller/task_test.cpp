@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "controller/request.h"
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "support/support.h"
 
 namespace musclesim {

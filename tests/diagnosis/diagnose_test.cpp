@@ -7,9 +7,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "musclesim/base/error.h"
 #include "musclesim/diagnosis/diagnosis.h"
-#include "musclesim/error.h"
 #include "planted.h"
+#include "support/out_of_catalogue_laws.h"
 #include "support/support.h"
 
 namespace musclesim {

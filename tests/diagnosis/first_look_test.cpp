@@ -6,7 +6,7 @@
 
 #include "diagnosis/attribute.h"
 #include "diagnosis/plant.h"
-#include "musclesim/random.h"
+#include "musclesim/base/random.h"
 #include "planted.h"
 
 namespace musclesim {

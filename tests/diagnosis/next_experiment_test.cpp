@@ -8,7 +8,7 @@
 #include <set>
 
 #include "diagnosis/schedule.h"
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "musclesim/simulation/replay.h"
 #include "planted.h"
 #include "support/support.h"

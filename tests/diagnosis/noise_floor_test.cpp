@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "musclesim/random.h"
+#include "musclesim/base/random.h"
 
 namespace musclesim {
 namespace {

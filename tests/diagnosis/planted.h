@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "musclesim/base/random.h"
 #include "musclesim/diagnosis/diagnosis.h"
-#include "musclesim/random.h"
 #include "musclesim/simulation/replay.h"
 
 namespace musclesim::planted {

@@ -4,7 +4,7 @@
 
 #include <atomic>
 
-#include "diagnosis/parallel.h"
+#include "base/parallel.h"
 
 namespace musclesim {
 namespace {

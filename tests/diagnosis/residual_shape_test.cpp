@@ -7,7 +7,7 @@
 #include <functional>
 #include <numbers>
 
-#include "musclesim/random.h"
+#include "musclesim/base/random.h"
 
 namespace musclesim {
 namespace {

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "diagnosis/locate.h"
-#include "musclesim/random.h"
+#include "musclesim/base/random.h"
 #include "musclesim/simulation/replay.h"
 
 namespace musclesim {

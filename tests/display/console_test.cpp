@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "musclesim/error.h"
-#include "musclesim/log/file.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/file.h"
 
 namespace musclesim {
 namespace {

@@ -6,9 +6,10 @@
 #include <cmath>
 
 #include "effect_runs.h"
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/units.h"
 #include "musclesim/robot/muscle.h"
-#include "musclesim/units.h"
+#include "support/out_of_catalogue_laws.h"
 #include "support/support.h"
 
 namespace musclesim {

@@ -4,8 +4,8 @@
 
 #include <set>
 
+#include "musclesim/base/error.h"
 #include "musclesim/effect/relevance.h"
-#include "musclesim/error.h"
 #include "musclesim/simulation/simulation.h"
 #include "support/support.h"
 

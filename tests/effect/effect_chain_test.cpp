@@ -2,7 +2,7 @@
 #include "musclesim/effect/effect_chain.h"
 
 #include "effect_runs.h"
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "support/support.h"
 
 namespace musclesim {

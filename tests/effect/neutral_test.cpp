@@ -3,8 +3,8 @@
 #include <map>
 
 #include "effect_runs.h"
-#include "musclesim/effect/foreign.h"
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
+#include "support/out_of_catalogue_laws.h"
 #include "support/support.h"
 
 namespace musclesim {
@@ -110,7 +110,7 @@ TEST_P(EveryEffect, IsRefusedOnAComponentThatTheRobotDoesNotHave) {
 std::vector<std::string> allIds() {
   std::vector<std::string> ids;
   for (const EffectInfo& info : effectCatalogue()) ids.push_back(info.id);
-  for (const ForeignEffect& foreign : foreignEffects()) ids.push_back(foreign.info.id);
+  for (const OutOfCatalogueLaw& foreign : outOfCatalogueLaws()) ids.push_back(foreign.info.id);
   return ids;
 }
 

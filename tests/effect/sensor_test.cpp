@@ -5,7 +5,7 @@
 #include <set>
 
 #include "effect_runs.h"
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 
 namespace musclesim {
 namespace {

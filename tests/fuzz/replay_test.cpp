@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "fuzz/targets.h"
-#include "musclesim/random.h"
+#include "musclesim/base/random.h"
 
 namespace musclesim {
 namespace {

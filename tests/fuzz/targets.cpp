@@ -7,10 +7,10 @@
 #include <cstdlib>
 #include <functional>
 
+#include "musclesim/base/error.h"
+#include "musclesim/base/parameters.h"
 #include "musclesim/effect/effects_file.h"
-#include "musclesim/error.h"
 #include "musclesim/log/recording.h"
-#include "musclesim/parameters.h"
 #include "src/command_line.h"
 #include "sweep/plan.h"
 #include "sweep/sweep.h"

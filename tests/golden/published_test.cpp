@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <string>
 
+#include "musclesim/base/random.h"
 #include "musclesim/log/recording.h"
-#include "musclesim/random.h"
 #include "musclesim/simulation/replay.h"
 #include "musclesim/simulation/simulation.h"
 #include "support/support.h"

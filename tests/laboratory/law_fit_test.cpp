@@ -10,7 +10,7 @@
 #include "laboratory/fit_report.h"
 #include "laboratory/intervals.h"
 #include "laboratory/planted.h"
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "musclesim/robot/chou_hannaford.h"
 #include "musclesim/robot/force_law_choice.h"
 #include "musclesim/robot/force_map.h"

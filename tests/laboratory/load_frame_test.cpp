@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "laboratory/frame_report.h"
-#include "musclesim/units.h"
+#include "musclesim/base/units.h"
 
 namespace musclesim {
 namespace {

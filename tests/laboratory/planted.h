@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "laboratory/law_fit.h"
-#include "musclesim/random.h"
+#include "musclesim/base/random.h"
 
 namespace musclesim {
 

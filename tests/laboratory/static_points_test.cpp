@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "laboratory/point_groups.h"
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "support/support.h"
 
 namespace musclesim {

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "log_fixture.h"
+#include "musclesim/base/text.h"
 
 namespace musclesim {
 namespace {

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "support/support.h"
 
 namespace musclesim {

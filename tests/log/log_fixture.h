@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "musclesim/log/recording.h"
 #include "support/support.h"
 

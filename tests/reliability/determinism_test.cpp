@@ -4,7 +4,7 @@
 #include <set>
 #include <thread>
 
-#include "musclesim/random.h"
+#include "musclesim/base/random.h"
 #include "musclesim/simulation/simulation.h"
 #include "support/support.h"
 #include "sweep/hash.h"

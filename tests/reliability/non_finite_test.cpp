@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "musclesim/base/error.h"
 #include "musclesim/effect/catalogue.h"
-#include "musclesim/error.h"
 #include "musclesim/log/recording.h"
 #include "musclesim/robot/force_law.h"
 #include "musclesim/robot/muscle.h"

@@ -4,8 +4,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "musclesim/error.h"
-#include "musclesim/random.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/random.h"
 #include "musclesim/robot/linear_actuator.h"
 #include "musclesim/robot/muscle.h"
 #include "musclesim/simulation/simulation.h"

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <limits>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/units.h"
 #include "musclesim/robot/linear_actuator.h"
 #include "musclesim/robot/muscle.h"
 #include "musclesim/simulation/simulation.h"
-#include "musclesim/units.h"
 #include "support/support.h"
 
 namespace musclesim {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "musclesim/simulation/simulation.h"
 #include "support/support.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "musclesim/robot/chou_hannaford.h"
 #include "musclesim/robot/force_law_choice.h"
 #include "musclesim/robot/force_map.h"

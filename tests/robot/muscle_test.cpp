@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/units.h"
 #include "musclesim/simulation/simulation.h"
-#include "musclesim/units.h"
 #include "support/support.h"
 
 namespace musclesim {

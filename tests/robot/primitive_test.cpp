@@ -8,10 +8,10 @@
 #include <limits>
 #include <numbers>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/units.h"
 #include "musclesim/robot/muscle.h"
 #include "musclesim/simulation/simulation.h"
-#include "musclesim/units.h"
 #include "support/support.h"
 
 namespace musclesim {

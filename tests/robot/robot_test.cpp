@@ -7,7 +7,7 @@
 #include <future>
 #include <limits>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "musclesim/robot/muscle.h"
 #include "musclesim/simulation/simulation.h"
 #include "support/support.h"

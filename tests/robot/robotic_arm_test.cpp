@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/units.h"
 #include "musclesim/simulation/simulation.h"
-#include "musclesim/units.h"
 #include "support/support.h"
 
 namespace musclesim {

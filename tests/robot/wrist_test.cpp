@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "musclesim/base/units.h"
 #include "musclesim/simulation/simulation.h"
-#include "musclesim/units.h"
 #include "support/support.h"
 
 namespace musclesim {

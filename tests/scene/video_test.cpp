@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 
 namespace musclesim {
 namespace {

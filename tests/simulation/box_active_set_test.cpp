@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "musclesim/random.h"
+#include "musclesim/base/random.h"
 
 namespace musclesim::chain {
 namespace {

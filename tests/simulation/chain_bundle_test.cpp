@@ -4,7 +4,7 @@
 
 #include <Eigen/Dense>
 
-#include "musclesim/random.h"
+#include "musclesim/base/random.h"
 
 namespace musclesim::chain {
 namespace {

@@ -5,7 +5,7 @@
 #include <atomic>
 #include <thread>
 
-#include "musclesim/random.h"
+#include "musclesim/base/random.h"
 #include "musclesim/simulation/simulation.h"
 #include "support/support.h"
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "musclesim/random.h"
+#include "musclesim/base/random.h"
 #include "musclesim/simulation/simulation.h"
 
 namespace musclesim {

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "../../simulation/chain/core_order.h"
-#include "musclesim/random.h"
+#include "musclesim/base/random.h"
 
 namespace musclesim::chain {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "../../robot/ode_vector.h"
 #include "../../simulation/chain/chain_stepper.h"
-#include "musclesim/random.h"
+#include "musclesim/base/random.h"
 #include "musclesim/simulation/simulation.h"
 
 namespace musclesim {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "sweep/sweep_fixture.h"
 
 namespace musclesim {

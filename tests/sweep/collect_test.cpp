@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "src/program.h"
 #include "sweep/result.h"
 #include "sweep/sweep_fixture.h"

@@ -1,4 +1,4 @@
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "sweep/sweep_fixture.h"
 
 namespace musclesim {

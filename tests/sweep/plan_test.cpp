@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "sweep/sweep_fixture.h"
 
 namespace musclesim {

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <thread>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "src/program.h"
 #include "sweep/collect.h"
 #include "sweep/result.h"

@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <cstdint>
 
+#include "musclesim/base/random.h"
 #include "musclesim/controller/controller.h"
-#include "musclesim/random.h"
 
 namespace musclesim {
 

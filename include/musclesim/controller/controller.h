@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "musclesim/parameters.h"
+#include "musclesim/base/parameters.h"
 #include "musclesim/robot/state.h"
 
 namespace musclesim {

@@ -1,9 +1,9 @@
 /// New random pressures at every decision: the baseline that a controller has to beat.
 #pragma once
 
+#include "musclesim/base/random.h"
 #include "musclesim/controller/attractors.h"
 #include "musclesim/controller/controller.h"
-#include "musclesim/random.h"
 
 namespace musclesim {
 

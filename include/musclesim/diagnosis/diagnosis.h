@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "musclesim/effect/active_effect.h"
+#include "musclesim/log/active_effect.h"
 #include "musclesim/log/recording.h"
 #include "musclesim/simulation/replay.h"
 

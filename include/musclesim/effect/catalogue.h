@@ -1,34 +1,15 @@
 /// The catalogue of effects: one id per physical cause.
 #pragma once
 
-#include <Eigen/Core>
-#include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "musclesim/effect/active_effect.h"
-#include "musclesim/effect/effect.h"
-#include "musclesim/robot/actuator.h"
+#include "musclesim/effect/effect_info.h"
+#include "musclesim/log/active_effect.h"
 
 namespace musclesim {
 
-/// Everything about an effect that does not need a simulation. What `musclesim effects ID` prints and a fit needs to know.
-struct EffectInfo {
-  std::string id;
-  Stage stage = Stage::command;
-  std::vector<ComponentKind> acts_on;
-  std::string summary;    ///< a few words
-  std::string equation;   ///< with its letters explained
-  std::string signature;  ///< what tells it from look-alikes
-  std::string source;
-  std::vector<EffectParameter> parameters;
-  std::function<std::unique_ptr<Effect>(const EffectValues&)> make;
-  /// Given: how far beside its place the robot builds an end of the muscle, along the lever arm and upward.
-  std::function<Eigen::Vector2d(const EffectValues&, MuscleEnd)> mount_offset_mm = {};
-};
-
-/// All effects in the order in which they act within their stages: those of the library, then registered ones.
+/// All listed effects in the order in which they act within their stages: those of the library, then registered ones.
 std::vector<EffectInfo> effectCatalogue();
 /// Throws BadParameter with the nearest id if there is none of that id.
 EffectInfo effectInfo(const std::string& id);

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "musclesim/effect/active_effect.h"
 #include "musclesim/effect/effect.h"
+#include "musclesim/log/active_effect.h"
 #include "musclesim/robot/actuator.h"
 
 namespace musclesim {

@@ -61,7 +61,4 @@ class CsvReader {
   int line_ = 0, header_line_ = 0;
 };
 
-/// Text from a file as it may stand in a message: shortened, and bytes that are not printable ASCII written as \xNN.
-std::string inQuotes(std::string_view text);
-
 }  // namespace musclesim

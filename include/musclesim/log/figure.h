@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "musclesim/color.h"
+#include "musclesim/base/color.h"
 #include "musclesim/log/recording.h"
 
 namespace musclesim {

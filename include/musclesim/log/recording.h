@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "musclesim/effect/active_effect.h"
-#include "musclesim/parameters.h"
+#include "musclesim/base/parameters.h"
+#include "musclesim/log/active_effect.h"
 
 namespace musclesim {
 

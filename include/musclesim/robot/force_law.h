@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "musclesim/parameters.h"
+#include "musclesim/base/parameters.h"
 
 namespace musclesim {
 

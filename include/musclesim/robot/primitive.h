@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "musclesim/color.h"
+#include "musclesim/base/color.h"
 #include "musclesim/robot/joint.h"
 #include "musclesim/robot/state.h"
 

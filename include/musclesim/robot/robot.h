@@ -9,7 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "musclesim/parameters.h"
+#include "musclesim/base/color.h"
+#include "musclesim/base/parameters.h"
 #include "musclesim/robot/actuator.h"
 #include "musclesim/robot/primitive.h"
 #include "musclesim/robot/state.h"
@@ -59,6 +60,8 @@ class Robot {
     int axis;
   };
   const std::vector<Angle>& angles() const { return angles_; }
+  /// The colours that the robot gave to its muscles; muscles without a name for their colour are left out.
+  std::vector<Color> namedMuscleColors() const;
   /// The primitive with the hand or, where none is reported, the load; null if there is neither.
   const Primitive* hand() const { return hand_; }
   /// The hand's point in the world, mm.

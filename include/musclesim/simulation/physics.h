@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "musclesim/parameters.h"
+#include "musclesim/base/parameters.h"
 
 namespace musclesim {
 

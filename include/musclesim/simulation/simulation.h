@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "musclesim/base/error.h"
+#include "musclesim/base/parameters.h"
 #include "musclesim/controller/controller.h"
-#include "musclesim/effect/active_effect.h"
 #include "musclesim/effect/effect_chain.h"
-#include "musclesim/error.h"
-#include "musclesim/parameters.h"
+#include "musclesim/log/active_effect.h"
 #include "musclesim/robot/actuator.h"
 #include "musclesim/robot/joint.h"
 #include "musclesim/robot/primitive.h"

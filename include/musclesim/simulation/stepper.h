@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "musclesim/error.h"
+#include "musclesim/base/error.h"
 #include "musclesim/robot/state.h"
 
 namespace musclesim {

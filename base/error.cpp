@@ -1,0 +1,23 @@
+#include "musclesim/base/error.h"
+
+#include <fmt/format.h>
+
+namespace musclesim {
+
+namespace {
+
+std::string placeInFile(const std::string& file, int line, int column) {
+  if (line == 0) return file;
+  if (column == 0) return fmt::format("{}:{}", file, line);
+  return fmt::format("{}:{}:{}", file, line, column);
+}
+
+}  // namespace
+
+BadFile::BadFile(const std::string& file, int line, int column, const std::string& what)
+    : Error(placeInFile(file, line, column) + ": " + what), file_(file), line_(line), column_(column) {}
+
+Diverged::Diverged(double time_s, const std::string& where, const std::string& what)
+    : Error(fmt::format("the simulation diverged at {:.6g} s: {}: {}", time_s, where, what)), time_s_(time_s), where_(where) {}
+
+}  // namespace musclesim

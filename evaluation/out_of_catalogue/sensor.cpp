@@ -1,0 +1,123 @@
+/// Foreign laws of the sensor stage: a bias that wanders, a scale with a wave, a filter of second order in place of a dead time, play
+/// with a weak spring that centres it, a slower clock in place of lost samples.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "laws_by_stage.h"
+#include "musclesim/simulation/simulation.h"
+
+namespace musclesim::out_of_catalogue {
+
+namespace {
+
+/// y' = y + b (1 + 0.15 w(t)),  w wanders
+class WanderingBias final : public SensorEffect {
+ public:
+  explicit WanderingBias(const EffectValues& v) : offset_(v["offset"]) {}
+  void attach(const EffectPlace& place) override { seed_ = place.simulation.seed() + static_cast<std::uint64_t>(place.signal); }
+  double reading(double value, const Moment& moment, long) override {
+    constexpr double share = 0.15, interval_s = 2;
+    return value + offset_ * (1 + share * wander(seed_, moment.clock_s, interval_s));
+  }
+
+ private:
+  double offset_;
+  std::uint64_t seed_ = 0;
+};
+
+/// y' = y + (g - 1) y (1 + 0.25 sin(2 pi y / y_0))
+class WavyScale final : public SensorEffect {
+ public:
+  explicit WavyScale(const EffectValues& v) : gain_(v["gain"]), period_(v["period"]) {}
+  double reading(double y, const Moment&, long) override {
+    constexpr double wave = 0.25;
+    return y + (gain_ - 1) * y * (1 + wave * std::sin(2 * std::numbers::pi * y / period_));
+  }
+
+ private:
+  double gain_, period_;
+};
+
+/// Two lags in a row, each with half of the delay.
+class Filter final : public SensorEffect {
+ public:
+  explicit Filter(const EffectValues& v) : tau_s_(v["delay_s"] / 2) {}
+  void reset() override { begun_ = false; }
+  double reading(double value, const Moment&, long) override { return begun_ ? second_ : value; }
+  void track(double value, const Moment& moment) override {
+    if (!begun_) first_ = second_ = value;
+    begun_ = true;
+    const double kept = std::exp(-moment.h_s / tau_s_);
+    first_ = value + (first_ - value) * kept;
+    second_ = first_ + (second_ - first_) * kept;
+  }
+  bool tracks() const override { return true; }
+
+ private:
+  double tau_s_, first_ = 0, second_ = 0;
+  bool begun_ = false;
+};
+
+/// Play of width w in which the reading also creeps to the middle within T.
+class CentredPlay final : public SensorEffect {
+ public:
+  explicit CentredPlay(const EffectValues& v) : width_(v["width"]), centring_s_(v["centring_s"]) {}
+  void reset() override { begun_ = false; }
+  double reading(double value, const Moment&, long) override {
+    return begun_ ? std::clamp(followed_, value - width_ / 2, value + width_ / 2) : value;
+  }
+  void track(double value, const Moment& moment) override {
+    followed_ = reading(value, moment, 0);
+    followed_ = value + (followed_ - value) * std::exp(-moment.h_s / centring_s_);
+    begun_ = true;
+  }
+  bool tracks() const override { return true; }
+
+ private:
+  double width_, centring_s_, followed_ = 0;
+  bool begun_ = false;
+};
+
+/// Only every n-th sample is taken.
+class SlowClock final : public SensorEffect {
+ public:
+  explicit SlowClock(const EffectValues& v) : every_(static_cast<long>(1 + std::lround(v["skipped_samples"]))) {}
+  double reading(double value, const Moment&, long sample) override {
+    if (sample % every_ == 0) held_ = value;
+    return held_;
+  }
+  bool perSample() const override { return true; }
+
+ private:
+  long every_;
+  double held_ = 0;
+};
+
+}  // namespace
+
+std::vector<OutOfCatalogueLaw> sensorLaws() {
+  const std::vector<ComponentKind> signal = {ComponentKind::signal};
+  return {
+      {entry("wandering_bias", Stage::sensor, signal, "y' = y + b (1 + 0.15 w(t))",
+             {{"offset", "unit of the signal", 0, -1e4, 1e4, -5, 5, "b"}},
+             [](const EffectValues& v) { return std::make_unique<WanderingBias>(v); }),
+       "sensor_bias"},
+      {entry("wavy_scale", Stage::sensor, signal, "y' = y + (g - 1) y (1 + 0.25 sin(2 pi y / y_0))",
+             {{"gain", "", 1, -10, 10, 0.88, 1.12, "g"}, {"period", "unit of the signal", 100, 1e-3, 1e5, 50, 300, "y_0", true}},
+             [](const EffectValues& v) { return std::make_unique<WavyScale>(v); }),
+       "sensor_gain"},
+      {entry("filter", Stage::sensor, signal, "two lags in a row, each with half of the delay",
+             {{"delay_s", "s", 0, 0, 2, 0.01, 0.1, "of both"}}, [](const EffectValues& v) { return std::make_unique<Filter>(v); }),
+       "sensor_delay"},
+      {entry("centred_play", Stage::sensor, signal, "play of width w that is centred within T",
+             {{"width", "unit of the signal", 0, 0, 1e3, 0.5, 5, "w"}, {"centring_s", "s", 3, 0.01, 1e3, 1, 10, "T", true}},
+             [](const EffectValues& v) { return std::make_unique<CentredPlay>(v); }),
+       "sensor_backlash"},
+      {entry("slow_clock", Stage::sensor, signal, "every (n + 1)-th sample is taken, held in between",
+             {{"skipped_samples", "", 0, 0, 1e4, 1, 6, "n"}}, [](const EffectValues& v) { return std::make_unique<SlowClock>(v); }),
+       "sensor_dropout"},
+  };
+}
+
+}  // namespace musclesim::out_of_catalogue

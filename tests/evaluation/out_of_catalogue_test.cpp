@@ -1,0 +1,67 @@
+/// The laws outside the catalogue stay apart from the catalogue, and there is one for every effect.
+#include "evaluation/out_of_catalogue/out_of_catalogue.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "effect/effect_runs.h"
+#include "support/out_of_catalogue_laws.h"
+
+namespace musclesim {
+namespace {
+
+TEST(OutOfCatalogue, IsNeverInTheCatalogue) {
+  for (const EffectInfo& info : effectCatalogue()) EXPECT_FALSE(info.id.starts_with("foreign.")) << info.id;
+  std::set<std::string> ids;
+  for (const OutOfCatalogueLaw& foreign : outOfCatalogueLaws()) {
+    EXPECT_TRUE(foreign.info.id.starts_with("foreign."));
+    EXPECT_TRUE(ids.insert(foreign.info.id).second) << foreign.info.id;
+    EXPECT_EQ(effectInfo(foreign.info.id).id, foreign.info.id);
+  }
+}
+
+TEST(OutOfCatalogue, HasALawForEveryEffectAndSixCausesMore) {
+  std::set<std::string> covered;
+  int open_count = 0;
+  for (const OutOfCatalogueLaw& foreign : outOfCatalogueLaws()) {
+    if (foreign.stands_for.empty()) {
+      ++open_count;
+      continue;
+    }
+    EXPECT_EQ(foreign.info.stage, effectInfo(foreign.stands_for).stage) << foreign.info.id;
+    covered.insert(foreign.stands_for);
+  }
+  EXPECT_GE(open_count, 6);
+  for (const EffectInfo& info : effectCatalogue()) {
+    if (info.id == "misplaced") continue;  // registered by another test
+    EXPECT_TRUE(covered.contains(info.id)) << info.id;
+  }
+}
+
+/// The same parameters, as far as both laws have them, give another motion or reading: the law is not the catalogue's.
+TEST(OutOfCatalogue, IsAnotherLaw) {
+  const Recording commands = commandsFor("elbow", 0.5, [](double t) {
+    return Action{0.1 + 0.7 * std::min(1.0, 2 * std::abs(std::sin(7 * t))), 0.15 + 0.1 * t};
+  });
+  Simulation probe;
+  const Robot& robot = probe.build("elbow");
+  for (const OutOfCatalogueLaw& foreign : outOfCatalogueLaws()) {
+    if (foreign.stands_for.empty()) continue;
+    const EffectInfo own = effectInfo(foreign.stands_for);
+    const std::string component = componentsFor(own, robot).front();
+    std::vector<double> values;
+    for (const EffectParameter& p : foreign.info.parameters) values.push_back(p.shape ? p.neutral : p.usual_high);
+    ActiveEffect truth = activeEffect(foreign.info, component, values), candidate{own.id, component, {}};
+    for (const EffectParameter& p : own.parameters)
+      if (truth.parameters.contains(p.name)) candidate.parameters[p.name] = truth.parameters[p.name];
+    const ReplayResult one = replayWith(commands, {truth}), other = replayWith(commands, {candidate});
+    double largest = 0;
+    for (const SignalError& error : compareSignals(one.simulated, other.simulated)) largest = std::max(largest, error.largest);
+    EXPECT_GT(largest, 1e-3) << foreign.info.id;
+  }
+}
+
+}  // namespace
+}  // namespace musclesim
