@@ -88,4 +88,19 @@ std::string Controller::description(const std::string& name) {
   return entryOf(name).description;
 }
 
+namespace {
+
+thread_local Controller* active_controller = nullptr;
+
+}  // namespace
+
+Controller* Controller::getActiveController() {
+  if (!active_controller) throw BadParameter("this thread has no current simulation with a controller");
+  return active_controller;
+}
+
+void Controller::setActiveController(Controller* controller) {
+  active_controller = controller;
+}
+
 }  // namespace musclesim

@@ -51,8 +51,8 @@ std::map<std::string, Travel> travelsOf(Simulation& model) {
     const auto [low, high] = angle.joint->stopsDeg(angle.axis);
     travels["angle_" + angle.name + "_deg"] = {{low, high}, angle.joint->angleDeg(angle.axis)};
   }
-  for (std::size_t i = 0; i < model.actuators().size(); ++i) {
-    const Actuator& actuator = *model.actuators()[i];
+  for (std::size_t i = 0; i < model.world().actuators().size(); ++i) {
+    const Actuator& actuator = *model.world().actuators()[i];
     travels[fmt::format("length_{}_mm", i)] = {{actuator.minimumLengthMm(), actuator.maximumLengthMm()}, actuator.lengthMm()};
   }
   return travels;

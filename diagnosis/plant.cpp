@@ -98,7 +98,8 @@ Plant::Plant(std::vector<Recording> recordings, const DiagnosisOptions& options)
   reference_->build(info.robot);
   reference_->parameters().requireAllKnown();
   for (const std::string& name : options.tune) tuned_.push_back(numberNamed(name));
-  const bool has_hinges = std::ranges::any_of(reference_->actuators(), [](const auto& actuator) { return !actuator->hinges().empty(); });
+  const bool has_hinges =
+      std::ranges::any_of(reference_->world().actuators(), [](const auto& actuator) { return !actuator->hinges().empty(); });
   for (const Parameter& parameter : reference_->parameters().declared())
     if ((std::ranges::find(nominal_names, parameter.name) != std::end(nominal_names) && (has_hinges || parameter.name != hinge_friction)) ||
         std::ranges::find(options.tune, parameter.name) != options.tune.end())
@@ -219,7 +220,7 @@ bool Plant::isComponentOf(const std::string& component, const std::string& signa
 }
 
 Plant::MuscleRange Plant::muscleRange(int muscle) const {
-  const Actuator& actuator = *reference_->actuators()[static_cast<std::size_t>(muscle)];
+  const Actuator& actuator = *reference_->world().actuators()[static_cast<std::size_t>(muscle)];
   return {actuator.minimumLengthMm(), actuator.maximumLengthMm()};
 }
 
@@ -249,7 +250,7 @@ std::vector<std::pair<std::string, double>> Plant::tunedAt(const Eigen::VectorXd
 }
 
 double Plant::tensionN(int muscle, double pressure_ratio, double length_mm) const {
-  return reference_->actuators()[static_cast<std::size_t>(muscle)]->calculateForce(pressure_ratio, length_mm);
+  return reference_->world().actuators()[static_cast<std::size_t>(muscle)]->calculateForce(pressure_ratio, length_mm);
 }
 
 RobotDrawing Plant::drawing() const {

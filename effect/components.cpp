@@ -7,7 +7,6 @@
 #include "musclesim/base/error.h"
 #include "musclesim/log/recording.h"
 #include "musclesim/robot/robot.h"
-#include "musclesim/simulation/simulation.h"
 
 namespace musclesim {
 
@@ -88,14 +87,13 @@ std::vector<std::string> componentsFor(const EffectInfo& info, const Robot& robo
   return names;
 }
 
-std::vector<EffectPlace> placesFor(const EffectInfo& info, const std::string& component, Simulation& simulation) {
-  Robot& robot = simulation.robot();
+std::vector<EffectPlace> placesFor(const EffectInfo& info, const std::string& component, World& world, Robot& robot) {
   const std::vector<NamedPlace> all = namedPlaces(info, robot);
   std::vector<EffectPlace> places;
   for (const NamedPlace& place : all) {
     if (!chosen(place, component, all) || (component == "all" && !allowsAll(info))) continue;
     const bool is_signal = place.kind == ComponentKind::signal;
-    places.push_back({simulation, robot, place.kind, is_signal ? -1 : place.first, place.second, place.joint, is_signal ? place.first : -1,
+    places.push_back({world, robot, place.kind, is_signal ? -1 : place.first, place.second, place.joint, is_signal ? place.first : -1,
                       place.name, component == "all"});
   }
   if (places.empty()) {

@@ -10,7 +10,7 @@ namespace musclesim {
 
 /// The places of an effect on a component; several for "all". Throws BadParameter if the robot has no such component or the effect does not
 /// act on it.
-std::vector<EffectPlace> placesFor(const EffectInfo& info, const std::string& component, Simulation& simulation);
+std::vector<EffectPlace> placesFor(const EffectInfo& info, const std::string& component, World& world, Robot& robot);
 
 /// "angle_elbow" of "angle_elbow_deg", "pressure_0" of itself.
 std::string stemOf(const std::string& signal);

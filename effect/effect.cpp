@@ -6,11 +6,10 @@
 #include <stdexcept>
 
 #include "../robot/ode_vector.h"
+#include "length_rate.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/units.h"
-#include "musclesim/effect/effect_chain.h"
 #include "musclesim/robot/robot.h"
-#include "musclesim/simulation/simulation.h"
 
 namespace musclesim {
 
@@ -30,7 +29,7 @@ double EffectValues::operator[](const std::string& name) const {
 }
 
 void MuscleRatioEffect::attach(const EffectPlace& place) {
-  simulation_ = &place.simulation;
+  length_rate_ = place.length_rate;
   muscle_ = static_cast<std::size_t>(place.muscle);
   actuator_ = place.robot.actuators()[muscle_];
 }
@@ -44,11 +43,11 @@ void MuscleRatioEffect::settle(std::vector<double>& ratios) {
 }
 
 double MuscleRatioEffect::lengthRateMmPerS() const {
-  return simulation_->effects().lengthRateMmPerS(muscle_);
+  return length_rate_->mmPerS();
 }
 
 void ForceEffect::attach(const EffectPlace& place) {
-  simulation_ = &place.simulation;
+  world_ = &place.world;
   actuator_ = place.robot.actuators()[static_cast<std::size_t>(place.muscle)];
 }
 
@@ -57,7 +56,7 @@ void JointEffect::attach(const EffectPlace& place) {
     if (angle.name == place.joint) joint_ = angle.joint;
   if (!joint_ || joint_->kind() != Joint::Kind::hinge)
     throw BadParameter(fmt::format("effect on {}: it is not a hinge with one axis", place.component));
-  force_per_N_ = place.simulation.physics().force_per_N;
+  force_per_N_ = place.world.physics().force_per_N;
 }
 
 double JointEffect::angleDeg() const {
@@ -74,7 +73,7 @@ void JointEffect::addTorqueNm(double torque_Nm) const {
 
 void HandEffect::attach(const EffectPlace& place) {
   robot_ = &place.robot;
-  force_per_N_ = place.simulation.physics().force_per_N;
+  force_per_N_ = place.world.physics().force_per_N;
 }
 
 Vector HandEffect::pointMm() const {

@@ -8,11 +8,11 @@
 #include "../robot/ode_vector.h"
 #include "components.h"
 #include "force_stack.h"
+#include "length_rate.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/units.h"
 #include "musclesim/effect/catalogue.h"
 #include "musclesim/robot/robot.h"
-#include "musclesim/simulation/simulation.h"
 #include "sensor_stage.h"
 
 namespace musclesim {
@@ -26,15 +26,15 @@ struct EffectChain::Planned {
 };
 
 struct EffectChain::Muscle {
-  Actuator* actuator;
-  ForceStack forces;
-  double length_before_mm = 0, step_before_s = 0;  ///< at the begin of the last internal step, and its length
+  explicit Muscle(const Actuator& muscle) : actuator(muscle), forces(muscle), length_rate(muscle) {}
 
-  double rateMmPerS() const { return step_before_s > 0 ? (actuator->lengthMm() - length_before_mm) / step_before_s : 0; }
+  const Actuator& actuator;
+  ForceStack forces;
+  LengthRate length_rate;
 };
 
-EffectChain::EffectChain(Simulation& simulation, std::vector<ActiveEffect> effects)
-    : simulation_(simulation), given_(std::move(effects)), sensors_(std::make_unique<SensorStage>()) {
+EffectChain::EffectChain(World& world, std::vector<ActiveEffect> effects)
+    : world_(world), given_(std::move(effects)), sensors_(std::make_unique<SensorStage>()) {
   if (given_.empty()) return;
   const std::vector<EffectInfo> catalogue = effectCatalogue();
   for (const ActiveEffect& effect : given_) {
@@ -51,13 +51,15 @@ EffectChain::EffectChain(Simulation& simulation, std::vector<ActiveEffect> effec
 
 EffectChain::~EffectChain() = default;
 
-void EffectChain::attach() {
-  attached_ = true;
+void EffectChain::attach(Robot& robot) {
+  robot_ = &robot;
+  world_.putFirst(robot.actuators());
+  muscles_.clear();
   requireMuscles();
-  for (const ActiveEffect& effect : given_) placesFor(effectInfo(effect.id), effect.component, simulation_);
+  for (const ActiveEffect& effect : given_) placesFor(effectInfo(effect.id), effect.component, world_, robot);
   for (const Planned& planned : planned_)
-    for (const EffectPlace& place : placesFor(planned.info, planned.component, simulation_)) addObject(planned, place);
-  sensors_->addNoise(simulation_);
+    for (const EffectPlace& place : placesFor(planned.info, planned.component, world_, robot)) addObject(planned, place);
+  sensors_->addNoise(world_, robot);
 }
 
 namespace {
@@ -72,7 +74,8 @@ std::unique_ptr<StageEffect> as(std::unique_ptr<Effect> effect, const EffectInfo
 
 }  // namespace
 
-void EffectChain::addObject(const Planned& planned, const EffectPlace& place) {
+void EffectChain::addObject(const Planned& planned, EffectPlace place) {
+  if (place.muscle >= 0) place.length_rate = &muscles_[static_cast<std::size_t>(place.muscle)]->length_rate;
   const EffectInfo& info = planned.info;
   std::unique_ptr<Effect> effect = info.make(EffectValues(info.parameters, planned.values));
   effect->attach(place);
@@ -82,7 +85,7 @@ void EffectChain::addObject(const Planned& planned, const EffectPlace& place) {
     case Stage::pressure:
       return pressure_.push_back(as<RatioEffect>(std::move(effect), info));
     case Stage::force:
-      return muscles_[static_cast<std::size_t>(place.muscle)].forces.add(as<ForceEffect>(std::move(effect), info));
+      return muscles_[static_cast<std::size_t>(place.muscle)]->forces.add(as<ForceEffect>(std::move(effect), info));
     case Stage::body:
       return body_.push_back(as<BodyEffect>(std::move(effect), info));
     case Stage::sensor:
@@ -90,82 +93,79 @@ void EffectChain::addObject(const Planned& planned, const EffectPlace& place) {
   }
 }
 
+/// Takes in muscles that have been built since the last call.
 void EffectChain::requireMuscles() {
-  if (!attached_ && !planned_.empty()) throw BadParameter("effects: this simulation has no robot that they could act on");
-  if (muscles_.size() == simulation_.actuators().size()) return;
-  auto add = [&](Actuator* actuator) {
-    const bool known = std::any_of(muscles_.begin(), muscles_.end(), [&](const Muscle& m) { return m.actuator == actuator; });
-    if (!known) muscles_.push_back({actuator, ForceStack(*actuator)});
-  };
-  if (attached_)
-    for (Actuator* actuator : simulation_.robot().actuators()) add(actuator);
-  for (const auto& actuator : simulation_.actuators()) add(actuator.get());
-  ratios_.resize(muscles_.size());
+  if (!robot_ && !planned_.empty()) throw BadParameter("effects: this simulation has no robot that they could act on");
+  const std::vector<Actuator*>& actuators = world_.actuators();
+  for (std::size_t i = muscles_.size(); i < actuators.size(); ++i) muscles_.push_back(std::make_unique<Muscle>(*actuators[i]));
 }
 
-void EffectChain::command(double h_s) {
+void EffectChain::command(MuscleValues& values, double h_s) {
   requireMuscles();
-  for (std::size_t i = 0; i < muscles_.size(); ++i) ratios_[i] = muscles_[i].actuator->command();
-  for (const auto& effect : command_) effect->apply(ratios_, {clock_s_, h_s});
+  values.pressure_ratio = values.command_ratio;
+  for (const auto& effect : command_) effect->apply(values.pressure_ratio, at(h_s));
 }
 
-void EffectChain::pressure(double h_s) {
-  for (const auto& effect : pressure_) effect->apply(ratios_, {clock_s_, h_s});
-  for (std::size_t i = 0; i < muscles_.size(); ++i) muscles_[i].actuator->takePressure(ratios_[i]);
+void EffectChain::pressure(MuscleValues& values, double h_s) {
+  for (const auto& effect : pressure_) effect->apply(values.pressure_ratio, at(h_s));
 }
 
-MuscleInput EffectChain::inputOf(const Muscle& muscle, double h_s) const {
-  return {muscle.actuator->pressure(), muscle.actuator->lengthMm(), muscle.rateMmPerS(), {clock_s_, h_s}};
+MuscleInput EffectChain::inputOf(std::size_t muscle, double pressure_ratio, double h_s) const {
+  const Muscle& one = *muscles_[muscle];
+  return {pressure_ratio, one.actuator.lengthMm(), one.length_rate.mmPerS(), at(h_s)};
 }
 
-void EffectChain::force(double h_s) {
-  for (Muscle& muscle : muscles_) {
+void EffectChain::force(MuscleValues& values, double h_s) {
+  for (std::size_t i = 0; i < muscles_.size(); ++i) {
+    Muscle& muscle = *muscles_[i];
+    double& tension_N = values.tension_N[i];
     if (muscle.forces.empty()) {
-      muscle.actuator->updateTension();
+      tension_N = muscle.actuator.cleanTensionN(values.pressure_ratio[i]);
     } else {
-      const double tension_N = muscle.forces.tensionN(inputOf(muscle, h_s));
-      muscle.actuator->takeTension(muscle.actuator->line() && tension_N < 0 ? 0 : tension_N);  // a thread does not push
+      tension_N = muscle.forces.tensionN(inputOf(i, values.pressure_ratio[i], h_s));
+      if (muscle.actuator.line() && tension_N < 0) tension_N = 0;  // a thread does not push
       if (h_s > 0) muscle.forces.advance(h_s);
     }
-    if (h_s > 0 && (!pressure_.empty() || !muscle.forces.empty())) {
-      muscle.length_before_mm = muscle.actuator->lengthMm();
-      muscle.step_before_s = h_s;
-    }
+    if (h_s > 0 && (!pressure_.empty() || !muscle.forces.empty())) muscle.length_rate.beginStep(h_s);
   }
 }
 
 void EffectChain::body(double h_s) {
-  for (const auto& effect : body_) effect->apply({clock_s_, h_s});
+  for (const auto& effect : body_) effect->apply(at(h_s));
 }
 
 void EffectChain::track(double h_s) {
-  if (!sensors_->empty()) sensors_->track(simulation_.robot(), {clock_s_, h_s});
-  clock_s_ += h_s;
+  if (!sensors_->empty()) sensors_->track(*robot_, at(h_s));
+}
+
+void EffectChain::update() {
+  MuscleValues& values = world_.values();
+  command(values, 0);
+  pressure(values, 0);
+  force(values, 0);
 }
 
 void EffectChain::read(State& state) {
-  if (!sensors_->empty()) sensors_->read(simulation_.robot(), state, {clock_s_, 0});
+  if (!sensors_->empty()) sensors_->read(*robot_, state, at(0));
 }
 
 void EffectChain::settlePressures(const Action& command) {
   requireMuscles();
   for (const auto* stage : {&command_, &pressure_})
     for (const auto& effect : *stage) effect->reset();
-  for (std::size_t i = 0; i < muscles_.size(); ++i) {
-    if (i < command.size()) muscles_[i].actuator->setPressure(command[i]);
-    muscles_[i].step_before_s = 0;
-    ratios_[i] = muscles_[i].actuator->command();
-  }
+  MuscleValues& values = world_.values();
+  for (std::size_t i = 0; i < std::min(command.size(), muscles_.size()); ++i) world_.actuators()[i]->setPressure(command[i]);
+  for (const auto& muscle : muscles_) muscle->length_rate.reset();
+  values.pressure_ratio = values.command_ratio;
   for (const auto* stage : {&command_, &pressure_})
-    for (const auto& effect : *stage) effect->settle(ratios_);
-  for (std::size_t i = 0; i < muscles_.size(); ++i) muscles_[i].actuator->takePressure(ratios_[i]);
+    for (const auto& effect : *stage) effect->settle(values.pressure_ratio);
 }
 
 double EffectChain::restingTensionN(int muscle, double length_mm) {
   requireMuscles();
-  Muscle& one = muscles_[static_cast<std::size_t>(muscle)];
-  const MuscleInput input = {one.actuator->pressure(), length_mm, 0, {clock_s_, 0}};
-  if (one.forces.empty()) return one.actuator->calculateForce(input.pressure_ratio, length_mm);
+  Muscle& one = *muscles_[static_cast<std::size_t>(muscle)];
+  const MuscleInput input = {one.actuator.pressure(), length_mm, 0, at(0)};
+  if (one.forces.empty()) return one.actuator.calculateForce(input.pressure_ratio, length_mm);
   one.forces.settle(input);
   return one.forces.tensionN(input);
 }
@@ -174,34 +174,30 @@ BodyLoad EffectChain::restingLoad(const Primitive& primitive) {
   BodyLoad load;
   if (body_.empty()) return load;
   body(0);
-  const double force_per_N = simulation_.physics().force_per_N;
+  const double force_per_N = world_.physics().force_per_N;
   const dBodyID id = primitive.body().id;
   load.force_N = fromOde(dBodyGetForce(id)) / force_per_N;
   load.torque_Nmm = fromOde(dBodyGetTorque(id)) / force_per_N;
-  for (const auto& body : simulation_.bodies()) {
+  for (const auto& body : world_.bodies()) {
     dBodySetForce(body->id, 0, 0, 0);
     dBodySetTorque(body->id, 0, 0, 0);
   }
   return load;
 }
 
-void EffectChain::begin(double clock_s) {
+void EffectChain::begin() {
   requireMuscles();
-  clock_s_ = clock_s;
   for (const auto& effect : body_) effect->reset();
   sensors_->reset();
-  for (Muscle& muscle : muscles_) {
-    muscle.step_before_s = 0;
-    if (!muscle.forces.empty()) muscle.forces.settle(inputOf(muscle, 0));
+  for (std::size_t i = 0; i < muscles_.size(); ++i) {
+    Muscle& muscle = *muscles_[i];
+    muscle.length_rate.reset();
+    if (!muscle.forces.empty()) muscle.forces.settle(inputOf(i, world_.values().pressure_ratio[i], 0));
   }
 }
 
 const std::map<std::string, double>& EffectChain::noise() const {
   return sensors_->noise();
-}
-
-double EffectChain::lengthRateMmPerS(std::size_t muscle) const {
-  return muscles_[muscle].rateMmPerS();
 }
 
 bool EffectChain::has(const std::string& id) const {

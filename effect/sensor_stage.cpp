@@ -1,7 +1,6 @@
 #include "sensor_stage.h"
 
 #include "musclesim/robot/robot.h"
-#include "musclesim/simulation/simulation.h"
 #include "sensor/sensor_noise.h"
 
 namespace musclesim {
@@ -31,15 +30,15 @@ double noiseOf(const std::string& signal, Parameters& parameters) {
 
 }  // namespace
 
-void SensorStage::addNoise(Simulation& simulation) {
-  const std::vector<std::string> names = simulation.robot().signalNames();
+void SensorStage::addNoise(World& world, const Robot& robot) {
+  const std::vector<std::string> names = robot.signalNames();
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const double deviation = noiseOf(names[i], simulation.parameters());
+    const double deviation = noiseOf(names[i], world.parameters());
     if (deviation == 0) continue;
     noise_[names[i]] = deviation;
     // Samples are lost with their noise.
     sensors_.insert(sensors_.begin() + static_cast<std::ptrdiff_t>(sensor_count_ + noise_.size() - 1),
-                    {static_cast<int>(i), std::make_unique<SensorNoise>(deviation, simulation.seed(), names[i])});
+                    {static_cast<int>(i), std::make_unique<SensorNoise>(deviation, world.seed(), names[i])});
   }
 }
 

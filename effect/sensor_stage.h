@@ -15,7 +15,7 @@ class SensorStage {
  public:
   void add(int signal, std::unique_ptr<SensorEffect> effect);
   /// White noise on all signals whose parameter "sensor.<quantity>_noise_<unit>" is not 0.
-  void addNoise(Simulation& simulation);
+  void addNoise(World& world, const Robot& robot);
   /// Standard deviations of the noise by signal, where there is any.
   const std::map<std::string, double>& noise() const { return noise_; }
   bool empty() const { return sensors_.empty(); }

@@ -19,7 +19,7 @@ class Frame {
       : simulation_(optionsFor(specimen, parameters)), rig_(simulation_.build("rig")), pressure_ratio_(pressure_ratio) {
     if (!muscle().endJoint()) throw BadParameter("muscle.model", "line", "be chain in the load frame, which holds the muscle's last bead");
     simulation_.start("settled", {pressure_ratio});
-    load_ = simulation_.primitives().front()->body().id;
+    load_ = simulation_.world().primitives().front()->body().id;
     simulation_.parameters().requireAllKnown();
   }
 

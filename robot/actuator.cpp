@@ -12,25 +12,9 @@
 #include "musclesim/robot/force_law_choice.h"
 #include "musclesim/robot/line_of_pull.h"
 #include "musclesim/robot/primitive.h"
-#include "musclesim/simulation/simulation.h"
 #include "ode_vector.h"
 
 namespace musclesim {
-
-MuscleSettings::MuscleSettings(Parameters& p)
-    : bead_radius_mm(p.number("muscle.bead_radius_mm", 7.5, "mm", 0.1, 100, "radius of a bead; a link holds two")),
-      bead_mass_g(p.number("muscle.bead_mass_g", 10, "g", 1e-3, 1e5, "mass of one bead")),
-      slider_friction_N(p.number("muscle.slider_friction_N", 1, "N", 0, 1e3, "dry friction of each link's slider")),
-      hinge_friction_Nm(p.number("muscle.hinge_friction_Nm", 0.008, "N m", 0, 10, "dry friction of each hinge between links")),
-      hinge_limit_deg(p.number("muscle.hinge_limit_deg", 60, "deg", 0, 180, "stops of the hinges at full length")),
-      hinge_bounce_ratio(p.number("muscle.hinge_bounce_ratio", 0.2, "", 0, 1, "restitution of the hinges' stops")),
-      viscous(p.choice("muscle.joint_friction", "coulomb", {"coulomb", "viscous"},
-                       "friction of sliders and hinges: constant, or growing with the speed") == "viscous"),
-      slider_viscous_speed_mm_per_s(p.number("muscle.slider_viscous_speed_mm_per_s", 200, "mm/s", 0.1, 1e6,
-                                             "speed at which viscous friction of a slider equals its dry friction")),
-      hinge_viscous_speed_rad_per_s(p.number("muscle.hinge_viscous_speed_rad_per_s", 8, "rad/s", 0.01, 1e5,
-                                             "speed at which viscous friction of a hinge equals its dry friction")),
-      line(p.choice("muscle.model", "chain", {"chain", "line"}, "chains of beads, or massless straight lines") == "line") {}
 
 namespace {
 
@@ -53,13 +37,13 @@ dBodyID makeBead(dWorldID world, const Vector& position, const MuscleSettings& s
 
 Actuator::Actuator(dWorldID world, dSpaceID space, const std::vector<Vector>& points, double given_minimum_length_mm,
                    double minimum_length_mm, double maximum_length_mm)
-    : simulation_(Simulation::of(world)),
-      settings_(simulation_.parameters()),
+    : world_(World::of(world)),
+      settings_(world_.parameters()),
       minimum_length_mm_(minimum_length_mm),
       maximum_length_mm_(maximum_length_mm),
       start_mm_(points.front()),
       end_mm_(points.back()),
-      name_(fmt::format("muscle_{}", simulation_.actuators().size())) {
+      name_(fmt::format("muscle_{}", world_.actuators().size())) {
   double start_length_mm = 0, shortest_link_mm = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     const double link_mm = (points[i + 1] - points[i]).norm();
@@ -73,18 +57,17 @@ Actuator::Actuator(dWorldID world, dSpaceID space, const std::vector<Vector>& po
   if (shortest_link_mm < 2 * settings_.bead_radius_mm)
     throw BadParameter("shortest link of " + name_, fmt::format("{:.4g} mm", shortest_link_mm),
                        fmt::format("be at least two bead radii, {} mm", 2 * settings_.bead_radius_mm));
-  law_ = makeForceLaw(simulation_.parameters(), minimum_length_mm_, maximum_length_mm_);
+  law_ = makeForceLaw(world_.parameters(), minimum_length_mm_, maximum_length_mm_);
   if (settings_.line)
     line_ = std::make_unique<LineOfPull>(start_mm_, end_mm_);
   else
     buildLinks(dSimpleSpaceCreate(space), points);
-  simulation_.actuators_.emplace_back(this);
-  ++simulation_.revision_;
-  updateTension();
+  world_.own(this);
+  takeCleanTension();
 }
 
 Actuator::~Actuator() {
-  simulation_.disown(*this);  // it still owns this if a derived class's constructor threw
+  world_.disown(*this);  // it still owns this if a derived class's constructor threw
 }
 
 /// Dry friction is a motor at rest with a largest force; viscous friction one without, softened to `force` at `speed`.
@@ -98,8 +81,8 @@ void Actuator::setFriction(dJointID joint, double force, double speed) const {
 }
 
 void Actuator::buildLinks(dSpaceID beads, const std::vector<Vector>& points) {
-  const dWorldID world = simulation_.world();
-  const double force_per_N = simulation_.physics().force_per_N;
+  const dWorldID world = world_;
+  const double force_per_N = world_.physics().force_per_N;
   const double speed_ratio = std::sqrt(force_per_N / world_force_per_N);  // the original's world is slower
   const int count = static_cast<int>(points.size()) - 1;
   for (int i = 0; i < count; ++i) {
@@ -120,7 +103,7 @@ void Actuator::buildLinks(dSpaceID beads, const std::vector<Vector>& points) {
     dJointSetSliderParam(slider, dParamHiStop, length_mm - 2 * settings_.bead_radius_mm);
     dJointSetSliderParam(slider, dParamVel, 0);
     setFriction(slider, settings_.slider_friction_N * force_per_N, settings_.slider_viscous_speed_mm_per_s * speed_ratio);
-    link.slider = &simulation_.addJoint(Joint::Kind::slider, slider, fmt::format("slider {} of {}", i, name_));
+    link.slider = &world_.addJoint(Joint::Kind::slider, slider, fmt::format("slider {} of {}", i, name_));
     if (i > 0) {
       const Vector axis = hingeAxisAfter((points[i] - points[i - 1]).normalized());
       const dJointID hinge = dJointCreateHinge(world, nullptr);
@@ -130,35 +113,35 @@ void Actuator::buildLinks(dSpaceID beads, const std::vector<Vector>& points) {
       dJointSetHingeParam(hinge, dParamVel, 0);
       setFriction(hinge, settings_.hinge_friction_Nm * mm_per_m * force_per_N, settings_.hinge_viscous_speed_rad_per_s * speed_ratio);
       dJointSetHingeParam(hinge, dParamBounce, settings_.hinge_bounce_ratio);
-      hinges_.push_back(&simulation_.addJoint(Joint::Kind::hinge, hinge, fmt::format("hinge {} of {}", i - 1, name_)));
+      hinges_.push_back(&world_.addJoint(Joint::Kind::hinge, hinge, fmt::format("hinge {} of {}", i - 1, name_)));
     }
     links_.push_back(link);
   }
 }
 
-void Actuator::requireSameSimulation(const Primitive* primitive, const std::string& which) const {
-  if (primitive && dBodyGetWorld(primitive->body().id) != simulation_.world())
+void Actuator::requireSameWorld(const Primitive* primitive, const std::string& which) const {
+  if (primitive && dBodyGetWorld(primitive->body().id) != world_)
     throw BadParameter(
         fmt::format("the {} of {} cannot be connected to {}: they belong to different simulations", which, name_, primitive->name()));
 }
 
 Joint* Actuator::connect(dBodyID bead, const Vector& anchor, Primitive* primitive, const std::string& which) {
-  const dJointID ball = dJointCreateBall(simulation_.world(), nullptr);
+  const dJointID ball = dJointCreateBall(world_, nullptr);
   dJointAttach(ball, bead, primitive ? primitive->body().id : nullptr);
   dJointSetBallAnchor(ball, anchor.x(), anchor.y(), anchor.z());
   if (primitive) primitive->body().has_joint = true;
-  return &simulation_.addJoint(Joint::Kind::ball, ball, which + " of " + name_);
+  return &world_.addJoint(Joint::Kind::ball, ball, which + " of " + name_);
 }
 
 void Actuator::connectStartTo(Primitive* primitive) {
-  requireSameSimulation(primitive, "start");
+  requireSameWorld(primitive, "start");
   if (line_) return line_->connect(LineOfPull::End::start, primitive, name_);
   if (start_joint_) throw BadParameter("the start of " + name_ + " is already connected");
   start_joint_ = connect(links_.front().bead[0], start_mm_, primitive, "start");
 }
 
 void Actuator::connectEndTo(Primitive* primitive) {
-  requireSameSimulation(primitive, "end");
+  requireSameWorld(primitive, "end");
   if (line_) return line_->connect(LineOfPull::End::end, primitive, name_);
   if (end_joint_) throw BadParameter("the end of " + name_ + " is already connected");
   end_joint_ = connect(links_.back().bead[1], end_mm_, primitive, "end");
@@ -166,13 +149,23 @@ void Actuator::connectEndTo(Primitive* primitive) {
 
 void Actuator::addViaPoint(Primitive* primitive, const Vector& point_mm) {
   if (!line_) throw BadParameter("via points are for line muscles (muscle.model = line), and " + name_ + " is a chain");
-  requireSameSimulation(primitive, "via point");
+  requireSameWorld(primitive, "via point");
   line_->addViaPoint(primitive, point_mm);
-  updateTension();
+  takeCleanTension();
 }
 
 double Actuator::calculateForce(double pressure_ratio, double length_mm) const {
   return law_->tensionN(pressure_ratio, length_mm);
+}
+
+double Actuator::cleanTensionN(double pressure_ratio) const {
+  const double force_N = calculateForce(pressure_ratio, lengthMm());
+  return line_ && force_N < 0 ? 0 : force_N;
+}
+
+/// After a change of the muscle itself: the tension before any stage has run.
+void Actuator::takeCleanTension() {
+  world_.values().tension_N[worldIndex()] = cleanTensionN(pressure());
 }
 
 void Actuator::requireCommand(double command_ratio) const {
@@ -182,13 +175,13 @@ void Actuator::requireCommand(double command_ratio) const {
 
 void Actuator::setPressure(double command_ratio) {
   requireCommand(command_ratio);
-  command_ratio_ = command_ratio;
+  world_.values().command_ratio[worldIndex()] = command_ratio;
 }
 
 void Actuator::setForceLaw(std::unique_ptr<ForceLaw> law) {
   if (!law) throw BadParameter("force law of " + name_ + ": there is none");
   law_ = std::move(law);
-  updateTension();
+  takeCleanTension();
 }
 
 void Actuator::setColor(double red, double green, double blue, const std::string& name) {
@@ -220,7 +213,7 @@ Actuator::LengthRange Actuator::straightLengthRange() const {
 }
 
 void Actuator::placeStraight(const Vector& start_mm, const Vector& end_mm) {
-  if (line_) return updateTension();
+  if (line_) return takeCleanTension();
   const double radius = settings_.bead_radius_mm;
   const auto count = static_cast<double>(links_.size());
   const Vector along = end_mm - start_mm;
@@ -243,7 +236,7 @@ void Actuator::placeStraight(const Vector& start_mm, const Vector& end_mm) {
       dBodySetAngularVel(links_[i].bead[end], 0, 0, 0);
     }
   }
-  updateTension();
+  takeCleanTension();
 }
 
 }  // namespace musclesim

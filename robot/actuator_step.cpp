@@ -1,18 +1,12 @@
-/// What an actuator does in an internal step: pressure, tension, and what it hands to the bodies.
+/// What an actuator does in an internal step: it hands its tension to the bodies.
 #include <algorithm>
 #include <cmath>
 
 #include "musclesim/base/units.h"
 #include "musclesim/robot/actuator.h"
 #include "musclesim/robot/line_of_pull.h"
-#include "musclesim/simulation/simulation.h"
 
 namespace musclesim {
-
-void Actuator::updateTension() {
-  const double force_N = calculateForce(pressure_ratio_, lengthMm());
-  tension_N_ = line_ && force_N < 0 ? 0 : force_N;
-}
 
 double Actuator::hingeStopRad() const {
   return settings_.hinge_limit_deg * rad_per_deg * lengthRatio();
@@ -23,13 +17,13 @@ double Actuator::beadInertia() const {
 }
 
 double Actuator::beadInertiaIncrease(double h_s) const {
-  if (simulation_.physics().geometric_inertia_ratio == 0 || links_.empty()) return 0;
-  const double force = std::max(0.0, tension_N_) * simulation_.physics().force_per_N;
-  return simulation_.physics().geometric_inertia_ratio * h_s * h_s * force * lengthMm() / (2 * static_cast<double>(links_.size()));
+  if (world_.physics().geometric_inertia_ratio == 0 || links_.empty()) return 0;
+  const double force = std::max(0.0, tensionN()) * world_.physics().force_per_N;
+  return world_.physics().geometric_inertia_ratio * h_s * h_s * force * lengthMm() / (2 * static_cast<double>(links_.size()));
 }
 
 void Actuator::applyBeadInertia(double h_s) {
-  if (simulation_.physics().geometric_inertia_ratio == 0) return;
+  if (world_.physics().geometric_inertia_ratio == 0) return;
   dMass mass;
   dMassSetSphereTotal(&mass, settings_.bead_mass_g, settings_.bead_radius_mm);
   const double increase = beadInertiaIncrease(h_s);
@@ -49,7 +43,7 @@ double Actuator::fastestSwayRadPerS() const {
     const double link_mm = length_mm / count, d = link_mm - 2 * settings_.bead_radius_mm;
     const double inertia = settings_.bead_mass_g * d * d / 2 + 2 * beadInertia();
     for (const double pressure : {0.0, 0.5, 1.0})
-      largest = std::max(largest, calculateForce(pressure, length_mm) * simulation_.physics().force_per_N * link_mm / inertia);
+      largest = std::max(largest, calculateForce(pressure, length_mm) * world_.physics().force_per_N * link_mm / inertia);
   }
   return std::sqrt(largest);
 }
@@ -70,9 +64,9 @@ void Actuator::setViscousMotors() {
 }
 
 void Actuator::applyForces() {
-  if (line_) return line_->pull(std::max(0.0, tension_N_), maximum_length_mm_, settings_, simulation_.physics());
+  if (line_) return line_->pull(std::max(0.0, tensionN()), maximum_length_mm_, settings_, world_.physics());
   if (settings_.viscous) setViscousMotors();
-  const double force = tension_N_ * simulation_.physics().force_per_N;
+  const double force = tensionN() * world_.physics().force_per_N;
   for (const Link& link : links_) dJointAddSliderForce(link.slider->id(), force);
   const double stop_rad = hingeStopRad();
   for (const Joint* hinge : hinges_) {

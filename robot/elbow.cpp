@@ -7,11 +7,10 @@
 #include "musclesim/base/error.h"
 #include "musclesim/base/units.h"
 #include "musclesim/robot/muscle.h"
-#include "musclesim/simulation/simulation.h"
 
 namespace musclesim {
 
-Elbow::Elbow(Simulation& simulation) : Robot(simulation) {
+Elbow::Elbow(World& world) : Robot(world) {
   const double forearm_kg = parameter("elbow.forearm_kg", 0.6, "kg", 1e-4, 1e3, "mass of the forearm");
   const double inertia_kgm2 =
       parameter("elbow.forearm_inertia_kgm2", 0.0125, "kg m^2", 1e-7, 1e3, "moment of inertia of the forearm about the hinge");
@@ -31,7 +30,7 @@ Elbow::Elbow(Simulation& simulation) : Robot(simulation) {
   if (!(own_inertia_kgm2 > 0))
     throw BadParameter("elbow.forearm_inertia_kgm2", std::to_string(inertia_kgm2) + " kg m^2",
                        "be larger than forearm_kg * center_of_mass_mm^2, the inertia of a point mass there");
-  forearm_ = new CappedCylinder(world(), nullptr, {0, -center_of_mass_mm, 0}, forearm_kg * g_per_kg, 0, drawn_radius_mm,
+  forearm_ = new CappedCylinder(world, nullptr, {0, -center_of_mass_mm, 0}, forearm_kg * g_per_kg, 0, drawn_radius_mm,
                                 std::max(2 * center_of_mass_mm, 1.0));
   forearm_->setName("forearm");
   forearm_->setInertia(Vector::Constant(own_inertia_kgm2 * g_mm2_per_kg_m2));
@@ -42,7 +41,7 @@ Elbow::Elbow(Simulation& simulation) : Robot(simulation) {
     const double side = i == 0 ? 1 : -1;
     const Vector& bottom = lower_mm_[i] = mountedEnd({side * lever_mm, lower_mm, 0}, {side, 0, 0});
     const Vector& top = upper_mm_[i] = mountedStart({side * lever_mm, upper_mm, 0}, {side, 0, 0});
-    muscles_[i] = new Muscle(world(), space(), top, top + (bottom - top) / 3, top + (bottom - top) * 2 / 3, bottom, minimum_mm, maximum_mm);
+    muscles_[i] = new Muscle(world, space(), top, top + (bottom - top) / 3, top + (bottom - top) * 2 / 3, bottom, minimum_mm, maximum_mm);
     muscles_[i]->connectStartTo(nullptr);
     muscles_[i]->connectEndTo(forearm_);
     addActuator(muscles_[i]);
@@ -65,8 +64,8 @@ void Elbow::placeForearm(double angle_rad) {
 
 double Elbow::torqueNmm(double angle_rad) {
   placeForearm(angle_rad);
-  EffectChain& effects = simulation().effects();
-  const Vector gravity = simulation().gravityMmPerS2() / simulation().physics().force_per_N;  // N/g
+  RobotEffects& effects = world().effects();
+  const Vector gravity = world().gravityMmPerS2() / world().physics().force_per_N;  // N/g
   dMass forearm;
   dBodyGetMass(forearm_->body().id, &forearm);
   const BodyLoad load = effects.restingLoad(*forearm_);
@@ -81,8 +80,7 @@ double Elbow::torqueNmm(double angle_rad) {
   return torque;
 }
 
-void Elbow::settle(const Action& first_command) {
-  simulation().effects().settlePressures(first_command);
+void Elbow::settle() {
   const double low_rad = dJointGetHingeParam(hinge_->id(), dParamLoStop), high_rad = dJointGetHingeParam(hinge_->id(), dParamHiStop);
   const double angle = restFrom([&](double q) { return -torqueNmm(q); }, 0, low_rad, high_rad);
   placeForearm(angle);

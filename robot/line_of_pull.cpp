@@ -5,9 +5,9 @@
 
 #include "musclesim/base/error.h"
 #include "musclesim/base/units.h"
-#include "musclesim/robot/actuator.h"
+#include "musclesim/robot/muscle_settings.h"
+#include "musclesim/robot/physics.h"
 #include "musclesim/robot/primitive.h"
-#include "musclesim/simulation/physics.h"
 #include "ode_vector.h"
 
 namespace musclesim {

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "musclesim/simulation/simulation.h"
-
 namespace musclesim {
 
 Vector bezierPoint(const Vector& start, const Vector& start_control, const Vector& end_control, const Vector& end, double t) {
@@ -18,7 +16,7 @@ Vector bezierPoint(const Vector& start, const Vector& start_control, const Vecto
 namespace {
 
 double shortestLinkMm(dWorldID world) {
-  return 2 * MuscleSettings(Simulation::of(world).parameters()).bead_radius_mm;
+  return 2 * MuscleSettings(World::of(world).parameters()).bead_radius_mm;
 }
 
 int linkCount(dWorldID world, double minimum_length_mm) {

@@ -11,7 +11,6 @@
 
 #include "musclesim/base/error.h"
 #include "musclesim/base/units.h"
-#include "musclesim/simulation/simulation.h"
 #include "ode_vector.h"
 
 namespace musclesim {
@@ -121,28 +120,27 @@ dJointID eulerMotor(dBodyID body, dBodyID other, const Vector& axis1, const Vect
 }  // namespace
 
 Primitive::Primitive(dWorldID world, dSpaceID space, const Vector& position, double mass, double density, Shape shape)
-    : world_(world), shape_(std::move(shape)) {
+    : world_(World::of(world)), shape_(std::move(shape)) {
   requireFinite("position of a primitive", position);
   if (!(density >= 0) || !std::isfinite(density))
     throw BadParameter("density of a primitive", fmt::format("{}", density), "be finite and not negative");
   if (mass == 0) mass = positive("density of a primitive without mass", density) * volumeMm3(shape_);
   mass_g_ = positive("mass of a primitive", mass);
-  Simulation& simulation = Simulation::of(world);
   const dBodyID id = dBodyCreate(world);
   const dMass solid_mass = solid(shape_, mass_g_);
   dBodySetMass(id, &solid_mass);
   dBodySetPosition(id, position.x(), position.y(), position.z());
   geom_ = makeGeom(space, shape_);  // a null space: drawn, but never in contact
   dGeomSetBody(geom_, id);
-  simulation.primitives_.emplace_back(this);
-  name_ = fmt::format("primitive_{}", simulation.primitives_.size() - 1);
-  body_ = &simulation.addBody(id, *this);
+  world_.own(this);
+  name_ = fmt::format("primitive_{}", worldIndex());
+  body_ = &world_.addBody(id, *this);
 }
 
 Primitive::~Primitive() {
   dGeomDestroy(geom_);
   std::erase(body_->parts, this);
-  Simulation::of(world_).disown(*this);  // it still owns this if a derived class's constructor threw
+  world_.disown(*this);  // it still owns this if a derived class's constructor threw
 }
 
 Vector Primitive::getPosition() const {
@@ -237,7 +235,7 @@ void Primitive::addPointMass(double mass_g, const Vector& point_mm) {
   if (!physical)
     throw BadParameter("point mass on " + name_, fmt::format("{} g", mass_g), "leave mass and moments of inertia of its body positive");
   std::vector<std::pair<Joint*, Vector>> joints;
-  for (const auto& joint : Simulation::of(world_).joints())
+  for (const auto& joint : world_.joints())
     if (dJointGetBody(joint->id(), 0) == body_->id || dJointGetBody(joint->id(), 1) == body_->id)
       joints.emplace_back(joint.get(), anchorOf(*joint));
   std::vector<Vector> drawn;
@@ -261,7 +259,7 @@ void Primitive::place(const Vector& position_mm, const Eigen::Matrix3d& rotation
 Joint* Primitive::addJoint(Joint::Kind kind, dJointID joint, Primitive* other, const std::string& what) {
   body_->has_joint = true;
   if (other) other->body_->has_joint = true;
-  return &Simulation::of(world_).addJoint(kind, joint, fmt::format("{} of {} and {}", what, name_, other ? other->name_ : "environment"));
+  return &world_.addJoint(kind, joint, fmt::format("{} of {} and {}", what, name_, other ? other->name_ : "environment"));
 }
 
 void Primitive::fix() {
@@ -408,7 +406,7 @@ void Primitive::compositePrimitives(const std::vector<Primitive*>& parts, Primit
   if (!parent) parent = parts.back();
   std::vector<Body*> bodies;
   for (Primitive* part : parts) {
-    if (part->world_ != parent->world_) throw BadParameter("composing primitives: they belong to different simulations");
+    if (&part->world_ != &parent->world_) throw BadParameter("composing primitives: they belong to different simulations");
     part->requireComposable();
     if (std::find(bodies.begin(), bodies.end(), part->body_) != bodies.end())
       throw BadParameter("composing primitives: " + part->name_ + " is already part of the same body");
@@ -423,8 +421,7 @@ void Primitive::compositePrimitives(const std::vector<Primitive*>& parts, Primit
 ///     I = sum_i R_i I_i R_i^T + m_i (|d_i|^2 E - d_i d_i^T)
 /// in the parent's axes, R_i the orientation and d_i the displacement of part i; with "summed" the original's sum of the I_i as they are.
 void Primitive::merge(Body& target, const std::vector<Body*>& bodies, Primitive& parent) {
-  Simulation& simulation = Simulation::of(parent.world_);
-  const bool exact = simulation.physics().composite_inertia == "exact";
+  const bool exact = parent.world_.physics().composite_inertia == "exact";
   double total_mass_g = 0;
   Vector center = Vector::Zero();
   std::vector<dMass> masses(bodies.size());
@@ -462,7 +459,7 @@ void Primitive::merge(Body& target, const std::vector<Body*>& bodies, Primitive&
       dGeomClearOffset(part->geom_);  // dGeomSetBody would lose the memory of an offset
       dGeomSetBody(part->geom_, target.id);
     }
-    simulation.removeBody(*body);
+    parent.world_.removeBody(*body);
   }
   dMass mass;
   dMassSetParameters(&mass, total_mass_g, 0, 0, 0, inertia(0, 0), inertia(1, 1), inertia(2, 2), inertia(0, 1), inertia(0, 2),

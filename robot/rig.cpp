@@ -6,20 +6,19 @@
 #include "equilibrium.h"
 #include "musclesim/base/units.h"
 #include "musclesim/robot/muscle.h"
-#include "musclesim/simulation/simulation.h"
 
 namespace musclesim {
 
-Rig::Rig(Simulation& simulation) : Robot(simulation) {
+Rig::Rig(World& world) : Robot(world) {
   const double minimum_mm = parameter("rig.minimum_length_mm", 120, "mm", 15, 1e4, "muscle: shortest length");
   const double maximum_mm = parameter("rig.maximum_length_mm", 300, "mm", 15, 1e4, "muscle: longest length");
   const double load_kg = parameter("rig.load_kg", 2.0, "kg", 1e-4, 1e3, "mass hanging from the muscle");
   const Vector bottom(0, -(minimum_mm + maximum_mm) / 2, 0);
   top_mm_ = mountedStart({0, 0, 0}, Vector::UnitX());
   const Vector& top = top_mm_;
-  muscle_ = new Muscle(world(), space(), top, top + (bottom - top) / 3, top + (bottom - top) * 2 / 3, bottom, minimum_mm, maximum_mm);
+  muscle_ = new Muscle(world, space(), top, top + (bottom - top) / 3, top + (bottom - top) * 2 / 3, bottom, minimum_mm, maximum_mm);
   constexpr double drawn_radius_mm = 20;
-  load_ = new Sphere(world(), nullptr, bottom, load_kg * g_per_kg, 0, drawn_radius_mm);
+  load_ = new Sphere(world, nullptr, bottom, load_kg * g_per_kg, 0, drawn_radius_mm);
   load_->setName("load");
   load_->attachSlider(nullptr, Vector::UnitY());
   muscle_->connectStartTo(nullptr);
@@ -28,10 +27,9 @@ Rig::Rig(Simulation& simulation) : Robot(simulation) {
   setLoad(load_);
 }
 
-void Rig::settle(const Action& first_command) {
-  EffectChain& effects = simulation().effects();
-  effects.settlePressures(first_command);
-  const double gravity = -simulation().gravityMmPerS2().y() / simulation().physics().force_per_N;  // N/g
+void Rig::settle() {
+  RobotEffects& effects = world().effects();
+  const double gravity = -world().gravityMmPerS2().y() / world().physics().force_per_N;  // N/g
   dMass load;
   dBodyGetMass(load_->body().id, &load);
   const double weight_N = (load.mass + muscle_->massG() / 2) * gravity;

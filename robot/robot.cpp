@@ -4,87 +4,29 @@
 
 #include <cmath>
 #include <limits>
-#include <mutex>
 
 #include "musclesim/base/error.h"
-#include "musclesim/robot/elbow.h"
-#include "musclesim/robot/rig.h"
-#include "musclesim/robot/robotic_arm.h"
-#include "musclesim/robot/spring_bench.h"
-#include "musclesim/robot/wrist.h"
-#include "musclesim/simulation/simulation.h"
 
 namespace musclesim {
 
-std::map<std::string, Robot::Registered>& Robot::registry() {
-  static std::map<std::string, Registered> robots = {
-      {"arm",
-       {"the paper's RoboticArm: shoulder, elbow, wrist and ten muscles (up to 30)",
-        [](Simulation& s) { return std::make_unique<RoboticArm>(s); }}},
-      {"rig", {"the paper's load frame: one hanging muscle with a load", [](Simulation& s) { return std::make_unique<Rig>(s); }}},
-      {"elbow", {"an antagonistic pair of muscles on one hinge", [](Simulation& s) { return std::make_unique<Elbow>(s); }}},
-      {"wrist", {"an antagonistic wrist between two stops", [](Simulation& s) { return std::make_unique<Wrist>(s); }}},
-      {"spring_bench",
-       {"one muscle that pulls a carriage against a spring", [](Simulation& s) { return std::make_unique<SpringBench>(s); }}},
-  };
-  return robots;
-}
-
 namespace {
 
-/// Guards the registry: simulations are built in several threads.
-std::mutex& registryMutex() {
-  static std::mutex mutex;
-  return mutex;
-}
+thread_local Robot* active_robot = nullptr;
 
 }  // namespace
 
-void Robot::registerFactory(const std::string& name, const std::string& description, Factory factory) {
-  const std::lock_guard lock(registryMutex());
-  registry()[name] = {description, std::move(factory)};
-}
-
-std::unique_ptr<Robot> Robot::make(const std::string& name, Simulation& simulation) {
-  Factory build;
-  {
-    const std::lock_guard lock(registryMutex());
-    if (const auto found = registry().find(name); found != registry().end()) build = found->second.build;
-  }
-  if (!build) {
-    std::vector<std::string> names;
-    for (const auto& [known, description] : registered()) names.push_back(known);
-    const std::string nearest = nearestName(name, names);
-    throw BadParameter(fmt::format("there is no robot \"{}\"{}; registered: {}", name,
-                                   nearest.empty() ? "" : ", did you mean \"" + nearest + "\"?", fmt::join(names, ", ")));
-  }
-  auto robot = build(simulation);
-  robot->name_ = name;
-  return robot;
-}
-
-std::vector<std::pair<std::string, std::string>> Robot::registered() {
-  const std::lock_guard lock(registryMutex());
-  std::vector<std::pair<std::string, std::string>> result;
-  for (const auto& [name, entry] : registry()) result.emplace_back(name, entry.description);
-  return result;
-}
-
 Robot* Robot::getActiveRobot() {
-  return &Simulation::current().robot();
+  if (!active_robot) throw BadParameter("this thread has no current simulation with a robot");
+  return active_robot;
 }
 
-dWorldID Robot::world() const {
-  return simulation_.world();
-}
-
-dSpaceID Robot::space() const {
-  return simulation_.space();
+void Robot::setActiveRobot(Robot* robot) {
+  active_robot = robot;
 }
 
 double Robot::parameter(const std::string& name, double default_value, const std::string& unit, double minimum, double maximum,
                         const std::string& description) const {
-  return simulation_.parameters().number(name, default_value, unit, minimum, maximum, description);
+  return world_.parameters().number(name, default_value, unit, minimum, maximum, description);
 }
 
 void Robot::addActuator(Actuator* actuator) {
@@ -121,26 +63,26 @@ void Robot::loadHand(double mass_g) {
 Vector Robot::mounted(MuscleEnd end, const Vector& place_mm, const Vector& lever) {
   const int muscle = actuatorCount();
   mounted_ends_.insert({muscle, end});
-  return place_mm + simulation_.effects().mountOffsetMm(muscle, end, lever.normalized());
+  return place_mm + world_.effects().mountOffsetMm(muscle, end, lever.normalized());
 }
 
 Vector Robot::handMm() const {
   return hand_->getPosition() + hand_->getRotation() * hand_offset_mm_;
 }
 
-void Robot::settle(const Action&) {
+void Robot::settle() {
   throw BadParameter("initial_state = settled: this robot has no settled start; use built");
 }
 
 State Robot::getState() const {
   State state = truth();
-  simulation_.effects().read(state);
+  world_.effects().read(state);
   return state;
 }
 
 State Robot::truth() const {
   State state;
-  state.time_s = simulation_.time_s();
+  state.time_s = world_.clock().time_s();
   for (const Actuator* actuator : actuators_) {
     state.command.push_back(actuator->command());
     state.pressure.push_back(actuator->pressure());
@@ -158,11 +100,11 @@ void Robot::step(const Action& action) {
                        fmt::format("be {}, one per muscle", actuators_.size()));
   for (std::size_t i = 0; i < action.size(); ++i) {
     if (!std::isfinite(action[i]))
-      throw Diverged(simulation_.time_s(), fmt::format("command_{}", i), fmt::format("the commanded pressure is {}", action[i]));
+      throw Diverged(world_.clock().time_s(), fmt::format("command_{}", i), fmt::format("the commanded pressure is {}", action[i]));
     actuators_[i]->requireCommand(action[i]);
   }
   for (std::size_t i = 0; i < action.size(); ++i) actuators_[i]->setPressure(action[i]);
-  simulation_.sense();
+  world_.effects().update();
 }
 
 std::vector<std::string> Robot::signalNames() const {

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "musclesim/robot/muscle.h"
-#include "musclesim/simulation/simulation.h"
 #include "robotic_arm_table.h"
 
 namespace musclesim {
@@ -87,14 +86,14 @@ Vector leverOf(const MuscleRow& muscle) {
 
 }  // namespace
 
-RoboticArm::RoboticArm(Simulation& simulation) : Robot(simulation) {
-  simulation.setCompositeInertia(simulation.parameters().choice("arm.composite_inertia", simulation.physics().composite_inertia,
-                                                                {"exact", "summed"}, "inertia of the arm's composite bones"));
-  const int muscle_count = simulation.parameters().integer("arm.muscle_count", 10, 1, static_cast<int>(robotic_arm::muscles().size()),
-                                                           "number of muscles, the first ones of the table");
+RoboticArm::RoboticArm(World& world) : Robot(world) {
+  world.setCompositeInertia(world.parameters().choice("arm.composite_inertia", world.physics().composite_inertia, {"exact", "summed"},
+                                                      "inertia of the arm's composite bones"));
+  const int muscle_count = world.parameters().integer("arm.muscle_count", 10, 1, static_cast<int>(robotic_arm::muscles().size()),
+                                                      "number of muscles, the first ones of the table");
   Bones bones;
   for (const PrimitiveRow& row : robotic_arm::primitives()) {
-    bones[row.name] = makePrimitive(world(), space(), row);
+    bones[row.name] = makePrimitive(world, space(), row);
     bones[row.name]->setName(row.name);
   }
   for (const OperationRow& row : robotic_arm::operations()) {
@@ -103,7 +102,7 @@ RoboticArm::RoboticArm(Simulation& simulation) : Robot(simulation) {
   }
   for (int i = 0; i < muscle_count; ++i) {
     const auto& row = robotic_arm::muscles()[static_cast<std::size_t>(i)];
-    auto* muscle = new Muscle(world(), space(), mountedStart(toVector(row.start_mm), leverOf(row)), toVector(row.start_control_mm),
+    auto* muscle = new Muscle(world, space(), mountedStart(toVector(row.start_mm), leverOf(row)), toVector(row.start_control_mm),
                               toVector(row.end_control_mm), mountedEnd(toVector(row.end_mm), leverOf(row)), row.minimum_length_mm,
                               row.maximum_length_mm);
     muscle->connectStartTo(find(bones, row.connect_start_to));

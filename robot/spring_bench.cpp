@@ -8,7 +8,6 @@
 #include "musclesim/robot/force_law_choice.h"
 #include "musclesim/robot/linear_actuator.h"
 #include "musclesim/robot/muscle.h"
-#include "musclesim/simulation/simulation.h"
 
 namespace musclesim {
 
@@ -29,7 +28,7 @@ class Spring : public LinearActuator {
 
 }  // namespace
 
-SpringBench::SpringBench(Simulation& simulation) : Robot(simulation) {
+SpringBench::SpringBench(World& world) : Robot(world) {
   load_N_ = parameter("spring_bench.load_N", 20, "N", 0, 1e5, "constant load");
   spring_N_per_mm_ = parameter("spring_bench.spring_N_per_mm", 5, "N/mm", 0, 1e5, "stiffness of the spring");
   reference_mm_ = parameter("spring_bench.reference_length_mm", 250, "mm", 15, 1e4, "length of the muscle at which the spring is slack");
@@ -42,14 +41,14 @@ SpringBench::SpringBench(Simulation& simulation) : Robot(simulation) {
   start_mm_ = mountedStart({0, 0, 0}, Vector::UnitY());
   anchor_mm_ = {2 * maximum_mm, 0, 0};
   constexpr double drawn_mm = 20;
-  carriage_ = new Box(world(), nullptr, end, carriage_kg * g_per_kg, 0, drawn_mm, drawn_mm, drawn_mm);
+  carriage_ = new Box(world, nullptr, end, carriage_kg * g_per_kg, 0, drawn_mm, drawn_mm, drawn_mm);
   carriage_->setName("carriage");
   carriage_->attachSlider(nullptr, Vector::UnitX());
-  muscle_ = new Muscle(world(), space(), start_mm_, start_mm_ + (end - start_mm_) / 3, start_mm_ + (end - start_mm_) * 2 / 3, end,
-                       minimum_mm, maximum_mm);
-  muscle_->setForceLaw(makeForceLaw(simulation.parameters(), minimum_mm, rest_mm));
-  spring_ = new Spring(world(), space(), end, anchor_mm_, 2 * maximum_mm,
-                       [this](double length_mm) { return springN(anchor_mm_.x() - length_mm); });
+  muscle_ = new Muscle(world, space(), start_mm_, start_mm_ + (end - start_mm_) / 3, start_mm_ + (end - start_mm_) * 2 / 3, end, minimum_mm,
+                       maximum_mm);
+  muscle_->setForceLaw(makeForceLaw(world.parameters(), minimum_mm, rest_mm));
+  spring_ =
+      new Spring(world, space(), end, anchor_mm_, 2 * maximum_mm, [this](double length_mm) { return springN(anchor_mm_.x() - length_mm); });
   muscle_->connectStartTo(nullptr);
   muscle_->connectEndTo(carriage_);
   spring_->connectStartTo(carriage_);
@@ -67,9 +66,8 @@ void SpringBench::placeCarriage(double length_mm) {
   carriage_->place({std::sqrt(length_mm * length_mm - y * y), 0, 0}, Eigen::Matrix3d::Identity());
 }
 
-void SpringBench::settle(const Action& first_command) {
-  EffectChain& effects = simulation().effects();
-  effects.settlePressures(first_command);
+void SpringBench::settle() {
+  RobotEffects& effects = world().effects();
   const auto stops = muscle_->straightLengthRange();
   auto surplus = [&](double length_mm) {
     placeCarriage(length_mm);

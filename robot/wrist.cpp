@@ -8,11 +8,10 @@
 #include "musclesim/base/units.h"
 #include "musclesim/robot/force_law_choice.h"
 #include "musclesim/robot/muscle.h"
-#include "musclesim/simulation/simulation.h"
 
 namespace musclesim {
 
-Wrist::Wrist(Simulation& simulation) : Robot(simulation) {
+Wrist::Wrist(World& world) : Robot(world) {
   lever_mm_ = parameter("wrist.lever_mm", 25, "mm", 1, 1e3, "distance of the muscles' ends from the hinge");
   middle_rad_ = parameter("wrist.middle_deg", 35, "deg", -90, 90, "angle at which the lever lies across the muscles") * rad_per_deg;
   buildHand();
@@ -48,7 +47,7 @@ void Wrist::buildMuscle(int i) {
       mountedEnd(Eigen::AngleAxisd(-middle_rad_, Vector::UnitZ()) * Vector(side * lever_mm_, 0, 0), {side, 0, 0});
   const Vector& top = upper_mm_[i] = mountedStart({side * lever_mm_, length_mm, 0}, {side, 0, 0});
   muscles_[i] = new Muscle(world(), space(), top, top + (bottom - top) / 3, top + (bottom - top) * 2 / 3, bottom, minimum_mm, maximum_mm);
-  muscles_[i]->setForceLaw(makeForceLaw(simulation().parameters(), minimum_mm, rest_mm));
+  muscles_[i]->setForceLaw(makeForceLaw(world().parameters(), minimum_mm, rest_mm));
   muscles_[i]->connectStartTo(nullptr);
   muscles_[i]->connectEndTo(hand_);
   addActuator(muscles_[i]);
@@ -67,8 +66,8 @@ void Wrist::placeHand(double angle_rad) {
 
 double Wrist::torqueNmm(double angle_rad) {
   placeHand(angle_rad);
-  EffectChain& effects = simulation().effects();
-  const Vector gravity = simulation().gravityMmPerS2() / simulation().physics().force_per_N;  // N/g
+  RobotEffects& effects = world().effects();
+  const Vector gravity = world().gravityMmPerS2() / world().physics().force_per_N;  // N/g
   dMass mass;
   dBodyGetMass(hand_->body().id, &mass);
   const BodyLoad load = effects.restingLoad(*hand_);
@@ -81,8 +80,7 @@ double Wrist::torqueNmm(double angle_rad) {
   return torque;
 }
 
-void Wrist::settle(const Action& first_command) {
-  simulation().effects().settlePressures(first_command);
+void Wrist::settle() {
   const double low_rad = dJointGetHingeParam(hinge_->id(), dParamLoStop), high_rad = dJointGetHingeParam(hinge_->id(), dParamHiStop);
   const double angle = restFrom([&](double q) { return -torqueNmm(q); }, 0, low_rad, high_rad);
   placeHand(angle);

@@ -30,7 +30,7 @@ double largestEigenvalue(const BoneMobility& mobility, const std::vector<Pushes>
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
 }
 
-std::vector<dBodyID> beadsOf(const std::vector<std::unique_ptr<Actuator>>& actuators) {
+std::vector<dBodyID> beadsOf(const std::vector<Actuator*>& actuators) {
   std::vector<dBodyID> beads;
   for (const auto& actuator : actuators)
     for (const Link& link : actuator->links()) beads.insert(beads.end(), std::begin(link.bead), std::end(link.bead));
@@ -40,7 +40,7 @@ std::vector<dBodyID> beadsOf(const std::vector<std::unique_ptr<Actuator>>& actua
 
 /// Longest step with h^2 K / 4 + h D / 2 = 1 for the fastest rates K, D of the line muscles' stiffness and friction.
 double longestLineStepS(const PhysicsSettings& physics, const std::vector<std::unique_ptr<Joint>>& joints,
-                        const std::vector<std::unique_ptr<Actuator>>& actuators) {
+                        const std::vector<Actuator*>& actuators) {
   std::vector<Pushes> lines;
   std::vector<double> stiffness, damping;
   const double speed_ratio = std::sqrt(physics.force_per_N / world_force_per_N);
@@ -58,7 +58,7 @@ double longestLineStepS(const PhysicsSettings& physics, const std::vector<std::u
   return k > 0 ? (std::sqrt(d * d + 4 * k) - d) / k : std::numeric_limits<double>::infinity();
 }
 
-double longestChainStepS(const std::vector<std::unique_ptr<Actuator>>& actuators) {
+double longestChainStepS(const std::vector<Actuator*>& actuators) {
   double fastest = 0;
   for (const auto& actuator : actuators) fastest = std::max(fastest, actuator->fastestSwayRadPerS());
   return fastest > 0 ? 2 / fastest : std::numeric_limits<double>::infinity();
@@ -117,7 +117,7 @@ void setStop(const Joint& joint, const PhysicsSettings::Stop& stop) {
 }  // namespace
 
 int automaticSubsteps(double step_s, const PhysicsSettings& physics, const std::vector<std::unique_ptr<Joint>>& joints,
-                      const std::vector<std::unique_ptr<Actuator>>& actuators) {
+                      const std::vector<Actuator*>& actuators) {
   if (!std::isfinite(physics.longest_internal_step_s)) return 1;
   const double longest_s = std::min({physics.longest_internal_step_s, physics.stability_margin_ratio * longestChainStepS(actuators),
                                      line_margin_ratio * longestLineStepS(physics, joints, actuators)});
@@ -125,7 +125,7 @@ int automaticSubsteps(double step_s, const PhysicsSettings& physics, const std::
 }
 
 void adaptJoints(double h_s, double before, const PhysicsSettings& physics, const std::vector<std::unique_ptr<Joint>>& joints,
-                 const std::vector<std::unique_ptr<Actuator>>& actuators) {
+                 const std::vector<Actuator*>& actuators) {
   for (const auto& joint : joints) adaptErrorReduction(*joint, before, physics.errorReductionPerStep(h_s));
   for (const auto& actuator : actuators) {
     if (physics.slider_stop_compliance > 0)

@@ -6,7 +6,7 @@
 
 #include "musclesim/robot/actuator.h"
 #include "musclesim/robot/joint.h"
-#include "musclesim/simulation/physics.h"
+#include "musclesim/robot/physics.h"
 
 namespace musclesim {
 
@@ -16,10 +16,10 @@ namespace musclesim {
 /// For line muscles it is 0.6 h with h^2 K / 4 + h D / 2 = 1, K and D the largest rates of their springs and frictions on the bones.
 /// Never longer than `physics.longest_internal_step_s`; in physics without that bound the control step is the internal step.
 int automaticSubsteps(double step_s, const PhysicsSettings& physics, const std::vector<std::unique_ptr<Joint>>& joints,
-                      const std::vector<std::unique_ptr<Actuator>>& actuators);
+                      const std::vector<Actuator*>& actuators);
 
 /// Gives joints whose error reduction is `before` the one of this step, and the stops of chains their stiffness and damping.
 void adaptJoints(double h_s, double before, const PhysicsSettings& physics, const std::vector<std::unique_ptr<Joint>>& joints,
-                 const std::vector<std::unique_ptr<Actuator>>& actuators);
+                 const std::vector<Actuator*>& actuators);
 
 }  // namespace musclesim

@@ -12,6 +12,7 @@
 #include "internal_step.h"
 #include "musclesim/base/error.h"
 #include "musclesim/controller/replay.h"
+#include "musclesim/robot/robot_registry.h"
 #include "musclesim/version.h"
 
 namespace musclesim {
@@ -62,7 +63,7 @@ std::map<std::string, Parameter::Value> robotParameters(Simulation& simulation) 
 
 void requireRegistered(const std::string& robot, const std::string& source) {
   std::vector<std::string> names;
-  for (const auto& [name, description] : Robot::registered()) names.push_back(name);
+  for (const auto& [name, description] : registeredRobots()) names.push_back(name);
   if (std::ranges::find(names, robot) == names.end())
     throw BadFile(source, fmt::format("there is no robot \"{}\"; registered: {}", robot, fmt::join(names, ", ")));
 }
@@ -105,8 +106,8 @@ RecordingInfo describeModel(Simulation& simulation, const std::string& initial_s
   nlohmann::json extra;
   extra["stepper"] = simulation.stepper().name();
   extra["substeps"] = simulation.substeps();
-  extra["substeps_automatic"] =
-      simulation.substeps() == automaticSubsteps(simulation.stepS(), simulation.physics(), simulation.joints(), simulation.actuators());
+  extra["substeps_automatic"] = simulation.substeps() == automaticSubsteps(simulation.stepS(), simulation.physics(),
+                                                                           simulation.world().joints(), simulation.world().actuators());
   extra["internal_step_s"] = simulation.internalStepS();
   for (const Parameter& p : simulation.parameters().declared()) extra["parameters"][p.name] = toJson(p.value);
   info.extra_json = extra.dump();

@@ -13,6 +13,9 @@
 #include "internal_step.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/units.h"
+#include "musclesim/robot/actuator.h"
+#include "musclesim/robot/primitive.h"
+#include "musclesim/robot/robot_registry.h"
 
 namespace musclesim {
 
@@ -30,38 +33,13 @@ std::string advice(double time_s) {
                     : "; try a smaller --step or more --substeps, and look at the last rows of the recording";
 }
 
-/// After a caught fault ODE's world may still be locked; destroying it would raise another. It is kept to the end of the process, in reach,
-/// so that leak checkers do not take it for forgotten.
-struct AbandonedWorld {
-  dWorldID world;
-  dSpaceID space;
-  std::unique_ptr<Contacts> contacts;
-  std::vector<std::unique_ptr<Primitive>> primitives;
-};
-
-void abandon(AbandonedWorld world) {
+/// A fault may have left ODE in the middle of a call; its contacts are then kept with the world until the process ends, in reach, so that
+/// leak checkers do not take them for forgotten.
+void keepForEver(std::unique_ptr<Contacts> contacts) {
   static std::mutex access;
-  static auto* const worlds = new std::vector<AbandonedWorld>;  // never destroyed: that would destroy the worlds
+  static auto* const kept = new std::vector<std::unique_ptr<Contacts>>;
   const std::lock_guard<std::mutex> lock(access);
-  worlds->push_back(std::move(world));
-}
-
-/// What is destroyed is no longer in the list: its destructor may look itself up there.
-template <class Owned>
-void destroyAll(std::vector<std::unique_ptr<Owned>>& owned) {
-  while (!owned.empty()) {
-    const std::unique_ptr<Owned> last = std::move(owned.back());
-    owned.pop_back();
-  }
-}
-
-/// Forgets something that is being destroyed from elsewhere.
-template <class Owned>
-void release(std::vector<std::unique_ptr<Owned>>& owned, const Owned& which) {
-  const auto found = std::ranges::find_if(owned, [&](const auto& one) { return one.get() == &which; });
-  if (found == owned.end()) return;
-  static_cast<void>(found->release());
-  owned.erase(found);
+  kept->push_back(std::move(contacts));
 }
 
 double requireStep(double step_s) {
@@ -72,66 +50,38 @@ double requireStep(double step_s) {
 }  // namespace
 
 Simulation::Simulation(SimulationOptions options)
-    : parameters_(std::move(options.parameters)),
-      physics_(options.physics, parameters_),
-      step_s_(requireStep(options.step_s)),
-      seed_(options.seed),
+    : world_(std::make_unique<World>(
+          WorldOptions{options.physics, options.plane, options.seed, requireStep(options.step_s), std::move(options.parameters)})),
       interrupted_(std::move(options.interrupted)) {
-  ode_runtime::prepareThread();
   if (options.substeps < 0 || options.substeps > 1000000)
     throw BadParameter("substeps", fmt::format("{}", options.substeps), "be a whole number in 1 .. 1000000, or 0 for automatic");
   substeps_given_ = options.substeps > 0;
-  substeps_ = substeps_given_ ? options.substeps : automaticSubsteps(step_s_, physics_, {}, {});
-  world_ = dWorldCreate();
-  // ODE's own threading is shared by all worlds of the process and not safe where two threads step two worlds.
-  threading_ = dThreadingAllocateSelfThreadedImplementation();
-  if (!threading_) throw OdeFault("ODE cannot allocate a threading implementation");
-  dWorldSetStepThreadingImplementation(world_, dThreadingImplementationGetFunctions(threading_), threading_);
-  dWorldSetData(world_, this);
-  dWorldSetGravity(world_, 0, -physics_.gravity_mm_per_s2, 0);
-  error_reduction_ = physics_.errorReductionPerStep(internalStepS());
-  dWorldSetERP(world_, error_reduction_);
-  dWorldSetCFM(world_, physics_.constraint_force_mixing);
-  // The kind of space decides which of two bodies' several contacts counts. The published program has a hash table, which allocates memory
-  // and is slower for robots of this size.
-  space_ = options.physics == PhysicsKind::si ? dSimpleSpaceCreate(nullptr) : dHashSpaceCreate(nullptr);
-  if (options.plane)
-    dCreatePlane(space_, 0, 1, 0, parameters_.number("world.plane_height_mm", -500, "mm", -1e4, 1e4, "height of the ground plane"));
-  contacts_ = std::make_unique<Contacts>(world_, space_, physics_.contact_friction_N * physics_.force_per_N);
+  substeps_ = substeps_given_ ? options.substeps : automaticSubsteps(stepS(), physics(), {}, {});
+  world_->setErrorReduction(physics().errorReductionPerStep(internalStepS()));
+  contacts_ = std::make_unique<Contacts>(*world_, space(), physics().contact_friction_N * physics().force_per_N);
   if (options.stepper == StepperKind::quick)
     stepper_ = std::make_unique<QuickStepper>(
-        world_, parameters_.integer("physics.quick_iteration_count", 20, 1, 100000, "sweeps of dWorldQuickStep per internal step"),
-        static_cast<unsigned long>(seed_));
+        *world_, parameters().integer("physics.quick_iteration_count", 20, 1, 100000, "sweeps of dWorldQuickStep per internal step"),
+        static_cast<unsigned long>(seed()));
   else if (options.stepper == StepperKind::ode)
-    stepper_ = std::make_unique<OdeStepper>(world_);
+    stepper_ = std::make_unique<OdeStepper>(*world_);
   else
-    stepper_ = std::make_unique<ChainStepper>(*this, *contacts_, bodyBounds(), options.stepper == StepperKind::chain);
-  effects_ = std::make_unique<EffectChain>(*this, std::move(options.effects));
+    stepper_ = std::make_unique<ChainStepper>(*world_, *contacts_, bodyBounds(), options.stepper == StepperKind::chain);
+  effects_ = std::make_unique<EffectChain>(*world_, std::move(options.effects));
+  world_->connect(effects_.get());
   makeCurrent();
 }
 
 Simulation::~Simulation() {
-  if (current_simulation == this) current_simulation = nullptr;
-  controller_.reset();
-  effects_.reset();
-  robot_.reset();
-  if (faulted_) {
-    destroyAll(actuators_);
-    abandon({world_, space_, std::move(contacts_), std::move(primitives_)});
-    return;
+  if (current_simulation == this) {
+    current_simulation = nullptr;
+    Robot::setActiveRobot(nullptr);
+    Controller::setActiveController(nullptr);
   }
-  contacts_.reset();
-  destroyAll(actuators_);
-  destroyAll(primitives_);
-  dSpaceDestroy(space_);
-  dWorldDestroy(world_);
-  dThreadingFreeImplementation(threading_);
-}
-
-Simulation& Simulation::of(dWorldID world) {
-  auto* simulation = world ? static_cast<Simulation*>(dWorldGetData(world)) : nullptr;
-  if (!simulation) throw BadParameter("this world does not belong to a Simulation");
-  return *simulation;
+  if (faulted_) {
+    world_->markFaulted();
+    keepForEver(std::move(contacts_));
+  }
 }
 
 Simulation& Simulation::current() {
@@ -141,6 +91,8 @@ Simulation& Simulation::current() {
 
 void Simulation::makeCurrent() {
   current_simulation = this;
+  Robot::setActiveRobot(robot_.get());
+  Controller::setActiveController(controller_.get());
 }
 
 Robot& Simulation::robot() {
@@ -150,13 +102,14 @@ Robot& Simulation::robot() {
 
 Robot& Simulation::build(const std::string& robot_name) {
   if (robot_) throw BadParameter("this simulation already has a robot");
-  return adopt(Robot::make(robot_name, *this));
+  return adopt(makeRobot(robot_name, *world_));
 }
 
 Robot& Simulation::adopt(std::unique_ptr<Robot> robot) {
   if (robot_) throw BadParameter("this simulation already has a robot");
   robot_ = std::move(robot);
-  effects_->attach();
+  if (current_simulation == this) makeCurrent();
+  effects_->attach(*robot_);
   prepareSteps();
   stepper_->prepare();
   return *robot_;
@@ -164,47 +117,44 @@ Robot& Simulation::adopt(std::unique_ptr<Robot> robot) {
 
 /// Sets the length of internal steps by the muscles there are by now, and what depends on it.
 void Simulation::prepareSteps() {
-  const double before = dWorldGetERP(world_);
-  if (!substeps_given_) substeps_ = automaticSubsteps(step_s_, physics_, joints_, actuators_);
-  if (before == error_reduction_) dWorldSetERP(world_, physics_.errorReductionPerStep(internalStepS()));
-  adaptJoints(internalStepS(), error_reduction_, physics_, joints_, actuators_);
-  error_reduction_ = physics_.errorReductionPerStep(internalStepS());
-  prepared_actuator_count_ = actuators_.size();
-  contacts_->reserve(100 + 20 * actuators_.size());
+  const double before = world_->errorReduction();
+  const bool set_by_user = dWorldGetERP(*world_) != before;
+  if (!substeps_given_) substeps_ = automaticSubsteps(stepS(), physics(), world_->joints(), world_->actuators());
+  adaptJoints(internalStepS(), before, physics(), world_->joints(), world_->actuators());
+  const double now = physics().errorReductionPerStep(internalStepS());
+  world_->setErrorReduction(now, set_by_user);
+  prepared_actuator_count_ = world_->actuators().size();
+  contacts_->reserve(100 + 20 * world_->actuators().size());
 }
 
 Controller& Simulation::control(std::unique_ptr<Controller> controller) {
   controller_ = std::move(controller);
+  if (current_simulation == this) makeCurrent();
   return *controller_;
 }
 
-Controller* Controller::getActiveController() {
-  Controller* controller = Simulation::current().controller();
-  if (!controller) throw BadParameter("the current simulation has no controller");
-  return controller;
-}
-
 void Simulation::start(const std::string& initial_state, const Action& first_command) {
+  Clock& clock = world_->clock();
   if (initial_state == "settled") {
-    robot().settle(first_command);
+    effects_->settlePressures(first_command);
+    robot().settle();
     stop();
     // In `original` units the same number of true seconds lasts sqrt(1000) times longer.
-    const double slowness = std::sqrt(world_force_per_N / physics_.force_per_N);
-    start_time_s_ = internal_time_s_ = -settle_duration_s * slowness;
-    step_count_ = 0;
-    effects_->begin(start_time_s_);
+    const double slowness = std::sqrt(world_force_per_N / physics().force_per_N);
+    clock.start(-settle_duration_s * slowness);
+    effects_->begin();
     robot().step(first_command);
     advance(settle_duration_s * slowness);
     robot().step(first_command);  // forces at the lengths it has settled to
   } else if (initial_state == "built") {
     effects_->settlePressures(first_command);
-    effects_->begin(0);
+    clock.start(0);
+    effects_->begin();
     robot().step(first_command);
   } else {
     throw BadParameter("initial_state", initial_state, "be one of built, settled");
   }
-  start_time_s_ = internal_time_s_ = 0;
-  step_count_ = 0;
+  clock.start(0);
   worst_gap_ = tornMost();
 }
 
@@ -221,11 +171,10 @@ void Simulation::untilDiverged(const Function& move) {
 
 void Simulation::step() {
   makeCurrent();
-  if (prepared_actuator_count_ != actuators_.size()) prepareSteps();
+  if (prepared_actuator_count_ != world_->actuators().size()) prepareSteps();
   untilDiverged([&] {
     for (int i = 0; i < substeps_; ++i) internalStep(internalStepS());
-    ++step_count_;
-    internal_time_s_ = time_s();
+    world_->clock().countStep();
     requireWhole();
   });
 }
@@ -234,43 +183,36 @@ void Simulation::advance(double duration_s) {
   if (!(duration_s > 0 && std::isfinite(duration_s)))
     throw BadParameter("duration", fmt::format("{} s", duration_s), "be positive and finite");
   makeCurrent();
-  const double whole_steps = std::round(duration_s / step_s_);
-  if (whole_steps >= 1 && std::abs(whole_steps * step_s_ - duration_s) < 1e-9 * std::max(1.0, duration_s)) {
+  const double whole_steps = std::round(duration_s / stepS());
+  if (whole_steps >= 1 && std::abs(whole_steps * stepS() - duration_s) < 1e-9 * std::max(1.0, duration_s)) {
     for (long i = 0; i < static_cast<long>(whole_steps); ++i) step();
     return;
   }
-  if (prepared_actuator_count_ != actuators_.size()) prepareSteps();
+  if (prepared_actuator_count_ != world_->actuators().size()) prepareSteps();
   const auto count = static_cast<long>(std::max(1.0, std::ceil(duration_s / internalStepS() - 1e-6)));
   const double h_s = duration_s / static_cast<double>(count);
   untilDiverged([&] {
     for (long i = 0; i < count; ++i) internalStep(h_s);
-    start_time_s_ += duration_s;
-    internal_time_s_ = time_s();
+    world_->clock().shift(duration_s);
     requireWhole();
   });
 }
 
-void Simulation::sense() {
-  updateForces(0);
-}
-
-void Simulation::updateForces(double h_s) {
-  effects_->command(h_s);
-  effects_->pressure(h_s);
-  effects_->force(h_s);
-}
-
 void Simulation::internalStep(double h_s) {
   if (interrupted_ && interrupted_()) throw Interrupted("interrupted within a step");
-  // A sample's way: command -> pressure -> force -> body -> sensor. (Readings are taken in Robot::getState.)
-  updateForces(h_s);
-  for (const auto& actuator : actuators_) {
+  MuscleValues& values = world_->values();
+  // A sample's way: command -> pressure -> force -> body -> sensor. (Robot::getState takes the readings.)
+  effects_->command(values, h_s);
+  effects_->pressure(values, h_s);
+  effects_->force(values, h_s);
+  const double now_s = world_->clock().now_s();
+  for (const Actuator* actuator : world_->actuators()) {
     if (!std::isfinite(actuator->tensionN()))
       throw Diverged(
-          internal_time_s_, actuator->name(),
+          now_s, actuator->name(),
           fmt::format("its tension is {} N at {} mm and pressure {}", actuator->tensionN(), actuator->lengthMm(), actuator->pressure()));
   }
-  stepper_->applyForces(actuators_, h_s);
+  stepper_->applyForces(world_->actuators(), h_s);
   effects_->body(h_s);
   effects_->track(h_s);
   auto& messages = ode_runtime::messagesOfThread();
@@ -281,41 +223,35 @@ void Simulation::internalStep(double h_s) {
     requireFinite();
   } catch (const OdeFault& fault) {
     faulted_ = true;
-    throw Diverged(internal_time_s_, "the solver", std::string(fault.what()) + advice(internal_time_s_));
+    throw Diverged(now_s, "the solver", std::string(fault.what()) + advice(now_s));
   } catch (const BodyOutOfBounds& escaped) {
-    throw Diverged(internal_time_s_ + h_s, labelOf(escaped.body()), std::string(escaped.what()) + advice(internal_time_s_));
+    throw Diverged(now_s + h_s, labelOf(escaped.body()), std::string(escaped.what()) + advice(now_s));
   }
   solver_message_count_ += messages.count - messages_before;
-  internal_time_s_ += h_s;
+  world_->clock().countInternalStep(h_s);
 }
 
 void Simulation::collide(double h_s) {
-  if (!physics_.has_contacts) return;
-  if (physics_.contact_compliance > 0) {
-    const auto stop = PhysicsSettings::stop(physics_.contact_compliance, physics_.contact_time_constant_s, h_s);
+  if (!physics().has_contacts) return;
+  if (physics().contact_compliance > 0) {
+    const auto stop = PhysicsSettings::stop(physics().contact_compliance, physics().contact_time_constant_s, h_s);
     contacts_->soften(stop.error_reduction, stop.softness);
   }
-  contacts_->collide(revision_);
+  contacts_->collide(world_->revision());
 }
 
 void Simulation::requireFinite() const {
   if (stepper_->hasCheckedBounds()) return;
   const BodyBounds bounds = bodyBounds();
   auto check = [&](dBodyID body) { bounds.require(body, positionOf(body), fromOde(dBodyGetLinearVel(body))); };
-  for (const auto& body : bodies_) check(body->id);
-  for (const auto& actuator : actuators_)
+  for (const auto& body : world_->bodies()) check(body->id);
+  for (const auto& actuator : world_->actuators())
     for (const Link& link : actuator->links())
       for (const dBodyID bead : link.bead) check(bead);
 }
 
-Vector Simulation::gravityMmPerS2() const {
-  dVector3 gravity;
-  dWorldGetGravity(world_, gravity);
-  return fromOde(gravity);
-}
-
 BodyBounds Simulation::bodyBounds() const {
-  const double slowness = std::sqrt(world_force_per_N / physics_.force_per_N);
+  const double slowness = std::sqrt(world_force_per_N / physics().force_per_N);
   return {farthest_mm, fastest_m_per_s * mm_per_m / slowness};
 }
 
@@ -324,12 +260,13 @@ void Simulation::requireWhole() {
   const TornJoint torn = known ? *known : tornMost();
   if (!(torn.gap_mm <= worst_gap_.gap_mm)) worst_gap_ = torn;
   if (!(torn.gap_mm <= torn_mm))
-    throw Diverged(internal_time_s_, torn.joint->name(), fmt::format("it is torn by {:.3g} mm{}", torn.gap_mm, advice(internal_time_s_)));
+    throw Diverged(world_->clock().now_s(), torn.joint->name(),
+                   fmt::format("it is torn by {:.3g} mm{}", torn.gap_mm, advice(world_->clock().now_s())));
 }
 
 TornJoint Simulation::tornMost() const {
   TornJoint largest;
-  for (const auto& joint : joints_) {
+  for (const auto& joint : world_->joints()) {
     const double gap_mm = joint->gapMm();
     if (!(gap_mm <= largest.gap_mm)) largest = {gap_mm, joint.get()};
   }
@@ -341,9 +278,9 @@ JointGap Simulation::named(const TornJoint& torn) {
 }
 
 std::string Simulation::labelOf(dBodyID id) const {
-  for (const auto& body : bodies_)
+  for (const auto& body : world_->bodies())
     if (body->id == id) return body->parts.empty() ? "body" : body->parts.front()->name();
-  for (const auto& actuator : actuators_)
+  for (const auto& actuator : world_->actuators())
     for (std::size_t i = 0; i < actuator->links().size(); ++i)
       for (int end = 0; end < 2; ++end)
         if (actuator->links()[i].bead[end] == id)
@@ -369,10 +306,10 @@ double energyOf(dBodyID body, double gravity) {
 
 double Simulation::mechanicalEnergyJ() const {
   double energy = 0;
-  for (const auto& body : bodies_) energy += energyOf(body->id, physics_.gravity_mm_per_s2);
-  for (const auto& actuator : actuators_)
+  for (const auto& body : world_->bodies()) energy += energyOf(body->id, physics().gravity_mm_per_s2);
+  for (const auto& actuator : world_->actuators())
     for (const Link& link : actuator->links())
-      for (const dBodyID bead : link.bead) energy += energyOf(bead, physics_.gravity_mm_per_s2);
+      for (const dBodyID bead : link.bead) energy += energyOf(bead, physics().gravity_mm_per_s2);
   return energy / (world_force_per_N * mm_per_m);
 }
 
@@ -381,38 +318,10 @@ void Simulation::stop() {
     dBodySetLinearVel(body, 0, 0, 0);
     dBodySetAngularVel(body, 0, 0, 0);
   };
-  for (const auto& body : bodies_) halt(body->id);
-  for (const auto& actuator : actuators_)
+  for (const auto& body : world_->bodies()) halt(body->id);
+  for (const auto& actuator : world_->actuators())
     for (const Link& link : actuator->links())
       for (const dBodyID bead : link.bead) halt(bead);
-}
-
-void Simulation::disown(const Primitive& primitive) {
-  ++revision_;
-  release(primitives_, primitive);
-}
-
-void Simulation::disown(const Actuator& actuator) {
-  ++revision_;
-  release(actuators_, actuator);
-}
-
-Body& Simulation::addBody(dBodyID id, Primitive& part) {
-  ++revision_;
-  bodies_.push_back(std::make_unique<Body>(Body{id, {&part}, false}));
-  return *bodies_.back();
-}
-
-void Simulation::removeBody(Body& body) {
-  ++revision_;
-  dBodyDestroy(body.id);
-  std::erase_if(bodies_, [&](const auto& b) { return b.get() == &body; });
-}
-
-Joint& Simulation::addJoint(Joint::Kind kind, dJointID id, const std::string& name) {
-  ++revision_;
-  joints_.push_back(std::make_unique<Joint>(kind, id, name));
-  return *joints_.back();
 }
 
 }  // namespace musclesim

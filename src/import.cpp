@@ -8,6 +8,7 @@
 
 #include "commands.h"
 #include "musclesim/robot/robot.h"
+#include "musclesim/robot/robot_registry.h"
 #include "output_folder.h"
 
 namespace musclesim::program {
@@ -29,7 +30,7 @@ int importCommand(const ImportArguments& arguments) {
   const Recording recording = importTable(arguments.table, mapping);
   if (!arguments.quiet)
     for (const auto& note : recording.notes) std::fprintf(stderr, "musclesim: %s\n", note.c_str());
-  const auto robots = Robot::registered();
+  const auto robots = registeredRobots();
   if (!arguments.quiet &&
       std::none_of(robots.begin(), robots.end(), [&](const auto& robot) { return robot.first == recording.info.robot; }))
     std::fprintf(stderr, "musclesim: robot %s is none of this program's: only a program that registers it can replay the recording\n",

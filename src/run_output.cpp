@@ -33,12 +33,12 @@ RecordingInfo describe(Simulation& simulation, const RunOptions& options, const 
 
 /// The listing of the paper's --verbose: all primitives and actuators.
 void list(Simulation& simulation) {
-  for (const auto& primitive : simulation.primitives()) {
+  for (const auto& primitive : simulation.world().primitives()) {
     const Vector p = primitive->getPosition();
     fmt::print("primitive {}: {} g, centre of mass of its body at ({:.3f}, {:.3f}, {:.3f}) mm\n", primitive->name(), primitive->massG(),
                p.x(), p.y(), p.z());
   }
-  for (const auto& actuator : simulation.actuators())
+  for (const auto& actuator : simulation.world().actuators())
     fmt::print("actuator {}: {} links, {:.3f} mm, {} .. {} mm{}{}\n", actuator->name(), actuator->links().size(), actuator->lengthMm(),
                actuator->minimumLengthMm(), actuator->maximumLengthMm(), actuator->color().name.empty() ? "" : ", ",
                actuator->color().name);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "musclesim/robot/robot_registry.h"
 #include "musclesim/simulation/simulation.h"
 
 namespace musclesim {
@@ -20,13 +21,13 @@ void addRobot(Hash& hash, const std::string& name) {
   Simulation simulation;
   simulation.build(name);
   hash.add(name);
-  for (const auto& primitive : simulation.primitives()) {
+  for (const auto& primitive : simulation.world().primitives()) {
     hash.add(primitive->name());
     hash.add(primitive->massG());
     const Vector place_mm = primitive->getPosition();
     for (int axis = 0; axis < 3; ++axis) hash.add(place_mm[axis]);
   }
-  for (const auto& actuator : simulation.actuators()) {
+  for (const auto& actuator : simulation.world().actuators()) {
     hash.add(actuator->name());
     for (const double number : {actuator->lengthMm(), actuator->minimumLengthMm(), actuator->maximumLengthMm(), actuator->massG(),
                                 actuator->calculateForce(0.5, actuator->lengthMm())})
@@ -43,7 +44,7 @@ std::string Hash::text() const {
 
 std::string robotsHash() {
   Hash hash;
-  for (const auto& [name, description] : Robot::registered()) addRobot(hash, name);
+  for (const auto& [name, description] : registeredRobots()) addRobot(hash, name);
   return hash.text();
 }
 

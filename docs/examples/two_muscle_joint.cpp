@@ -3,13 +3,14 @@
 #include <cstdio>
 
 #include "musclesim/robot/muscle.h"
+#include "musclesim/robot/robot_registry.h"
 #include "musclesim/simulation/simulation.h"
 
 using namespace musclesim;
 
 class Lever : public Robot {
  public:
-  explicit Lever(Simulation& simulation) : Robot(simulation) {
+  explicit Lever(World& world) : Robot(world) {
     auto* bar = new Box(world(), space(), {0, 0, 0}, 400, 0, 200, 20, 20);  // centre, g, density, edges
     addAngle("lever", bar->attachHinge(nullptr, {0, 0, 0}, Vector::UnitZ(), -40, 40));
     for (const double x : {80.0, -80.0}) {
@@ -23,7 +24,7 @@ class Lever : public Robot {
 };
 
 int main() {
-  Robot::registerRobot<Lever>("lever", "a lever between two muscles");
+  registerRobot<Lever>("lever", "a lever between two muscles");
   Simulation simulation;
   Robot& robot = simulation.build("lever");
   double lowest_deg = 0, highest_deg = 0;

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "musclesim/base/units.h"
-#include "musclesim/simulation/simulation.h"
+#include "musclesim/robot/world.h"
 
 namespace musclesim {
 
@@ -22,8 +22,8 @@ EffectInfo BaseTilt::info() {
 
 void BaseTilt::attach(const EffectPlace& place) {
   const Vector g = Eigen::AngleAxisd(tilt_z_deg_ * rad_per_deg, Vector::UnitZ()) *
-                   (Eigen::AngleAxisd(tilt_x_deg_ * rad_per_deg, Vector::UnitX()) * place.simulation.gravityMmPerS2());
-  dWorldSetGravity(place.simulation.world(), g.x(), g.y(), g.z());
+                   (Eigen::AngleAxisd(tilt_x_deg_ * rad_per_deg, Vector::UnitX()) * place.world.gravityMmPerS2());
+  dWorldSetGravity(place.world, g.x(), g.y(), g.z());
 }
 
 }  // namespace musclesim

@@ -6,7 +6,7 @@
 #include "musclesim/robot/chou_hannaford.h"
 #include "musclesim/robot/force_map.h"
 #include "musclesim/robot/sarosi.h"
-#include "musclesim/simulation/simulation.h"
+#include "musclesim/robot/world.h"
 
 namespace musclesim {
 
@@ -107,7 +107,7 @@ void OtherForceLaw::attach(const EffectPlace& place) {
   else if (law == sarosi)
     law_ = std::make_unique<SarosiForceLaw>(rest_mm, sarosiConstants(values_));
   else if (law == map)
-    law_ = std::make_unique<ForceMap>(rest_mm, ForceMapTable(simulation().parameters()));
+    law_ = std::make_unique<ForceMap>(rest_mm, ForceMapTable(world().parameters()));
   else
     law_ = std::make_unique<BraunForceLaw>(actuator().minimumLengthMm(), rest_mm, braunConstants(values_));
 }

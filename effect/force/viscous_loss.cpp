@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "musclesim/base/units.h"
-#include "musclesim/simulation/simulation.h"
+#include "musclesim/robot/world.h"
 
 namespace musclesim {
 
@@ -35,7 +35,7 @@ ViscousLoss::ViscousLoss(double lengthening_Ns_per_m, double shortening_Ns_per_m
 double ViscousLoss::lossAfter(double rate_mm_per_s, double h_s) const {
   const double damping = rate_mm_per_s > 0 ? lengthening_Ns_per_mm_ : shortening_Ns_per_mm_;
   if (!(h_s > 0) || damping == 0) return damping * rate_mm_per_s;
-  const double stiffness_N_per_mm = stable_mass_g / (h_s * h_s) / simulation().physics().force_per_N;
+  const double stiffness_N_per_mm = stable_mass_g / (h_s * h_s) / world().physics().force_per_N;
   const double kept = std::exp(-h_s * stiffness_N_per_mm / damping);
   return loss_N_ * kept + damping * rate_mm_per_s * (1 - kept);
 }

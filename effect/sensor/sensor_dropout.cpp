@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "musclesim/simulation/simulation.h"
+#include "musclesim/robot/world.h"
 
 namespace musclesim {
 
@@ -21,7 +21,7 @@ EffectInfo SensorDropout::info() {
 }
 
 void SensorDropout::attach(const EffectPlace& place) {
-  seed_ = place.simulation.seed();
+  seed_ = place.world.seed();
   owner_ = "sensor_dropout." + place.component;
   reset();
 }

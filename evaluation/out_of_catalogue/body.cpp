@@ -10,7 +10,7 @@
 #include "laws_by_stage.h"
 #include "musclesim/base/units.h"
 #include "musclesim/robot/robot.h"
-#include "musclesim/simulation/simulation.h"
+#include "musclesim/robot/world.h"
 
 namespace musclesim::out_of_catalogue {
 
@@ -91,8 +91,8 @@ class SwayingBase final : public BodyEffect {
   explicit SwayingBase(const EffectValues& v)
       : tilt_x_deg_(v["tilt_x_deg"]), tilt_z_deg_(v["tilt_z_deg"]), sway_(v["sway"]), frequency_Hz_(v["frequency_Hz"]) {}
   void attach(const EffectPlace& place) override {
-    world_ = place.simulation.world();
-    upright_ = place.simulation.gravityMmPerS2();
+    world_ = place.world;
+    upright_ = place.world.gravityMmPerS2();
     turn(0);
   }
   void apply(const Moment& moment) override { turn(std::max(0.0, moment.clock_s)); }

@@ -6,7 +6,7 @@
 
 #include "../../effect/history.h"
 #include "laws_by_stage.h"
-#include "musclesim/simulation/simulation.h"
+#include "musclesim/robot/world.h"
 
 namespace musclesim::out_of_catalogue {
 
@@ -18,7 +18,7 @@ class WanderingDelay final : public MuscleRatioEffect {
   explicit WanderingDelay(const EffectValues& v) : delay_s_(v["delay_s"]), jitter_s_(v["jitter_ratio"] * v["delay_s"]) {}
   void attach(const EffectPlace& place) override {
     MuscleRatioEffect::attach(place);
-    seed_ = place.simulation.seed() + static_cast<std::uint64_t>(place.muscle);
+    seed_ = place.world.seed() + static_cast<std::uint64_t>(place.muscle);
   }
   void reset() override { history_.clear(); }
 

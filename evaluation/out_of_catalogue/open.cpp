@@ -6,7 +6,7 @@
 
 #include "laws_by_stage.h"
 #include "musclesim/base/units.h"
-#include "musclesim/simulation/simulation.h"
+#include "musclesim/robot/world.h"
 
 namespace musclesim::out_of_catalogue {
 
@@ -72,7 +72,7 @@ class Gusts final : public HandEffect {
   explicit Gusts(const EffectValues& v) : force_N_(v["force_N"]) {}
   void attach(const EffectPlace& place) override {
     HandEffect::attach(place);
-    seed_ = place.simulation.seed();
+    seed_ = place.world.seed();
   }
   void apply(const Moment& moment) override {
     constexpr double interval_s = 0.3;

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "laws_by_stage.h"
-#include "musclesim/simulation/simulation.h"
+#include "musclesim/robot/world.h"
 
 namespace musclesim::out_of_catalogue {
 
@@ -15,7 +15,7 @@ namespace {
 class WanderingBias final : public SensorEffect {
  public:
   explicit WanderingBias(const EffectValues& v) : offset_(v["offset"]) {}
-  void attach(const EffectPlace& place) override { seed_ = place.simulation.seed() + static_cast<std::uint64_t>(place.signal); }
+  void attach(const EffectPlace& place) override { seed_ = place.world.seed() + static_cast<std::uint64_t>(place.signal); }
   double reading(double value, const Moment& moment, long) override {
     constexpr double share = 0.15, interval_s = 2;
     return value + offset_ * (1 + share * wander(seed_, moment.clock_s, interval_s));

@@ -4,25 +4,26 @@
 
 #include "../../robot/ode_vector.h"
 #include "../contacts.h"
-#include "musclesim/simulation/simulation.h"
+#include "musclesim/robot/actuator.h"
+#include "musclesim/robot/world.h"
 
 namespace musclesim {
 
-ChainStepper::ChainStepper(const Simulation& simulation, const Contacts& contacts, const BodyBounds& bounds, bool strict)
-    : simulation_(simulation), contacts_(contacts), bounds_(bounds), strict_(strict) {}
+ChainStepper::ChainStepper(const World& world, const Contacts& contacts, const BodyBounds& bounds, bool strict)
+    : world_(world), contacts_(contacts), bounds_(bounds), strict_(strict) {}
 
 ChainStepper::~ChainStepper() = default;
 
 bool ChainStepper::upToDate() const {
-  return revision_ == simulation_.revision();
+  return revision_ == world_.revision();
 }
 
 void ChainStepper::prepare() {
-  revision_ = simulation_.revision();
-  registered_reduction_ = simulation_.physics().errorReductionPerStep(simulation_.internalStepS());
+  revision_ = world_.revision();
+  registered_reduction_ = world_.errorReduction();
   problem_.reset();
   state_is_current_ = false;
-  reason_ = chain::registerModel(simulation_, model_);
+  reason_ = chain::registerModel(world_, model_);
   if (!reason_.empty()) {
     if (strict_) throw BadParameter("stepper", "chain", "be auto, ode or quick for this robot: " + reason_);
     return;
@@ -58,8 +59,8 @@ void ChainStepper::step(double h_s) {
 }
 
 bool ChainStepper::solve(double h_s) {
-  const dWorldID world = simulation_.world();
-  const PhysicsSettings& physics = simulation_.physics();
+  const dWorldID world = world_;
+  const PhysicsSettings& physics = world_.physics();
   dVector3 gravity;
   dWorldGetGravity(world, gravity);
   chain::StepProblem::Conditions conditions;
@@ -86,11 +87,11 @@ bool ChainStepper::solve(double h_s) {
 }
 
 void ChainStepper::leaveToOde(double h_s) {
-  for (const auto& actuator : simulation_.actuators())
+  for (const auto& actuator : world_.actuators())
     if (!actuator->line()) actuator->applyForces();
-  for (const auto& actuator : simulation_.actuators()) actuator->applyBeadInertia(h_s);
-  if (!dWorldStep(simulation_.world(), h_s)) throw OdeFault("dWorldStep ran out of memory");
-  for (const auto& actuator : simulation_.actuators()) actuator->applyBeadInertia(0);
+  for (const auto& actuator : world_.actuators()) actuator->applyBeadInertia(h_s);
+  if (!dWorldStep(world_, h_s)) throw OdeFault("dWorldStep ran out of memory");
+  for (const auto& actuator : world_.actuators()) actuator->applyBeadInertia(0);
 }
 
 std::optional<TornJoint> ChainStepper::largestGap() const {

@@ -12,7 +12,7 @@
 namespace musclesim {
 
 class Contacts;
-class Simulation;
+class World;
 
 struct ChainStatistics {
   long steps = 0;
@@ -27,7 +27,7 @@ struct ChainStatistics {
 class ChainStepper final : public Stepper {
  public:
   /// `strict`: a robot that it cannot take is an error, not left to dWorldStep.
-  ChainStepper(const Simulation& simulation, const Contacts& contacts, const BodyBounds& bounds, bool strict);
+  ChainStepper(const World& world, const Contacts& contacts, const BodyBounds& bounds, bool strict);
   ~ChainStepper() override;
 
   void prepare() override;
@@ -46,7 +46,7 @@ class ChainStepper final : public Stepper {
   bool solve(double h_s);
   void leaveToOde(double h_s);
 
-  const Simulation& simulation_;
+  const World& world_;
   const Contacts& contacts_;
   BodyBounds bounds_;
   bool strict_;

@@ -5,7 +5,8 @@
 #include <algorithm>
 
 #include "../../robot/ode_vector.h"
-#include "musclesim/simulation/simulation.h"
+#include "musclesim/robot/actuator.h"
+#include "musclesim/robot/world.h"
 
 namespace musclesim::chain {
 
@@ -45,15 +46,15 @@ JointModel registerKnown(const Joint& joint, const BodyState& bodies, std::vecto
   return registerJoint(joint, bodies);
 }
 
-void registerBodies(const Simulation& simulation, Model& model) {
-  for (const auto& body : simulation.bodies()) {
+void registerBodies(const World& world, Model& model) {
+  for (const auto& body : world.bodies()) {
     requirePlainBody(body->id, body->parts.empty() ? "a body" : body->parts.front()->name());
     model.bodies.add(body->id);
     model.places.push_back({-1, 0});
   }
   model.bones.resize(model.places.size());
-  for (std::size_t i = 0; i < simulation.actuators().size(); ++i) {
-    const Actuator& actuator = *simulation.actuators()[i];
+  for (std::size_t i = 0; i < world.actuators().size(); ++i) {
+    const Actuator& actuator = *world.actuators()[i];
     for (std::size_t link = 0; link < actuator.links().size(); ++link)
       for (int end = 0; end < 2; ++end) {
         const dBodyID bead = actuator.links()[link].bead[end];
@@ -98,10 +99,10 @@ Chain registerChain(const Actuator& actuator, const BodyState& bodies, std::vect
 }
 
 /// The joints that belong to no chain.
-void registerSkeleton(const Simulation& simulation, Model& model, std::vector<dJointID>& known) {
+void registerSkeleton(const World& world, Model& model, std::vector<dJointID>& known) {
   std::vector<dJointID> of_chains = known;
   std::sort(of_chains.begin(), of_chains.end());
-  for (const auto& joint : simulation.joints()) {
+  for (const auto& joint : world.joints()) {
     if (std::binary_search(of_chains.begin(), of_chains.end(), joint->id())) continue;
     const Joint::Kind kind = joint->kind();
     if (kind == Joint::Kind::universal || kind == Joint::Kind::hinge2) throw NotTaken{joint->name() + " has two axes"};
@@ -128,18 +129,18 @@ void Model::readBones() {
   }
 }
 
-std::string registerModel(const Simulation& simulation, Model& model) {
+std::string registerModel(const World& world, Model& model) {
   model = Model();
   try {
-    registerBodies(simulation, model);
+    registerBodies(world, model);
     std::vector<dJointID> known;
-    for (const auto& actuator : simulation.actuators())
+    for (const auto& actuator : world.actuators())
       if (!actuator->line()) model.chains.push_back(registerChain(*actuator, model.bodies, known));
-    registerSkeleton(simulation, model, known);
+    registerSkeleton(world, model, known);
     std::sort(known.begin(), known.end());
     for (int body = 0; body < model.bodies.count(); ++body) {
       const auto place = model.placeOf(body);
-      const std::string name = place.chain < 0 ? simulation.bodies()[static_cast<std::size_t>(body)]->parts.front()->name()
+      const std::string name = place.chain < 0 ? world.bodies()[static_cast<std::size_t>(body)]->parts.front()->name()
                                                : "a bead of " + model.chains[static_cast<std::size_t>(place.chain)].actuator->name();
       requireKnownJoints(model.bodies.id(body), name, known);
     }

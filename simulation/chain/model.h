@@ -10,7 +10,7 @@
 #include "musclesim/robot/primitive.h"
 
 namespace musclesim {
-class Simulation;
+class World;
 }
 
 namespace musclesim::chain {
@@ -55,7 +55,7 @@ struct Model {
   void readBones();
 };
 
-/// Registers all that was built in a simulation. Returns why the chain stepper cannot take it, or "" if it can.
-std::string registerModel(const Simulation& simulation, Model& model);
+/// Registers all that was built in a world. Returns why the chain stepper cannot take it, or "" if it can.
+std::string registerModel(const World& world, Model& model);
 
 }  // namespace musclesim::chain

@@ -75,8 +75,8 @@ std::string labelOf(const Joint& joint, const Body& body, const Robot& robot) {
 /// The joints between bones with the axes of the bone that moves; those of muscles are left out.
 std::vector<DrawnFrame> framesOf(Simulation& simulation) {
   std::vector<DrawnFrame> frames;
-  for (const auto& body : simulation.bodies()) {
-    for (const auto& joint : simulation.joints()) {
+  for (const auto& body : simulation.world().bodies()) {
+    for (const auto& joint : simulation.world().joints()) {
       if (dJointGetBody(joint->id(), 0) != body->id) continue;
       if (const auto anchor = anchorOf(*joint))
         frames.push_back({labelOf(*joint, *body, simulation.robot()), poseFrom(*anchor, rotationOf(body->id))});
@@ -121,7 +121,7 @@ Snapshot SnapshotTaker::take(const State& state) {
   Snapshot snapshot;
   snapshot.state = state;
   if (const Controller* controller = simulation_.controller()) snapshot.activity = controller->activity();
-  for (const auto& primitive : simulation_.primitives()) snapshot.parts.push_back(partOf(*primitive));
+  for (const auto& primitive : simulation_.world().primitives()) snapshot.parts.push_back(partOf(*primitive));
   const auto& muscles = simulation_.robot().actuators();
   for (std::size_t i = 0; i < muscles.size(); ++i) snapshot.hoses.push_back(hoseOf(*muscles[i], muscle_colors_[i]));
   snapshot.frames = framesOf(simulation_);

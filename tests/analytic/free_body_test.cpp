@@ -78,7 +78,7 @@ TEST(Momentum, OfTwoBodiesAndTheMuscleBetweenThemDoesNotDrift) {
       sum += mass.mass * velocityOf(body);
       absolute += mass.mass * velocityOf(body).norm();
     };
-    for (const auto& body : simulation.bodies()) add(body->id);
+    for (const auto& body : simulation.world().bodies()) add(body->id);
     for (const Link& link : muscle->links())
       for (const dBodyID bead : link.bead) add(bead);
     exchanged = std::max(exchanged, absolute);

@@ -85,7 +85,7 @@ struct StaticRig {
     const double edge_mm = from_longer ? lengthForMm(loadN() + chainN() + slider_friction_N) + outside_mm
                                        : lengthForMm(loadN() - slider_friction_N) - outside_mm;
     const Vector bottom(0, -std::clamp(edge_mm, minimum_mm + 0.5, maximum_mm - 0.5), 0);
-    simulation.primitives()[0]->place(bottom, Eigen::Matrix3d::Identity());
+    simulation.world().primitives()[0]->place(bottom, Eigen::Matrix3d::Identity());
     muscle.placeStraight(Vector::Zero(), bottom);
     robot.step({pressure_ratio});
 
@@ -127,8 +127,8 @@ struct StaticRig {
       const dReal* v = dBodyGetLinearVel(body);
       sum += mass.mass * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
     };
-    for (const auto& body : simulation.bodies()) add(body->id);
-    for (const auto& actuator : simulation.actuators())
+    for (const auto& body : simulation.world().bodies()) add(body->id);
+    for (const auto& actuator : simulation.world().actuators())
       for (const auto& link : actuator->links())
         for (const dBodyID bead : link.bead) add(bead);
     return sum;

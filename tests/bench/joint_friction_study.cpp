@@ -81,7 +81,7 @@ RigRun runRig(const std::string& friction) {
       for (long k = 0; k < std::lround(rig_hold_s / simulation->stepS()); ++k) {
         simulation->robot().step(Action{pressure});
         simulation->step();
-        length_mm.push_back(simulation->actuators().front()->lengthMm());
+        length_mm.push_back(simulation->world().actuators().front()->lengthMm());
       }
     }
     const double end_mm = length_mm.back();

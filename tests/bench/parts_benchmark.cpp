@@ -41,7 +41,7 @@ BENCHMARK_CAPTURE(wholeStep, line, "muscle.model=line")->Arg(1)->Arg(10)->Arg(30
 void collision(benchmark::State& state) {
   const auto simulation = movingArm(static_cast<int>(state.range(0)));
   Contacts contacts(simulation->world(), simulation->space(), 0);
-  for (auto _ : state) contacts.collide(simulation->revision());
+  for (auto _ : state) contacts.collide(simulation->world().revision());
 }
 BENCHMARK(collision)->Arg(1)->Arg(10)->Arg(30);
 
@@ -125,14 +125,14 @@ void linearSolve(benchmark::State& state) {
   const auto simulation = movingArm(static_cast<int>(state.range(0)));
   const PhysicsSettings& physics = simulation->physics();
   Contacts contacts(simulation->world(), simulation->space(), physics.contact_friction_N * physics.force_per_N);
-  contacts.collide(simulation->revision());
+  contacts.collide(simulation->world().revision());
   chain::Model model;
   chain::registerModel(*simulation, model);
   chain::StepProblem problem(model);
   model.bodies.gather();
   chain::StepProblem::Conditions conditions;
   conditions.h_s = simulation->internalStepS();
-  conditions.gravity = simulation->gravityMmPerS2();
+  conditions.gravity = simulation->world().gravityMmPerS2();
   conditions.force_per_N = physics.force_per_N;
   conditions.friction_force = contacts.frictionLimit();
   conditions.reduction = {0.4, 0.4};

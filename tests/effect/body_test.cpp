@@ -21,7 +21,7 @@ constexpr double weight_N = mass_kg * gravity_m_per_s2;
 /// A bob on a massless rod, hinged at the origin about z; positive angles move it to +x.
 class Pendulum : public Robot {
  public:
-  explicit Pendulum(Simulation& simulation) : Robot(simulation) {
+  explicit Pendulum(World& world) : Robot(world) {
     auto* bob = new Sphere(world(), nullptr, {0, -length_m * mm_per_m, 0}, mass_kg * g_per_kg, 0, 1);
     addAngle("top", bob->attachHinge(nullptr, Vector::Zero(), Vector::UnitZ(), -120, 120));
     setHand(bob);
@@ -315,7 +315,7 @@ TEST(AttachmentOffset, OfARigLeavesItsLoadAtRest) {
 TEST(AttachmentOffset, IsRefusedByRobotsThatDoNotAskForIt) {
   class Plain : public Robot {
    public:
-    explicit Plain(Simulation& simulation) : Robot(simulation) {
+    explicit Plain(World& world) : Robot(world) {
       auto* muscle = new Muscle(world(), space(), {0, 0, 0}, {0, -70, 0}, {0, -140, 0}, {0, -210, 0}, 120, 300);
       muscle->connectStartTo(nullptr);
       addActuator(muscle);

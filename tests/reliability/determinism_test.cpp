@@ -14,7 +14,7 @@ namespace {
 
 /// Every body's place, orientation and velocities, bit for bit.
 void addState(Hash& hash, Simulation& simulation) {
-  for (dBodyID body = nullptr; const auto& primitive : simulation.primitives()) {
+  for (dBodyID body = nullptr; const auto& primitive : simulation.world().primitives()) {
     if (primitive->body().id == body || primitive->body().id == nullptr) continue;
     body = primitive->body().id;
     for (int i = 0; i < 3; ++i)

@@ -47,8 +47,8 @@ TEST(Actuator, ThatThrowsWhileItIsBuiltIsForgotten) {
   Simulation simulation;
   EXPECT_THROW(new BrokenWinch(simulation), BadParameter);
   EXPECT_THROW(new BrokenBone(simulation), BadParameter);
-  EXPECT_TRUE(simulation.actuators().empty());
-  EXPECT_TRUE(simulation.primitives().empty());
+  EXPECT_TRUE(simulation.world().actuators().empty());
+  EXPECT_TRUE(simulation.world().primitives().empty());
 }
 
 TEST(Actuator, ItsEndsAreConnectedOnce) {
@@ -183,8 +183,8 @@ TEST(Actuator, AreOwnedByTheSimulationAndNumbered) {
   Simulation simulation;
   auto *first = hangingMuscle(simulation),
        *second = new Muscle(simulation.world(), simulation.space(), {50, 0, 0}, {50, -70, 0}, {50, -140, 0}, {50, -210, 0}, 120, 300);
-  ASSERT_EQ(simulation.actuators().size(), 2u);
-  EXPECT_EQ(simulation.actuators()[1].get(), second);
+  ASSERT_EQ(simulation.world().actuators().size(), 2u);
+  EXPECT_EQ(simulation.world().actuators()[1].get(), second);
   EXPECT_EQ(first->name(), "muscle_0");
   EXPECT_EQ(second->name(), "muscle_1");
   second->setColor(1, 0.5, 0, "orange");

@@ -39,7 +39,7 @@ TEST(Elbow, ReportsTwoMusclesOneAngleAndTheHand) {
 TEST(Elbow, TheForearmHasItsMassAndItsInertiaAboutTheHinge) {
   Simulation simulation;
   simulation.build("elbow");
-  const Primitive& forearm = *simulation.primitives()[0];
+  const Primitive& forearm = *simulation.world().primitives()[0];
   dMass mass;
   dBodyGetMass(forearm.body().id, &mass);
   EXPECT_NEAR(mass.mass, 600, 1e-9);
@@ -106,7 +106,7 @@ TEST(Elbow, ItsStopsHold) {
     Robot& robot = simulation.build("elbow");
     simulation.start("built", {0, 0});
     for (int i = 0; i < 500; ++i) {
-      dBodyAddTorque(simulation.primitives()[0]->body().id, 0, 0, sign * 4e9);
+      dBodyAddTorque(simulation.world().primitives()[0]->body().id, 0, 0, sign * 4e9);
       simulation.step();
       ASSERT_LT(std::abs(robot.getState().angle_deg[0]), 75);
     }

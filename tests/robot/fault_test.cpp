@@ -30,7 +30,7 @@ SimulationOptions smallArm() {
 }
 
 dBodyID bone(Simulation& simulation, const std::string& name) {
-  for (const auto& primitive : simulation.primitives())
+  for (const auto& primitive : simulation.world().primitives())
     if (primitive->name() == name) return primitive->body().id;
   throw BadParameter("no bone " + name);
 }

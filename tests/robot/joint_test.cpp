@@ -231,7 +231,7 @@ TEST(Joint, EveryWayToAttachRefusesNumbersThatCannotBe) {
   const Limits fine{-10, 10};
   Pair pair;
   Primitive *a = pair.body, *b = pair.base;
-  const auto joints_before = pair.simulation.joints().size();
+  const auto joints_before = pair.simulation.world().joints().size();
   for (const double wrong : {nan, inf, -inf}) {
     const Vector v(0, wrong, 0);
     EXPECT_THROW(a->attachBall(b, v), BadParameter);
@@ -266,7 +266,7 @@ TEST(Joint, EveryWayToAttachRefusesNumbersThatCannotBe) {
   EXPECT_THROW(a->attachHinge(nullptr, o, x, z), BadParameter) << "two axes need two bodies";
   EXPECT_THROW(a->attachUniversal(b, o, x, Vector(1, 0, 1)), BadParameter) << "axes that are not perpendicular";
   EXPECT_THROW(a->attachBall(b, o, x, Vector(1, 0, 1), fine, fine, fine), BadParameter);
-  EXPECT_EQ(pair.simulation.joints().size(), joints_before);
+  EXPECT_EQ(pair.simulation.world().joints().size(), joints_before);
   const auto message = messageOf<BadParameter>([&] { a->attachHinge(b, o, z, 10, -10); });
   EXPECT_TRUE(contains(message, "10 .. -10 deg"));
 }

@@ -38,7 +38,7 @@ TEST(LineMuscle, CarriesALoadWhereItsForceEqualsTheWeight) {
   simulation.build("rig");
   simulation.start("settled", {0.6});
   simulation.advance(3);
-  const Actuator& muscle = *simulation.actuators().front();
+  const Actuator& muscle = *simulation.world().actuators().front();
   EXPECT_NEAR(muscle.tensionN(), 3 * 9.81, 0.05);
   EXPECT_NEAR(muscle.calculateForce(0.6, muscle.lengthMm()), muscle.tensionN(), 1e-12);
 }
@@ -82,7 +82,7 @@ TEST(LineMuscle, StopsBeyondItsLongestLength) {
   simulation.start("built", {0.0});
   simulation.advance(10);
   // F(0, l) + 10 N/mm (l - 300 mm) carries 490 N.
-  const Actuator& muscle = *simulation.actuators().front();
+  const Actuator& muscle = *simulation.world().actuators().front();
   EXPECT_NEAR(muscle.tensionN() + 10 * (muscle.lengthMm() - 300), 50 * 9.81, 2);
 }
 

@@ -76,7 +76,7 @@ TEST(LinearActuator, RefusesNumbersThatAreNotFiniteOrNegative) {
     EXPECT_THROW(new LinearActuator(simulation.world(), simulation.space(), {0, 0, 0}, {0, 0, 100}, 50, wrong), BadParameter);
   }
   EXPECT_THROW(new LinearActuator(simulation.world(), simulation.space(), {0, 0, 0}, {0, 0, 100}, -1, 140), BadParameter);
-  EXPECT_TRUE(simulation.actuators().empty());
+  EXPECT_TRUE(simulation.world().actuators().empty());
 }
 
 }  // namespace

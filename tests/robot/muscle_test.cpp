@@ -160,8 +160,8 @@ TEST(Muscle, StartLengthOutsideItsRangeNamesAllNumbers) {
   const auto longer = messageOf<BadParameter>([&] { straight(simulation, {0, -1, 0}, 301, 120, 300); });
   EXPECT_TRUE(contains(longer, "301 mm"));
   EXPECT_TRUE(contains(longer, "120 .. 300 mm"));
-  EXPECT_TRUE(simulation.actuators().empty()) << "a muscle that failed leaves nothing behind";
-  EXPECT_EQ(simulation.joints().size(), 0u);
+  EXPECT_TRUE(simulation.world().actuators().empty()) << "a muscle that failed leaves nothing behind";
+  EXPECT_EQ(simulation.world().joints().size(), 0u);
 }
 
 TEST(Muscle, TheGivenMinimumCountsForTheStartNotTheShortenedOne) {
@@ -196,7 +196,7 @@ TEST(Muscle, RefusesNumbersThatAreNotFiniteAndLengthsThatCannotBe) {
   EXPECT_THROW(straight(simulation, {0, -1, 0}, 200, -120, 300), BadParameter);
   EXPECT_THROW(straight(simulation, {0, -1, 0}, 200, 300, 120), BadParameter);
   EXPECT_THROW(straight(simulation, {0, -1, 0}, 210, 210, 210), BadParameter);
-  EXPECT_TRUE(simulation.actuators().empty());
+  EXPECT_TRUE(simulation.world().actuators().empty());
 }
 
 TEST(Muscle, RefusesAWorldThatIsNoSimulations) {

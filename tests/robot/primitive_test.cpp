@@ -160,8 +160,8 @@ TEST_F(PrimitiveTest, EveryConstructorRefusesNumbersThatCannotBe) {
     }
     EXPECT_THROW(make({0, 0, 0}, 0, 0, {1, 1, 1}), BadParameter) << "neither mass nor density";
   }
-  EXPECT_TRUE(simulation.primitives().empty()) << "a primitive that failed leaves nothing behind";
-  EXPECT_TRUE(simulation.bodies().empty());
+  EXPECT_TRUE(simulation.world().primitives().empty()) << "a primitive that failed leaves nothing behind";
+  EXPECT_TRUE(simulation.world().bodies().empty());
   const auto message = messageOf<BadParameter>([&] { makers[0]({0, 0, 0}, -3, 0, {1, 1, 1}); });
   EXPECT_EQ(message, "mass of a primitive = -3: must be positive and finite");
 }
@@ -192,7 +192,7 @@ TEST_F(Composite, LiesAtTheCommonCentreOfMassAndKeepsItsParentsOrientation) {
   a->rotate(25, {0, 1, 1});
   a->compositeWithPrimitive(b);
   EXPECT_EQ(&a->body(), &b->body());
-  EXPECT_EQ(simulation.bodies().size(), 1u);
+  EXPECT_EQ(simulation.world().bodies().size(), 1u);
   EXPECT_LT((a->getPosition() - Vector(30, 0, 0)).norm(), 1e-12);
   EXPECT_EQ(b->getPosition(), a->getPosition());
   EXPECT_TRUE(a->getRotation().isApprox(turn(25, {0, 1, 1}), 1e-12));
@@ -283,7 +283,7 @@ TEST_F(Composite, ExactInertiaDoesNotDependOnTheOrderOfComposing) {
 }
 
 TEST_F(Composite, SummedInertiaIsThePlainSumInThePartsOwnAxes) {
-  simulation.setCompositeInertia("summed");
+  simulation.world().setCompositeInertia("summed");
   auto* a = box({0, 0, 0}, 12, 10, 20, 30);
   auto* b = box({40, 10, 0}, 12, 30, 20, 10);
   b->rotate(90, {0, 1, 0});
@@ -325,7 +325,7 @@ TEST_F(Composite, IsRefusedOnceThereIsAJoint) {
   auto* muscle = new Muscle(simulation.world(), simulation.space(), {0, 0, 0}, {0, -70, 0}, {0, -140, 0}, {0, -200, 0}, 120, 300);
   muscle->connectEndTo(pulled);
   EXPECT_THROW(c->compositeWithPrimitive(pulled), BadParameter);
-  EXPECT_EQ(simulation.bodies().size(), 5u) << "nothing was merged";
+  EXPECT_EQ(simulation.world().bodies().size(), 5u) << "nothing was merged";
 }
 
 TEST_F(Composite, RotateIsRefusedOnceThereIsAJoint) {

@@ -26,14 +26,14 @@ TEST(Rig, HasOneMuscleAndNoJointAngles) {
   EXPECT_EQ(robot.actuators()[0]->minimumLengthMm(), 120);
   EXPECT_EQ(robot.actuators()[0]->maximumLengthMm(), 300);
   EXPECT_EQ(robot.actuators()[0]->links().size(), 8u);
-  ASSERT_EQ(simulation.primitives().size(), 1u);
-  EXPECT_EQ(simulation.primitives()[0]->massG(), 2000);
+  ASSERT_EQ(simulation.world().primitives().size(), 1u);
+  EXPECT_EQ(simulation.world().primitives()[0]->massG(), 2000);
 }
 
 TEST(Rig, ItsNumbersAreParameters) {
   Simulation simulation(withParameters({{"rig.load_kg", 0.5}, {"rig.minimum_length_mm", 90}, {"rig.maximum_length_mm", 200}}));
   Robot& robot = simulation.build("rig");
-  EXPECT_EQ(simulation.primitives()[0]->massG(), 500);
+  EXPECT_EQ(simulation.world().primitives()[0]->massG(), 500);
   EXPECT_EQ(robot.actuators()[0]->links().size(), 6u);
   EXPECT_NEAR(robot.getState().length_mm[0], 145, 1e-9) << "built half way between";
 }
@@ -59,7 +59,7 @@ TEST(Rig, SettlesWhereTheForceCarriesTheLoadAndHalfTheChain) {
     const State state = robot.getState();
     EXPECT_NEAR(state.force_N[0], (2.0 + 0.08) * 9.81, 1e-9);
     EXPECT_EQ(state.pressure[0], pressure);
-    EXPECT_NEAR(simulation.primitives()[0]->getPosition().y(), -state.length_mm[0], 1e-9);
+    EXPECT_NEAR(simulation.world().primitives()[0]->getPosition().y(), -state.length_mm[0], 1e-9);
   }
 }
 
@@ -105,10 +105,10 @@ TEST(Rig, TheLoadMovesVerticallyOnly) {
   simulation.start("settled", {0.2});
   robot.step({0.9});
   for (int i = 0; i < 20; ++i) {
-    dBodyAddForce(simulation.primitives()[0]->body().id, 1e6, 0, 1e6);
+    dBodyAddForce(simulation.world().primitives()[0]->body().id, 1e6, 0, 1e6);
     simulation.step();
   }
-  const Vector load = simulation.primitives()[0]->getPosition();
+  const Vector load = simulation.world().primitives()[0]->getPosition();
   EXPECT_NEAR(load.x(), 0, 1e-3);
   EXPECT_NEAR(load.z(), 0, 1e-3);
   EXPECT_GT(load.y(), -240);

@@ -9,6 +9,7 @@
 
 #include "musclesim/base/error.h"
 #include "musclesim/robot/muscle.h"
+#include "musclesim/robot/robot_registry.h"
 #include "musclesim/simulation/simulation.h"
 #include "support/support.h"
 
@@ -20,7 +21,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 /// Two muscles that carry one bar.
 class Swing : public Robot {
  public:
-  explicit Swing(Simulation& simulation) : Robot(simulation) {
+  explicit Swing(World& world) : Robot(world) {
     auto* bar = new Box(world(), space(), {0, -200, 0}, parameter("swing.bar_g", 500, "g", 1, 1e4, "mass of the bar"), 0, 120, 10, 10);
     addAngle("bar", bar->attachHinge(nullptr, {0, -200, 0}, Vector::UnitZ(), -30, 30));
     for (const double x : {-40.0, 40.0}) {
@@ -50,9 +51,9 @@ std::vector<double> shortRun(StepperKind stepper = StepperKind::automatic) {
 }
 
 TEST(RobotRegistry, KnowsTheThreeRobotsAndAUsers) {
-  Robot::registerRobot<Swing>("swing", "a bar on two muscles");
+  registerRobot<Swing>("swing", "a bar on two muscles");
   std::vector<std::string> names;
-  for (const auto& [name, description] : Robot::registered()) {
+  for (const auto& [name, description] : registeredRobots()) {
     names.push_back(name);
     EXPECT_FALSE(description.empty()) << name;
   }

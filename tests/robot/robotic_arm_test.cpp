@@ -20,13 +20,13 @@ SimulationOptions with(const std::string& name, const Parameter::Value& value) {
 }
 
 Primitive* bone(const Simulation& simulation, const std::string& name) {
-  for (const auto& primitive : simulation.primitives())
+  for (const auto& primitive : simulation.world().primitives())
     if (primitive->name() == name) return primitive.get();
   throw BadParameter("no bone " + name);
 }
 
 const Joint* joint(const Simulation& simulation, const std::string& name) {
-  for (const auto& candidate : simulation.joints())
+  for (const auto& candidate : simulation.world().joints())
     if (candidate->name() == name) return candidate.get();
   throw BadParameter("no joint " + name);
 }
@@ -114,10 +114,10 @@ TEST(RoboticArm, ReportsTenMusclesTwoAnglesAndTheHand) {
 TEST(RoboticArm, HasElevenBodiesOfWhichFourMove) {
   Simulation simulation;
   simulation.build("arm");
-  EXPECT_EQ(simulation.primitives().size(), 33u);
-  EXPECT_EQ(simulation.bodies().size(), 11u);
+  EXPECT_EQ(simulation.world().primitives().size(), 33u);
+  EXPECT_EQ(simulation.world().bodies().size(), 11u);
   int fixed_count = 0;
-  for (const auto& joint : simulation.joints()) fixed_count += joint->kind() == Joint::Kind::fixed;
+  for (const auto& joint : simulation.world().joints()) fixed_count += joint->kind() == Joint::Kind::fixed;
   EXPECT_EQ(fixed_count, 7);
 }
 

@@ -19,7 +19,7 @@ std::unique_ptr<Simulation> buildWithLines(const std::string& robot) {
   options.parameters.setFromText("physics.constraint_force_mixing=1e-15", "test");  // hard joints
   auto simulation = std::make_unique<Simulation>(std::move(options));
   simulation->build(robot);
-  for (const auto& joint : simulation->joints()) {
+  for (const auto& joint : simulation->world().joints()) {
     if (joint->kind() != Joint::Kind::hinge) continue;
     dJointSetHingeParam(joint->id(), dParamLoStop, -dInfinity);
     dJointSetHingeParam(joint->id(), dParamHiStop, dInfinity);
@@ -40,13 +40,13 @@ std::vector<double> responses(const std::string& robot, std::size_t pushed) {
   constexpr double force = 1e12, h_s = 1e-3;  // far above what closes the gaps left by rounding
   const auto simulation = buildWithLines(robot);
   dWorldSetGravity(simulation->world(), 0, 0, 0);
-  for (const auto& push : simulation->actuators()[pushed]->line()->pushes()) {
+  for (const auto& push : simulation->world().actuators()[pushed]->line()->pushes()) {
     const Vector f = force * push.force, t = force * push.torque;
     dBodyAddForce(push.body, f.x(), f.y(), f.z());
     dBodyAddTorque(push.body, t.x(), t.y(), t.z());
   }
   std::vector<Pushes> lines;
-  for (const auto& actuator : simulation->actuators()) lines.push_back(actuator->line()->pushes());
+  for (const auto& actuator : simulation->world().actuators()) lines.push_back(actuator->line()->pushes());
   dWorldStep(simulation->world(), h_s);
   std::vector<double> speeds;
   for (const Pushes& line : lines) speeds.push_back(speedOf(line) / (force * h_s));
@@ -56,12 +56,12 @@ std::vector<double> responses(const std::string& robot, std::size_t pushed) {
 TEST(BoneMobility, IsWhatDWorldStepDoesWithAForce) {
   for (const char* robot : {"arm", "elbow", "rig", "wrist"}) {
     const auto simulation = buildWithLines(robot);
-    const std::size_t count = simulation->actuators().size();
-    const BoneMobility mobility(simulation->joints(), {});
+    const std::size_t count = simulation->world().actuators().size();
+    const BoneMobility mobility(simulation->world().joints(), {});
     for (std::size_t a = 0; a < count; ++a) {
-      const Pushes pushed = simulation->actuators()[a]->line()->pushes();
+      const Pushes pushed = simulation->world().actuators()[a]->line()->pushes();
       std::vector<double> expected;
-      for (const auto& actuator : simulation->actuators()) expected.push_back(mobility.between(actuator->line()->pushes(), pushed));
+      for (const auto& actuator : simulation->world().actuators()) expected.push_back(mobility.between(actuator->line()->pushes(), pushed));
       const std::vector<double> measured = responses(robot, a);
       const double scale = std::abs(expected[a]);
       EXPECT_GT(scale, 0) << robot;
@@ -72,8 +72,8 @@ TEST(BoneMobility, IsWhatDWorldStepDoesWithAForce) {
 
 TEST(BoneMobility, BodiesWithoutJointsMoveFreely) {
   const auto simulation = buildWithLines("arm");
-  const BoneMobility held(simulation->joints(), {}), loose({}, {});
-  for (const auto& actuator : simulation->actuators()) {
+  const BoneMobility held(simulation->world().joints(), {}), loose({}, {});
+  for (const auto& actuator : simulation->world().actuators()) {
     const Pushes line = actuator->line()->pushes();
     EXPECT_GT(held.between(line, line), 0);
     EXPECT_LT(held.between(line, line), loose.between(line, line));
@@ -83,10 +83,10 @@ TEST(BoneMobility, BodiesWithoutJointsMoveFreely) {
 TEST(BoneMobility, LeavesOutBodiesAndTheirJoints) {
   const auto simulation = buildWithLines("elbow");
   std::vector<dBodyID> bodies;
-  for (const auto& body : simulation->bodies()) bodies.push_back(body->id);
+  for (const auto& body : simulation->world().bodies()) bodies.push_back(body->id);
   std::sort(bodies.begin(), bodies.end());
-  const BoneMobility without(simulation->joints(), bodies), loose({}, {});
-  const Pushes line = simulation->actuators().front()->line()->pushes();
+  const BoneMobility without(simulation->world().joints(), bodies), loose({}, {});
+  const Pushes line = simulation->world().actuators().front()->line()->pushes();
   EXPECT_EQ(without.between(line, line), loose.between(line, line));
 }
 

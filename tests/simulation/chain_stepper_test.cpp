@@ -130,8 +130,8 @@ TEST(ChainStepper, TakesOtherSkeletonsContactsAndForcesLikeDWorldStep) {
   for (int i = 0; i < 400; ++i) {
     copyState(ode, chain);
     for (Simulation* simulation : {&ode, &chain}) {
-      dBodyAddForce(simulation->bodies()[1]->id, 1e4, -2e4, 5e3);
-      dBodyAddTorque(simulation->bodies()[0]->id, 1e5, 0, -3e5);
+      dBodyAddForce(simulation->world().bodies()[1]->id, 1e4, -2e4, 5e3);
+      dBodyAddTorque(simulation->world().bodies()[0]->id, 1e5, 0, -3e5);
       simulation->step();
     }
     most_contacts = std::max(most_contacts, ode.contactCount());
@@ -150,15 +150,15 @@ TEST(ChainStepper, TakesWhatHappensToABodyAtRestLikeDWorldStep) {
   Simulation chain(options);
   for (Simulation* simulation : {&ode, &chain}) {
     for (const double x_mm : {0.0, 300.0}) (new Box(simulation->world(), simulation->space(), {x_mm, 0, 0}, 100, 0, 10, 20, 30))->fix();
-    simulation->primitives()[1]->fix();  // twice
+    simulation->world().primitives()[1]->fix();  // twice
   }
   for (int step = 0; step < 200; ++step) {
     for (const Simulation* simulation : {&ode, &chain}) {
-      const dBodyID body = simulation->bodies()[0]->id;
+      const dBodyID body = simulation->world().bodies()[0]->id;
       dMass heavy;
       dMassSetSphereTotal(&heavy, 500, 20);
       if (step == 60) dBodyAddForce(body, 1e9, 0, -1e9);
-      if (step >= 60 && step < 80) dBodyAddForce(simulation->bodies()[1]->id, 0, 1e9, 0);
+      if (step >= 60 && step < 80) dBodyAddForce(simulation->world().bodies()[1]->id, 0, 1e9, 0);
       if (step == 100) dBodySetAngularVel(body, 0, 1e-3, 0);
       if (step == 140) dBodySetMass(body, &heavy);
       if (step == 180) dBodySetPosition(body, 0, 1e-3, 0);
@@ -186,7 +186,7 @@ TEST(ChainStepper, TakesEqualStopsAndChangedMotorsLikeDWorldStep) {
       const dJointID hinge = box->attachHinge(nullptr, {x_mm, 30, 0}, {0, 0, 1}, -limit_deg, limit_deg)->id();
       dJointSetHingeParam(hinge, dParamFMax, 1e5);
       dJointSetHingeParam(hinge, dParamVel, 1);
-      dBodySetAngularVel(simulation->bodies()[static_cast<std::size_t>(i)]->id, 0, 0, i == 0 ? 5 : -5);
+      dBodySetAngularVel(simulation->world().bodies()[static_cast<std::size_t>(i)]->id, 0, 0, i == 0 ? 5 : -5);
       motors.push_back(hinge);
     }
   for (int step = 0; step < 200; ++step) {
@@ -211,7 +211,7 @@ TEST(ChainStepper, TakesBodiesPutTogetherLaterLikeDWorldStep) {
   for (Simulation* simulation : {&ode, &chain}) {
     for (const double x_mm : {0.0, 40.0, 300.0}) new Box(simulation->world(), simulation->space(), {x_mm, -491, 0}, 100, 0, 30, 20, 30);
     simulation->step();
-    simulation->primitives()[0]->compositeWithPrimitive(simulation->primitives()[1].get());
+    simulation->world().primitives()[0]->compositeWithPrimitive(simulation->world().primitives()[1].get());
     new Box(simulation->world(), simulation->space(), {10, -472, 5}, 300, 0, 30, 20, 30);
   }
   int most_contacts = 0;
@@ -281,7 +281,7 @@ TEST(ChainStepper, LeavesAStepToDWorldStepWhereItCannotSolveIt) {
 
 TEST(ChainStepper, NamesTheBodyThatEscapesAndKeepsTheWorld) {
   const auto simulation = makeSimulation({.robot = "elbow"}, StepperKind::automatic);
-  const dBodyID forearm = simulation->bodies()[0]->id;
+  const dBodyID forearm = simulation->world().bodies()[0]->id;
   const Vector before = positionOf(forearm);
   dBodySetLinearVel(forearm, std::nan(""), 0, 0);
   EXPECT_TRUE(contains(messageOf<Diverged>([&] { simulation->step(); }), "forearm"));

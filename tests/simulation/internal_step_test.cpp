@@ -24,8 +24,9 @@ std::unique_ptr<Simulation> build(const std::string& robot, const std::vector<st
 TEST(InternalStep, FollowsFromTensionAndBeads) {
   const auto normal = build("rig", {}), heavy = build("rig", {"muscle.bead_mass_g=40"});
   // Four times the mass (and inertia): half the rate of the sway, twice the step.
-  EXPECT_NEAR(normal->actuators().front()->fastestSwayRadPerS() / heavy->actuators().front()->fastestSwayRadPerS(), 2, 1e-9);
-  const double longest_s = 0.45 * 2 / normal->actuators().front()->fastestSwayRadPerS();
+  EXPECT_NEAR(normal->world().actuators().front()->fastestSwayRadPerS() / heavy->world().actuators().front()->fastestSwayRadPerS(), 2,
+              1e-9);
+  const double longest_s = 0.45 * 2 / normal->world().actuators().front()->fastestSwayRadPerS();
   EXPECT_LE(normal->internalStepS(), longest_s);
   EXPECT_GT(normal->stepS() / (normal->substeps() - 1), longest_s);
 }
@@ -35,8 +36,8 @@ TEST(InternalStep, SwayHasTheRateOfNeighbouringLinks) {
   const auto rig = build("rig", {});
   const double link = 300.0 / 8, d = link - 15;
   const double at_full_length = std::sqrt(96.1e6 * link / (10 * d * d / 2 + 2 * 0.4 * 10 * 7.5 * 7.5));
-  EXPECT_GE(rig->actuators().front()->fastestSwayRadPerS(), at_full_length * (1 - 1e-3));
-  EXPECT_LE(rig->actuators().front()->fastestSwayRadPerS(), 1.5 * at_full_length);
+  EXPECT_GE(rig->world().actuators().front()->fastestSwayRadPerS(), at_full_length * (1 - 1e-3));
+  EXPECT_LE(rig->world().actuators().front()->fastestSwayRadPerS(), 1.5 * at_full_length);
 }
 
 TEST(InternalStep, OriginalPhysicsHasOne) {
@@ -47,14 +48,14 @@ TEST(InternalStep, ErrorReductionOfJointsFollowsTheStep) {
   const auto rig = build("rig", {}, PhysicsKind::si, StepperKind::ode);
   const double expected = 500 * rig->internalStepS();
   EXPECT_NEAR(dWorldGetERP(rig->world()), expected, 1e-12);
-  EXPECT_NEAR(dJointGetBallParam(rig->actuators().front()->endJoint()->id(), dParamERP), expected, 1e-12);
+  EXPECT_NEAR(dJointGetBallParam(rig->world().actuators().front()->endJoint()->id(), dParamERP), expected, 1e-12);
 }
 
 TEST(InternalStep, StopsKeepTheirComplianceWhateverTheStep) {
   // ODE's spring and damper: k = ERP / (h CFM), d = (1 - ERP) / CFM.
   for (const char* longest : {"physics.longest_internal_step_s=1e-3", "physics.longest_internal_step_s=1e-4"}) {
     const auto rig = build("rig", {longest}, PhysicsKind::si, StepperKind::ode);
-    const dJointID hinge = rig->actuators().front()->hinges().front()->id();
+    const dJointID hinge = rig->world().actuators().front()->hinges().front()->id();
     const double erp = dJointGetHingeParam(hinge, dParamStopERP), cfm = dJointGetHingeParam(hinge, dParamStopCFM);
     const double stiffness_Nm_per_rad = erp / (rig->internalStepS() * cfm) / 1e9;
     EXPECT_NEAR(stiffness_Nm_per_rad, 1 / 0.03, 1e-6);
@@ -65,7 +66,7 @@ TEST(InternalStep, StopsKeepTheirComplianceWhateverTheStep) {
 /// The bead's inertia only matters where the chain turns: a short step and a long one end at the same place.
 TEST(InternalStep, AdditionalInertiaVanishesWithTheStep) {
   const auto rig = build("rig", {});
-  const Actuator& muscle = *rig->actuators().front();
+  const Actuator& muscle = *rig->world().actuators().front();
   rig->robot().step({1.0});
   const double increase = muscle.beadInertiaIncrease(1e-3);
   EXPECT_NEAR(increase, 0.25 * 1e-6 * muscle.tensionN() * 1e6 * muscle.lengthMm() / (2 * 8), 1e-9 * increase);
@@ -110,10 +111,10 @@ TEST(ViscousFriction, HasNoStiction) {
     const auto rig = build("rig", {"rig.load_kg=2", viscous ? "muscle.joint_friction=viscous" : "muscle.joint_friction=coulomb"});
     rig->start("settled", {0.5});
     rig->advance(3);
-    const double before = rig->actuators().front()->lengthMm();
+    const double before = rig->world().actuators().front()->lengthMm();
     rig->robot().step({0.505});
     rig->advance(3);
-    moved_mm[viscous] = std::abs(rig->actuators().front()->lengthMm() - before);
+    moved_mm[viscous] = std::abs(rig->world().actuators().front()->lengthMm() - before);
   }
   EXPECT_LT(moved_mm[0], 0.05);
   EXPECT_GT(moved_mm[1], 0.2);

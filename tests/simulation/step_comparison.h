@@ -17,8 +17,8 @@ namespace musclesim {
 /// All bodies of a simulation: bones, then beads.
 inline std::vector<dBodyID> allBodies(const Simulation& simulation) {
   std::vector<dBodyID> bodies;
-  for (const auto& body : simulation.bodies()) bodies.push_back(body->id);
-  for (const auto& actuator : simulation.actuators())
+  for (const auto& body : simulation.world().bodies()) bodies.push_back(body->id);
+  for (const auto& actuator : simulation.world().actuators())
     for (const Link& link : actuator->links())
       for (const dBodyID bead : link.bead) bodies.push_back(bead);
   return bodies;

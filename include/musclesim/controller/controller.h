@@ -54,6 +54,8 @@ class Controller {
   static std::string description(const std::string& name);
   /// The controller of the calling thread's current simulation, as in the paper's run loop. Throws BadParameter if there is none.
   static Controller* getActiveController();
+  /// The simulation says here which controller is the active one of its thread; null: none.
+  static void setActiveController(Controller* controller);
 };
 
 }  // namespace musclesim

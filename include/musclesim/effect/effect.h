@@ -18,7 +18,8 @@ namespace musclesim {
 class Actuator;
 class Primitive;
 class Robot;
-class Simulation;
+class LengthRate;
+class World;
 
 enum class Stage { command, pressure, force, body, sensor };
 std::string nameOf(Stage stage);
@@ -57,16 +58,17 @@ struct Moment {
   double h_s = 0;      ///< length of the step that begins now; 0: a look at the present, nothing moves on
 };
 
-/// Where one object of an effect acts. References are valid as long as the simulation.
+/// Where one object of an effect acts. References and pointers are valid as long as the simulation.
 struct EffectPlace {
-  Simulation& simulation;
+  World& world;
   Robot& robot;
   ComponentKind kind;
-  int muscle, other_muscle;  ///< numbers in the robot's order; -1: none
-  std::string joint;         ///< name in angle_<joint>_deg
-  int signal;                ///< number in Robot::signalNames(); -1: none
-  std::string component;     ///< of this place, for messages
-  bool one_of_all;           ///< the effect was asked for on "all"
+  int muscle, other_muscle;                 ///< numbers in the robot's order; -1: none
+  std::string joint;                        ///< name in angle_<joint>_deg
+  int signal;                               ///< number in Robot::signalNames(); -1: none
+  std::string component;                    ///< of this place, for messages
+  bool one_of_all;                          ///< the effect was asked for on "all"
+  const LengthRate* length_rate = nullptr;  ///< of the muscle; null where there is none
 };
 
 class Effect {
@@ -106,8 +108,8 @@ class MuscleRatioEffect : public RatioEffect {
   double lengthRateMmPerS() const;
 
  private:
-  Simulation* simulation_ = nullptr;
   const Actuator* actuator_ = nullptr;
+  const LengthRate* length_rate_ = nullptr;
   std::size_t muscle_ = 0;
 };
 
@@ -146,10 +148,10 @@ class ForceEffect : public Effect {
 
  protected:
   const Actuator& actuator() const { return *actuator_; }
-  Simulation& simulation() const { return *simulation_; }
+  World& world() const { return *world_; }
 
  private:
-  Simulation* simulation_ = nullptr;
+  World* world_ = nullptr;
   const Actuator* actuator_ = nullptr;
 };
 

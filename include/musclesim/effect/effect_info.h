@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "musclesim/effect/effect.h"
-#include "musclesim/robot/actuator.h"
+#include "musclesim/robot/robot_effects.h"
 
 namespace musclesim {
 
@@ -23,10 +23,10 @@ struct EffectInfo {
   std::string source;
   std::vector<EffectParameter> parameters;
   std::function<std::unique_ptr<Effect>(const EffectValues&)> make;
-  /// Whether effectCatalogue() lists the effect, so that `musclesim effects` shows it and a diagnosis looks for it.
-  bool listed = true;
   /// Given: how far beside its place the robot builds an end of the muscle, along the lever arm and upward.
   std::function<Eigen::Vector2d(const EffectValues&, MuscleEnd)> mount_offset_mm = {};
+  /// Whether effectCatalogue() lists the effect, so that `musclesim effects` shows it and a diagnosis looks for it.
+  bool listed = true;
 };
 
 }  // namespace musclesim

@@ -1,6 +1,6 @@
 /// Actuators pull between two primitives: a chain of links, each two beads on a slider, neighbouring links joined by hinges.
 ///
-/// Created with `new` as in the paper and owned by the simulation whose world they are built in; do not delete them.
+/// Created with `new` as in the paper and owned by the world in which they are built; do not delete them.
 #pragma once
 
 #include <ode/ode.h>
@@ -12,31 +12,14 @@
 #include "musclesim/base/color.h"
 #include "musclesim/robot/force_law.h"
 #include "musclesim/robot/joint.h"
+#include "musclesim/robot/muscle_settings.h"
 #include "musclesim/robot/state.h"
+#include "musclesim/robot/world.h"
 
 namespace musclesim {
 
 class LineOfPull;
 class Primitive;
-class Simulation;
-
-/// A muscle's ends in the order in which it is built.
-enum class MuscleEnd { start, end };
-
-/// Numbers of all muscles, read from the parameters "muscle.*".
-struct MuscleSettings {
-  explicit MuscleSettings(Parameters& parameters);
-  double bead_radius_mm;  ///< a link is never shorter than two radii
-  double bead_mass_g;
-  double slider_friction_N;  ///< dry friction of each slider
-  double hinge_friction_Nm;  ///< dry friction of each hinge
-  double hinge_limit_deg;    ///< stops of each hinge at full length; they close in proportion to the length ratio
-  double hinge_bounce_ratio;
-  bool viscous;                          ///< joint friction grows with the speed instead of being constant (dry)
-  double slider_viscous_speed_mm_per_s;  ///< viscous friction equals the dry one's force at this speed
-  double hinge_viscous_speed_rad_per_s;
-  bool line;  ///< massless straight muscles instead of chains of beads
-};
 
 /// One link: the bead at its start, the bead at its end and the slider between them (position 0 as built, positive when shorter).
 struct Link {
@@ -53,11 +36,9 @@ struct Link {
 ///
 /// With the parameter muscle.model = line there are no links: the tension acts along the straight line between the ends, or along its via
 /// points (LineOfPull), and is never negative. l is the length of that line. Such a muscle has no mass and touches nothing.
-class Actuator {
+class Actuator : public WorldPart {
  public:
-  virtual ~Actuator();
-  Actuator(const Actuator&) = delete;
-  Actuator& operator=(const Actuator&) = delete;
+  ~Actuator() override;
 
   /// Ball joint between the chain's first or last point and a primitive (null: the environment).
   /// Throws BadParameter if that end is already connected.
@@ -79,9 +60,10 @@ class Actuator {
   void setColor(double red, double green, double blue, const std::string& name = "");
   void setName(const std::string& name);
 
-  double command() const { return command_ratio_; }
-  double pressure() const { return pressure_ratio_; }
-  double tensionN() const { return tension_N_; }
+  // The muscle's entry in World::values().
+  double command() const { return world_.values().command_ratio[worldIndex()]; }
+  double pressure() const { return world_.values().pressure_ratio[worldIndex()]; }
+  double tensionN() const { return world_.values().tension_N[worldIndex()]; }
   double lengthMm() const;
   /// (l - l_min) / (l_max - l_min); the shortest length is link count * 2 bead radii for chains of several links.
   double lengthRatio() const;
@@ -109,11 +91,8 @@ class Actuator {
   /// than the links' beads or not finite.
   void placeStraight(const Vector& start_mm, const Vector& end_mm);
 
-  /// Pressure stage: the pressure that is now in the muscle, fraction of full scale.
-  void takePressure(double pressure_ratio) { pressure_ratio_ = pressure_ratio; }
-  /// Force stage: tension from pressure and length at present; where effects act on it, the tension that they make of it.
-  void updateTension();
-  void takeTension(double tension_N) { tension_N_ = tension_N; }
+  /// Tension at the present length without effects, N: calculateForce, but a line muscle never pushes.
+  double cleanTensionN(double pressure_ratio) const;
   /// Hands the tension to the sliders and sets the hinges' stops, for ODE's steppers; a line pulls at its ends.
   void applyForces();
   /// Geometric stiffness as inertia: what every bead's moment of inertia gains in a step h under the present tension F, in g mm^2,
@@ -136,14 +115,15 @@ class Actuator {
            double maximum_length_mm);
 
  private:
+  void takeCleanTension();
   double beadInertia() const;
   void setViscousMotors();
   void setFriction(dJointID joint, double force, double speed) const;
   void buildLinks(dSpaceID beads, const std::vector<Vector>& points);
-  void requireSameSimulation(const Primitive* primitive, const std::string& which) const;
+  void requireSameWorld(const Primitive* primitive, const std::string& which) const;
   Joint* connect(dBodyID bead, const Vector& anchor, Primitive* primitive, const std::string& which);
 
-  Simulation& simulation_;
+  World& world_;
   MuscleSettings settings_;
   double minimum_length_mm_, maximum_length_mm_;
   std::unique_ptr<ForceLaw> law_;
@@ -153,7 +133,6 @@ class Actuator {
   Joint* start_joint_ = nullptr;
   Joint* end_joint_ = nullptr;
   Vector start_mm_, end_mm_;
-  double command_ratio_ = 0, pressure_ratio_ = 0, tension_N_ = 0;
   Color color_;
   std::string name_;
 };

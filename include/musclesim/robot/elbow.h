@@ -12,10 +12,10 @@ namespace musclesim {
 /// elbow.lower_attachment_mm -20, elbow.upper_attachment_mm 240.
 class Elbow : public Robot {
  public:
-  explicit Elbow(Simulation& simulation);
+  explicit Elbow(World& world);
   /// Frictionless equilibrium of all torques about the hinge, those of effects included, between the stops: the first one on the way from
   /// the angle as built.
-  void settle(const Action& first_command) override;
+  void settle() override;
   std::string initialState() const override { return "settled"; }
 
  private:

@@ -1,7 +1,7 @@
 /// Bones: boxes, spheres and capped cylinders, alone or joined to composites.
 ///
 /// World frame: right-handed, x to the side, y up, z to the front. Lengths in mm, masses in g, angles in degrees.
-/// Primitives are created with `new` as in the paper and owned by the simulation whose world they are built in; do not delete them.
+/// Primitives are created with `new` as in the paper and owned by the world in which they are built; do not delete them.
 #pragma once
 
 #include <ode/ode.h>
@@ -11,26 +11,18 @@
 #include <vector>
 
 #include "musclesim/base/color.h"
+#include "musclesim/robot/body.h"
 #include "musclesim/robot/joint.h"
 #include "musclesim/robot/state.h"
+#include "musclesim/robot/world.h"
 
 namespace musclesim {
-
-class Simulation;
-class Primitive;
 
 /// The form of a primitive, for whoever draws it.
 struct Shape {
   enum class Kind { box, sphere, capped_cylinder };
   Kind kind;
   Vector size_mm;  ///< box: edges along x, y, z; sphere: radius, 0, 0; capped cylinder: radius, length without the caps (along z), 0
-};
-
-/// A rigid body of ODE with the primitives that form it.
-struct Body {
-  dBodyID id = nullptr;
-  std::vector<Primitive*> parts;
-  bool has_joint = false;
 };
 
 /// Limits of one joint axis in degrees.
@@ -41,11 +33,9 @@ struct Limits {
 /// One part of a robot's skeleton.
 ///
 /// All functions throw BadParameter for values that are not finite or out of range.
-class Primitive {
+class Primitive : public WorldPart {
  public:
-  virtual ~Primitive();
-  Primitive(const Primitive&) = delete;
-  Primitive& operator=(const Primitive&) = delete;
+  ~Primitive() override;
 
   /// Turns the whole body about its centre of mass by a right-handed angle about an axis of the world.
   void rotate(double angle_deg, const Vector& axis);
@@ -106,12 +96,11 @@ class Primitive {
   Primitive(dWorldID world, dSpaceID space, const Vector& position, double mass, double density, Shape shape);
 
  private:
-  friend class Simulation;
   Joint* addJoint(Joint::Kind kind, dJointID joint, Primitive* other, const std::string& what);
   void requireComposable() const;
   static void merge(Body& target, const std::vector<Body*>& bodies, Primitive& parent);
 
-  dWorldID world_;
+  World& world_;
   Shape shape_;
   double mass_g_;
   dGeomID geom_ = nullptr;

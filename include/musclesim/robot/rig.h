@@ -9,9 +9,9 @@ namespace musclesim {
 /// slider. Parameters: rig.minimum_length_mm 120, rig.maximum_length_mm 300, rig.load_kg 2.  Source: Braun 2007, Section 3.2.
 class Rig : public Robot {
  public:
-  explicit Rig(Simulation& simulation);
+  explicit Rig(World& world);
   /// Frictionless equilibrium F(p, l) = (load + chain/2) g with l between the stops; with all effects.
-  void settle(const Action& first_command) override;
+  void settle() override;
   std::string initialState() const override { return "settled"; }
 
  private:

@@ -1,9 +1,6 @@
 /// Robots: primitives and actuators that report a state and take an action.
 #pragma once
 
-#include <functional>
-#include <map>
-#include <memory>
 #include <set>
 #include <string>
 #include <utility>
@@ -13,18 +10,18 @@
 #include "musclesim/base/parameters.h"
 #include "musclesim/robot/actuator.h"
 #include "musclesim/robot/primitive.h"
+#include "musclesim/robot/robot_effects.h"
 #include "musclesim/robot/state.h"
+#include "musclesim/robot/world.h"
 
 namespace musclesim {
 
-class Simulation;
-
 /// A user's robot is a subclass that builds its parts in the constructor:
-///     class MyJoint : public Robot { public: explicit MyJoint(Simulation& simulation) : Robot(simulation) { ... } };
-///     Robot::registerRobot<MyJoint>("my-joint", "what it is");
+///     class MyJoint : public Robot { public: explicit MyJoint(World& world) : Robot(world) { ... } };
+/// registerRobot (robot_registry.h) gives it a name.
 class Robot {
  public:
-  explicit Robot(Simulation& simulation) : simulation_(simulation) {}
+  explicit Robot(World& world) : world_(world) {}
   virtual ~Robot() = default;
   Robot(const Robot&) = delete;
   Robot& operator=(const Robot&) = delete;
@@ -38,8 +35,9 @@ class Robot {
   /// Diverged for one that is not finite.
   virtual void step(const Action& action);
 
-  /// Puts the robot at rest at its frictionless equilibrium for a command. The default throws BadParameter: not every robot can.
-  virtual void settle(const Action& first_command);
+  /// Puts the robot at rest at its frictionless equilibrium under the pressures that are in its muscles. The default throws BadParameter:
+  /// not every robot can.
+  virtual void settle();
   /// How runs begin unless told otherwise: "built" or "settled".
   virtual std::string initialState() const { return "built"; }
 
@@ -73,22 +71,16 @@ class Robot {
   bool asksForOffset(int muscle, MuscleEnd end) const { return mounted_ends_.contains({muscle, end}); }
   const std::string& name() const { return name_; }
 
-  /// Registers a robot class under a name; a later registration of the same name replaces the earlier one.
-  template <class RobotType>
-  static void registerRobot(const std::string& name, const std::string& description) {
-    registerFactory(name, description, [](Simulation& simulation) { return std::make_unique<RobotType>(simulation); });
-  }
-  /// Builds a registered robot in a simulation's world. Throws BadParameter with the nearest name if there is none of that name.
-  static std::unique_ptr<Robot> make(const std::string& name, Simulation& simulation);
-  /// Names and descriptions of all registered robots, by name.
-  static std::vector<std::pair<std::string, std::string>> registered();
+  void setName(const std::string& name) { name_ = name; }
+
   /// The robot of the calling thread's current simulation, as in the paper's run loop. Throws BadParameter if there is none.
   static Robot* getActiveRobot();
+  /// The simulation says here which robot is the active one of its thread; null: none.
+  static void setActiveRobot(Robot* robot);
 
  protected:
-  Simulation& simulation() const { return simulation_; }
-  dWorldID world() const;
-  dSpaceID space() const;
+  World& world() const { return world_; }
+  dSpaceID space() const { return world_.space(); }
   /// A parameter of this robot; see Parameters::number.
   double parameter(const std::string& name, double default_value, const std::string& unit, double minimum, double maximum,
                    const std::string& description) const;
@@ -106,16 +98,9 @@ class Robot {
   Vector mountedEnd(const Vector& end_mm, const Vector& lever) { return mounted(MuscleEnd::end, end_mm, lever); }
 
  private:
-  using Factory = std::function<std::unique_ptr<Robot>(Simulation&)>;
-  struct Registered {
-    std::string description;
-    Factory build;
-  };
-  static std::map<std::string, Registered>& registry();
-  static void registerFactory(const std::string& name, const std::string& description, Factory factory);
   Vector mounted(MuscleEnd end, const Vector& place_mm, const Vector& lever);
 
-  Simulation& simulation_;
+  World& world_;
   std::vector<Actuator*> actuators_;
   std::vector<Angle> angles_;
   std::set<std::pair<int, MuscleEnd>> mounted_ends_;

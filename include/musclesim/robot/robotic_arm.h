@@ -10,7 +10,7 @@ namespace musclesim {
 /// Source: Braun 2007, Section 4; numbers of the published program.
 class RoboticArm : public Robot {
  public:
-  explicit RoboticArm(Simulation& simulation);
+  explicit RoboticArm(World& world);
 };
 
 }  // namespace musclesim

@@ -13,9 +13,9 @@ namespace musclesim {
 /// spring_bench.carriage_kg 0.5.
 class SpringBench : public Robot {
  public:
-  explicit SpringBench(Simulation& simulation);
+  explicit SpringBench(World& world);
   /// Frictionless equilibrium F(p, l) = R(l) between the muscle's stops; with all effects.
-  void settle(const Action& first_command) override;
+  void settle() override;
   std::string initialState() const override { return "settled"; }
 
  private:

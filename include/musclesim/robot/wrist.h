@@ -14,10 +14,10 @@ namespace musclesim {
 /// wrist.minimum_length_mm 120, wrist.maximum_length_mm 400, wrist.low_stop_deg -2, wrist.high_stop_deg 90.
 class Wrist : public Robot {
  public:
-  explicit Wrist(Simulation& simulation);
+  explicit Wrist(World& world);
   /// Frictionless equilibrium of all torques about the hinge, those of effects included, between the stops: the first one on the way from
   /// the angle as built.
-  void settle(const Action& first_command) override;
+  void settle() override;
   std::string initialState() const override { return "settled"; }
 
  private:

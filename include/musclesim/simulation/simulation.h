@@ -1,4 +1,4 @@
-/// A simulation: one ODE world with a robot in it, moved step by step.
+/// A simulation: a world with a robot in it, moved step by step.
 #pragma once
 
 #include <ode/ode.h>
@@ -15,11 +15,8 @@
 #include "musclesim/controller/controller.h"
 #include "musclesim/effect/effect_chain.h"
 #include "musclesim/log/active_effect.h"
-#include "musclesim/robot/actuator.h"
-#include "musclesim/robot/joint.h"
-#include "musclesim/robot/primitive.h"
 #include "musclesim/robot/robot.h"
-#include "musclesim/simulation/physics.h"
+#include "musclesim/robot/world.h"
 #include "musclesim/simulation/stepper.h"
 
 namespace musclesim {
@@ -46,7 +43,8 @@ struct JointGap {
 
 /// An ordinary object: many can live in one process and in different threads, each used by one thread at a time.
 ///
-/// It owns the world, everything built in it, the robot and the controller. Time is counted in control steps.
+/// It owns the world with everything built in it, the effects, the robot and the controller, and calls the stages of a step in the order in
+/// which a sample meets them: command, pressure, force, body, sensor. Time is counted in control steps.
 /// A run that leaves the numbers a physical system can have ends in Diverged: nothing is reset.
 class Simulation {
  public:
@@ -61,7 +59,7 @@ class Simulation {
   /// Builds a robot of a class that need not be registered.
   template <class RobotType>
   RobotType& build() {
-    return static_cast<RobotType&>(adopt(std::make_unique<RobotType>(*this)));
+    return static_cast<RobotType&>(adopt(std::make_unique<RobotType>(*world_)));
   }
   Controller& control(std::unique_ptr<Controller> controller);
 
@@ -70,8 +68,6 @@ class Simulation {
   /// held; effects are part of the equilibrium. Throws BadParameter for another name or a robot that cannot settle.
   void start(const std::string& initial_state, const Action& first_command);
 
-  /// Pressures and tensions as they are now that new commands have been set: nothing moves on.
-  void sense();
   /// One control step: pressures, forces, then the bodies, in substeps() internal steps.
   /// Throws Diverged with time, place and cause; the world is then frozen as it was, and further steps throw the same again. Throws
   /// Interrupted within the step if the options ask for it; the time is then still that of the step's beginning.
@@ -79,33 +75,25 @@ class Simulation {
   /// The same for any duration, in equal internal steps no longer than those of step(). Throws BadParameter unless it is positive.
   void advance(double duration_s);
 
-  double time_s() const { return start_time_s_ + static_cast<double>(step_count_) * step_s_; }
-  long stepCount() const { return step_count_; }
-  double stepS() const { return step_s_; }
+  double time_s() const { return world_->clock().time_s(); }
+  long stepCount() const { return world_->clock().stepCount(); }
+  double stepS() const { return world_->clock().stepS(); }
   /// Internal steps per control step; if they were not given, they follow from the muscles once the robot is built.
   int substeps() const { return substeps_; }
-  double internalStepS() const { return step_s_ / substeps_; }
-  std::uint64_t seed() const { return seed_; }
-  const PhysicsSettings& physics() const { return physics_; }
+  double internalStepS() const { return stepS() / substeps_; }
+  std::uint64_t seed() const { return world_->seed(); }
+  const PhysicsSettings& physics() const { return world_->physics(); }
   const Stepper& stepper() const { return *stepper_; }
-  Parameters& parameters() { return parameters_; }
-  /// How composites built from now on get their inertia: "exact" or "summed".
-  void setCompositeInertia(const std::string& how) { physics_.composite_inertia = how; }
+  Parameters& parameters() { return world_->parameters(); }
 
-  dWorldID world() const { return world_; }
-  dSpaceID space() const { return space_; }
+  /// Where robots are built. It stands for its ODE world wherever one is expected.
+  World& world() { return *world_; }
+  const World& world() const { return *world_; }
+  dSpaceID space() const { return world_->space(); }
   Robot& robot();
   EffectChain& effects() { return *effects_; }
-  /// Acceleration of a falling body, world units; effects may turn it.
-  Vector gravityMmPerS2() const;
   Controller* controller() { return controller_.get(); }
 
-  const std::vector<std::unique_ptr<Primitive>>& primitives() const { return primitives_; }
-  const std::vector<std::unique_ptr<Actuator>>& actuators() const { return actuators_; }
-  const std::vector<std::unique_ptr<Joint>>& joints() const { return joints_; }
-  const std::vector<std::unique_ptr<Body>>& bodies() const { return bodies_; }
-  /// Goes up whenever a body, a joint, a shape or a muscle is added or removed.
-  long revision() const { return revision_; }
   int contactCount() const;
   /// Number of messages from ODE's solver ("LCP internal error") during this simulation's steps.
   long solverMessageCount() const { return solver_message_count_; }
@@ -119,8 +107,6 @@ class Simulation {
   /// Sets all velocities to 0.
   void stop();
 
-  /// The simulation in whose world something is built.
-  static Simulation& of(dWorldID world);
   /// The calling thread's current simulation: the last one that was constructed or made current. Throws BadParameter if there is none.
   static Simulation& current();
   void makeCurrent();
@@ -128,19 +114,11 @@ class Simulation {
   static void doStep() { current().step(); }
 
  private:
-  friend class Primitive;
-  friend class Actuator;
   Robot& adopt(std::unique_ptr<Robot> robot);
   void prepareSteps();
-  void disown(const Primitive& primitive);
-  void disown(const Actuator& actuator);
-  Body& addBody(dBodyID id, Primitive& part);
-  void removeBody(Body& body);
-  Joint& addJoint(Joint::Kind kind, dJointID id, const std::string& name);
   template <class Function>
   void untilDiverged(const Function& move);
   void internalStep(double h_s);
-  void updateForces(double h_s);
   void collide(double h_s);
   void requireFinite() const;
   BodyBounds bodyBounds() const;
@@ -149,34 +127,19 @@ class Simulation {
   static JointGap named(const TornJoint& torn);
   std::string labelOf(dBodyID id) const;
 
-  Parameters parameters_;
-  PhysicsSettings physics_;
-  double step_s_;
+  std::unique_ptr<World> world_;
   int substeps_ = 1;
   bool substeps_given_ = false;
   std::size_t prepared_actuator_count_ = 0;
-  long revision_ = 0;
-  double error_reduction_ = 0;  ///< ODE's ERP as set by this class
-  std::uint64_t seed_;
-  double start_time_s_ = 0, internal_time_s_ = 0;
-  long step_count_ = 0;
   bool faulted_ = false;
   std::optional<Diverged> divergence_;
   std::function<bool()> interrupted_;
   long solver_message_count_ = 0;
   TornJoint worst_gap_;
-
-  dWorldID world_ = nullptr;
-  dThreadingImplementationID threading_ = nullptr;  ///< the world's own
-  dSpaceID space_ = nullptr;
-  std::vector<std::unique_ptr<Body>> bodies_;
-  std::vector<std::unique_ptr<Joint>> joints_;
-  std::vector<std::unique_ptr<Primitive>> primitives_;
-  std::vector<std::unique_ptr<Actuator>> actuators_;
   std::unique_ptr<Contacts> contacts_;
   std::unique_ptr<Stepper> stepper_;
-  std::unique_ptr<Robot> robot_;
   std::unique_ptr<EffectChain> effects_;
+  std::unique_ptr<Robot> robot_;
   std::unique_ptr<Controller> controller_;
 };
 

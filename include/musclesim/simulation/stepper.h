@@ -50,7 +50,7 @@ struct TornJoint {
   const Joint* joint = nullptr;
 };
 
-using Actuators = std::vector<std::unique_ptr<Actuator>>;
+using Actuators = std::vector<Actuator*>;
 
 class Stepper {
  public:

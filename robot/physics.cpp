@@ -1,4 +1,4 @@
-#include "musclesim/simulation/physics.h"
+#include "musclesim/robot/physics.h"
 
 #include <algorithm>
 #include <cmath>
