@@ -21,7 +21,7 @@ EffectInfo AttachmentOffset::info() {
           .equation =
               "place' = place + d e + r v    of its start or end; d = offset_mm, e along the lever arm, away from the joint, "
               "r = rise_mm, v upward",
-          .signature = "torque and length errors of one muscle that depend on the angle in the same way",
+          .signature = "length and moment arm of one muscle are wrong together, both depending on the angle",
           .source = "definition",
           .parameters = {{"offset_mm", "mm", 0, -200, 200, -8, 8, "d"},
                          {"rise_mm", "mm", 0, -200, 200, -3, 3, "r"},

@@ -55,7 +55,7 @@ JointModel registerJoint(const Joint& joint, const BodyState& bodies);
 struct ErrorReduction {
   double registered;  ///< ODE's ERP of the world when the joints were registered
   double per_step;    ///< ERP that replaces it in this step
-  /// A joint with an ERP of its own keeps it.
+  /// A joint with an ERP of its own keeps that value.
   double of(double own) const { return own == registered ? per_step : own; }
   bool operator==(const ErrorReduction&) const = default;
 };

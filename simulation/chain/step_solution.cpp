@@ -263,7 +263,8 @@ void StepProblem::addContact(std::size_t number, int row) {
     if (model_.placeOf(contact.body[side]).chain >= 0) addSharedBead(contact, row, side);
 }
 
-/// Contact rows couple through the bead that both act on: the rows of the same contact up to this one, and of the contacts before.
+/// Contact rows couple through a bead that both act on. Adds the coupling with the contact's rows up to this one and with the rows of
+/// earlier contacts.
 void StepProblem::addSharedBead(const ContactRows& contact, int row, int side) {
   const int body = contact.body[side];
   const auto add = [&](const ContactRows& other, int other_side, int other_row) {
