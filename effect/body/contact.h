@@ -1,8 +1,9 @@
-/// Body stage: a wall.
+/// Body stage: a joint, the hand or the load meets a wall.
 ///     joint:  torque = -k max(0, s (q - q_w)) s        q angle in deg, q_w = plane_deg, k = stiffness_Nm_per_deg
 ///     hand:   force = -k max(0, s (x - x_w)) s e       x the hand's coordinate along the axis e, x_w = plane_mm, k = stiffness_N_per_mm
 /// s = +1: the wall is above the plane's coordinate, s = -1: below it; with side = auto, s is the sign of that coordinate. The wall is
-/// frictionless and elastic. Neutral: both stiffnesses 0. Ranges 0 .. 1000 N m/deg and 0 .. 1e5 N/mm.  Source: penalty contact.
+/// frictionless and elastic.
+/// Neutral: both stiffnesses 0. Ranges 0 .. 1000 N m/deg and 0 .. 1e5 N/mm.  Source: penalty contact.
 #pragma once
 
 #include "musclesim/effect/effect_info.h"

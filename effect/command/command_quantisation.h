@@ -2,8 +2,8 @@
 ///     u' = floor(u m + 1 - r) / m,    m = n - e,  n = 2^bits levels
 /// u commanded, u' delivered pressure, fractions of full scale; r = 0.5 rounds, r = 1 truncates. With e = 1 the highest level is full
 /// scale; with e = 0 full scale would be one level above the highest, as in converters that output code / 2^bits of their reference. n need
-/// not be an integer. Neutral: bits infinite. Range 1 .. infinity, usually 6 .. 10; the compressor of Braun 2007 has 8.  Source:
-/// definition.
+/// not be an integer.
+/// Neutral: bits infinite. Range 1 .. infinity, usually 6 .. 10; the compressor of Braun 2007 has 8.  Source: definition.
 #pragma once
 
 #include "musclesim/effect/effect_info.h"

@@ -1,9 +1,10 @@
 /// Force stage: the bladder yields slowly under load (creep).
 ///     F' = F(p, l - x),    tau dx/dt = amount (l - x - l_max) - x
-/// F tension, l length, x creep in mm, l_max the muscle's longest length, tau = time_constant_s. After a step in pressure or load at
-/// constant tension l - x changes at once and x follows with tau: the length first reaches 1 / (1 + amount) of its final change. Exact if
-/// the length is constant over the step. A run starts with creep complete. Neutral: amount = 0. Range 0 .. 10, usually 0.03 .. 0.25; of tau
-/// 1e-3 .. 1e4 s, usually 0.3 .. 30.  Source: Kelvin-Voigt element in series; amounts of 0.07 to 0.19 with 0.53 to 1.0 s measured over 4 s.
+/// F tension, l length, x creep in mm, l_max the muscle's longest length, tau = time_constant_s. After a step in pressure or load l - x
+/// changes at once and x follows with tau while the tension stays constant: the length first reaches 1 / (1 + amount) of its final change.
+/// Exact if the length is constant over the step. A run starts with creep complete.
+/// Neutral: amount = 0. Range 0 .. 10, usually 0.03 .. 0.25; of tau 1e-3 .. 1e4 s, usually 0.3 .. 30.  Source: Kelvin-Voigt element in
+/// series; amounts of 0.07 to 0.19 with 0.53 to 1.0 s measured over 4 s.
 #pragma once
 
 #include "musclesim/effect/effect_info.h"

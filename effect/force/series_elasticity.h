@@ -1,7 +1,8 @@
 /// Force stage: a tendon between muscle and bone.
 ///     F' = F(p, l - x) = k x,    x >= 0: the tendon is slack where the muscle would push
 /// F tension, l length of muscle and tendon together, x stretch of the tendon in mm, k = stiffness_N_per_mm. The tendon has no mass; each
-/// step solves for x to 1e-10 mm. Neutral: k infinite. Range 0.01 .. infinity N/mm, usually 5 .. 1000.  Source: springs in series.
+/// step solves for x to 1e-10 mm.
+/// Neutral: k infinite. Range 0.01 .. infinity N/mm, usually 5 .. 1000.  Source: springs in series.
 #pragma once
 
 #include "musclesim/effect/effect_info.h"

@@ -1,8 +1,8 @@
 /// Sensor stage: a reading comes late.
 ///     y'(t) = f(t - (1 - c) T),    c T df/dt = y - f
 /// T = delay_s, c = filter_share: share of the delay that comes from a first-order filter; the rest is dead time. The signal is stored at
-/// every internal step and interpolated linearly. Before the start of a run it has the value from which the run began to settle. Neutral: T
-/// = 0. Range 0 .. 2 s, usually 0.005 .. 0.1; of c 0 .. 1.  Source: dead time of sampling, filters and buses.
+/// every internal step and interpolated linearly. Before the start of a run it has the value from which the run began to settle.
+/// Neutral: T = 0. Range 0 .. 2 s, usually 0.005 .. 0.1; of c 0 .. 1.  Source: dead time of sampling, filters and buses.
 #pragma once
 
 #include "../history.h"

@@ -1,8 +1,8 @@
 /// Sensor stage: samples are lost; the last value is held.
 ///     y'_k = y'_(k-1) during a dropout, y_k otherwise
 /// fraction: share of the samples that are lost. Dropouts have a geometrically distributed length with mean mean_gap_samples. A sample is
-/// one reading of the robot. The random numbers come from the run's seed and the signal's name; the first sample is never lost. Neutral:
-/// fraction = 0. Range 0 .. 0.99, usually 0.01 .. 0.3.  Source: Gilbert 1960, two-state channel.
+/// one reading of the robot. The random numbers come from the run's seed and the signal's name; the first sample is never lost.
+/// Neutral: fraction = 0. Range 0 .. 0.99, usually 0.01 .. 0.3.  Source: Gilbert 1960, two-state channel.
 #pragma once
 
 #include <optional>

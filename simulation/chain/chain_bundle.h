@@ -45,10 +45,10 @@ class ChainBundle {
   /// Computes the blocks A_k and A_k,k+1. Call it after all joints are set.
   void makeBlocks();
 
-  /// Row 5 of a joint is free, or at a bound with the given force.
+  /// Sets row 5 of a joint free, or to a bound with the given force.
   void setFree(int lane, int joint);
   void setForce(int lane, int joint, double force);
-  /// Forces of contact rows at a bound on the beads.
+  /// Clears the forces of contact rows at a bound on the beads, and adds one.
   void clearBeadForces();
   void addBeadForce(int lane, int bead, const double jacobian[6], double force);
   /// Allocates memory for `border_count` border rows.

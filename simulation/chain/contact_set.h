@@ -2,7 +2,7 @@
 ///
 /// As in ODE's surface mode 0 contacts do not bounce, and friction is bounded by a constant force, not by a share of the normal force.
 ///     normal  n . (velocity of the first - of the second at the point) = erp/h * depth,   0 <= l
-///     friction t1, t2: as n, but = 0,                                                   -mu <= l <= mu
+///     friction t . (the same velocity) = 0 for t = t1, t2,                                -mu <= l <= mu
 #pragma once
 
 #include <cstdint>

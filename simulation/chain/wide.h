@@ -31,7 +31,8 @@ void subtractProduct(double* y, const double* a, const double* x);
 void subtractTransposed(double* y, const double* a, const double* x);
 
 /// The functions below work on y, six rows of eight numbers. l is a lower triangle of six by six numbers in column-major order, per_pivot
-/// the reciprocals of its diagonal; the columns before `first_coupled` (0 or 3) are zero below the diagonal. y <- l^-1 y
+/// the reciprocals of its diagonal; the columns before `first_coupled` (0 or 3) are zero below the diagonal.
+/// y <- l^-1 y
 void solveSixRows(double y[6][tile_width], const double* l, const double per_pivot[6], int first_coupled);
 /// tile += left^T right, for the columns whose bits are set
 void addTileProducts(double* tile, const double left[6][tile_width], const double right[6][tile_width], unsigned columns);

@@ -34,8 +34,8 @@ struct BraunConstants {
 /// The paper's fitted law:
 ///     F(p, l) = c (p/p_max r + a (1 - p/p_max) exp(b r)),    r = (l - l_min) / (l_max - l_min)    (Eq. 1)
 /// p pressure, l length, l_min and l_max the muscle's shortest and longest length. The fitted loads were masses, so c is in kilogram-force
-/// and newton = 9.81 F. Valid for 0 <= p <= p_max and l_min <= l <= l_max; outside this range the formula is evaluated unchanged. Source:
-/// Braun 2007, Section 3.2; constants of the published program.
+/// and the tension in N is 9.81 F. Valid for 0 <= p <= p_max and l_min <= l <= l_max; outside this range the formula is evaluated
+/// unchanged. Source: Braun 2007, Section 3.2; constants of the published program.
 class BraunForceLaw final : public ForceLaw {
  public:
   /// Throws BadParameter unless 0 <= minimum < maximum length, all constants are finite and p_max is not 0.

@@ -7,7 +7,7 @@
 
 namespace musclesim {
 
-/// A point or direction in the world frame: right-handed, x to the side, y up, z to the front; mm where it is a point.
+/// A point or direction in the world frame: right-handed, x to the side, y up, z to the front; points are in mm.
 using Vector = Eigen::Vector3d;
 
 /// Commanded pressure of every muscle, fraction of full scale 0..1, in the order of the muscles.
