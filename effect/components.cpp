@@ -17,7 +17,7 @@ std::string stemOf(const std::string& signal) {
 
 namespace {
 
-/// A component that stands for one place.
+/// A component with a single place.
 struct NamedPlace {
   ComponentKind kind;
   std::string name;
@@ -65,12 +65,12 @@ std::vector<NamedPlace> namedPlaces(const EffectInfo& info, const Robot& robot) 
   return places;
 }
 
-/// Effects on pairs have no "all": every muscle would be in several.
+/// Effects on pairs of muscles do not allow "all": every muscle would be in several pairs.
 bool allowsAll(const EffectInfo& info) {
   return std::find(info.acts_on.begin(), info.acts_on.end(), ComponentKind::muscle_pair) == info.acts_on.end();
 }
 
-/// "all" of an effect that acts on several kinds of components means those of the first kind that the robot has.
+/// For an effect that acts on several kinds of components, "all" means all components of the first kind that the robot has.
 bool chosen(const NamedPlace& place, const std::string& component, const std::vector<NamedPlace>& places) {
   if (component == "all") return place.kind == places.front().kind;
   return place.name == component ||
@@ -99,7 +99,7 @@ std::vector<EffectPlace> placesFor(const EffectInfo& info, const std::string& co
   if (places.empty()) {
     const std::vector<std::string> names = componentsFor(info, robot);
     throw BadParameter(fmt::format("component of {}", info.id), fmt::format("\"{}\"", component),
-                       names.empty() ? fmt::format("exist; the robot {} has nothing that it acts on", robot.name())
+                       names.empty() ? fmt::format("exist; the robot {} has no component that the effect can act on", robot.name())
                                      : fmt::format("be one of {}", fmt::join(names, ", ")));
   }
   return places;

@@ -32,7 +32,8 @@ void ForceStack::reset() {
 }
 
 void ForceStack::settle(const MuscleInput& input) {
-  // What an effect sees depends on the state of those around it, so it takes some rounds; two where at most one has a state.
+  // The input of an effect depends on the states of the effects around it, so settling iterates. Two rounds suffice if at most one effect
+  // has a state.
   constexpr int round_limit = 200;
   constexpr double accuracy = 1e-13;
   reset();

@@ -1,4 +1,4 @@
-/// The force law of one muscle with the effects that enclose it.
+/// The force law of one muscle and the force effects around it, nested like shells.
 #pragma once
 
 #include <memory>
@@ -12,15 +12,15 @@ namespace musclesim {
 class ForceStack {
  public:
   explicit ForceStack(const Actuator& actuator) : actuator_(actuator) {}
-  /// The next effect encloses all before it.
+  /// Adds an effect around all effects added before.
   void add(std::unique_ptr<ForceEffect> effect);
   bool empty() const { return effects_.empty(); }
 
   double tensionN(const MuscleInput& input) { return at(effects_.size(), input); }
-  /// Moves all states on by h_s from what they saw in the last tensionN.
+  /// Advances the states of all effects by h_s, with the inputs of the last tensionN().
   void advance(double h_s);
   void reset();
-  /// The states when everything has been as in `input` for ever.
+  /// Sets the states to their steady values for a constant `input`.
   void settle(const MuscleInput& input);
 
  private:
@@ -29,7 +29,7 @@ class ForceStack {
 
   const Actuator& actuator_;
   std::vector<std::unique_ptr<ForceEffect>> effects_;
-  std::vector<MuscleInput> seen_;  ///< by each effect, last
+  std::vector<MuscleInput> seen_;  ///< last input of each effect
 };
 
 }  // namespace musclesim

@@ -7,7 +7,7 @@ namespace musclesim {
 
 namespace {
 
-/// Clocks are sums of steps; a change counts as reached this much before its time.
+/// Tolerance for rounding errors of times: a change counts as reached this long before its time.
 constexpr double rounding_s = 1e-9;
 
 }  // namespace
@@ -35,7 +35,7 @@ double HeldHistory::mean(double from_s, double to_s) const {
   double sum = 0, end_s = to_s;
   for (auto change = changes_.rbegin(); change != changes_.rend() && end_s > from_s; ++change) {
     if (change->time_s >= end_s - rounding_s) continue;
-    // The usual case, no change within: the value itself, without rounding.
+    // Usual case, no change in the interval: returns the value itself without rounding errors.
     if (end_s == to_s && change->time_s <= from_s + rounding_s) return change->value;
     const double begin_s = std::max(change->time_s, from_s);
     sum += (end_s - begin_s) * change->value;

@@ -1,22 +1,22 @@
-/// What a signal has been, for effects that look back.
+/// Past values of a signal, for effects that need them.
 #pragma once
 
 #include <deque>
 
 namespace musclesim {
 
-/// A value that is held until the next one.
+/// A piecewise constant signal: each value holds until the next.
 class HeldHistory {
  public:
   void clear() { changes_.clear(); }
-  /// Forgets everything else.
+  /// Sets a constant value for all times and forgets all others.
   void holdForEver(double value);
-  /// From time_s on the value is `value`. Times must not decrease.
+  /// Sets the value from time_s on. Times must not decrease.
   void hold(double time_s, double value);
   double at(double time_s) const;
-  /// Mean over from_s .. to_s; the last value holds on.
+  /// Mean over from_s .. to_s; the last value continues to hold.
   double mean(double from_s, double to_s) const;
-  /// Drops what lies before a time.
+  /// Drops values that are not needed for times from time_s on.
   void forgetBefore(double time_s);
 
  private:
@@ -26,11 +26,11 @@ class HeldHistory {
   std::deque<Change> changes_;
 };
 
-/// Samples of a value that changes steadily, joined by straight lines.
+/// Samples of a continuous signal, interpolated linearly.
 class SampledHistory {
  public:
   void clear() { samples_.clear(); }
-  /// Times must not decrease; a second sample for one time replaces the first.
+  /// Times must not decrease; a second sample for the same time replaces the first.
   void add(double time_s, double value);
   /// The first sample holds before its time, the last after it.
   double at(double time_s) const;

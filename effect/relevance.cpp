@@ -6,7 +6,7 @@ namespace musclesim {
 
 namespace {
 
-/// What a component or a parameter is measured in.
+/// Kind of quantity that a component or a parameter is about.
 enum class Measure { angle, length, any };
 
 Measure measureOf(const std::string& component) {

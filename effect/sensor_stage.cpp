@@ -36,7 +36,7 @@ void SensorStage::addNoise(World& world, const Robot& robot) {
     const double deviation = noiseOf(names[i], world.parameters());
     if (deviation == 0) continue;
     noise_[names[i]] = deviation;
-    // Samples are lost with their noise.
+    // Noise acts before dropouts, so a lost sample loses its noise too.
     sensors_.insert(sensors_.begin() + static_cast<std::ptrdiff_t>(sensor_count_ + noise_.size() - 1),
                     {static_cast<int>(i), std::make_unique<SensorNoise>(deviation, world.seed(), names[i])});
   }

@@ -1,4 +1,4 @@
-/// The last stage: what is read of the true state.
+/// The last stage: turns the true state into sensor readings.
 #pragma once
 
 #include <map>
@@ -10,17 +10,17 @@
 
 namespace musclesim {
 
-/// Sensor effects by signal. The robot's state is read through it.
+/// Holds the sensor effects of all signals and applies them to the robot's state.
 class SensorStage {
  public:
   void add(int signal, std::unique_ptr<SensorEffect> effect);
   /// White noise on all signals whose parameter "sensor.<quantity>_noise_<unit>" is not 0.
   void addNoise(World& world, const Robot& robot);
-  /// Standard deviations of the noise by signal, where there is any.
+  /// Standard deviation of the noise by signal, for signals with noise.
   const std::map<std::string, double>& noise() const { return noise_; }
   bool empty() const { return sensors_.empty(); }
   void reset();
-  /// Tells the sensors that remember what the signals are now.
+  /// Passes the present signals to the sensor effects that keep a history.
   void track(const Robot& robot, const Moment& moment);
   void read(const Robot& robot, State& state, const Moment& moment);
 
@@ -29,11 +29,11 @@ class SensorStage {
     int signal;
     std::unique_ptr<SensorEffect> effect;
   };
-  std::vector<Sensor> sensors_;   ///< of one signal in the order in which they act
-  std::size_t sensor_count_ = 0;  ///< those that do not depend on the sample; they come first
+  std::vector<Sensor> sensors_;   ///< effects on the same signal stand in the order in which they act
+  std::size_t sensor_count_ = 0;  ///< number of effects that do not depend on the sample; they come first
   std::map<std::string, double> noise_;
   bool tracks_ = false;
-  long sample_ = -1;  ///< number of the present sample
+  long sample_ = -1;  ///< index of the present sample
   double sample_clock_s_ = 0;
 };
 

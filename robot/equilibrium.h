@@ -1,11 +1,12 @@
-/// Where a function that grows from negative to positive crosses zero.
+/// Root finders for equilibria: zeros of a force or torque over a position.
 #pragma once
 
 #include <algorithm>
 
 namespace musclesim {
 
-/// Root of an increasing function on low..high by bisection to the last bit; the nearer end where there is no change of sign.
+/// Root of an increasing function on low..high, by bisection to the last bit. Without a change of sign it returns the end nearer to the
+/// root.
 template <class Function>
 double rootBetween(const Function& f, double low, double high) {
   if (f(low) >= 0) return low;
@@ -17,8 +18,8 @@ double rootBetween(const Function& f, double low, double high) {
   }
 }
 
-/// Where something comes to rest that starts between low and high and is pushed up where f < 0, down where f > 0: the first root on the
-/// way, found in steps of a 64th of it, or the end that it is pushed to.
+/// Rest position of something that starts between low and high and is pushed up while f < 0 and down while f > 0. It is the first root on
+/// the way, searched in 64 equal steps, or the end of the range if there is no root.
 template <class Function>
 double restFrom(const Function& f, double start, double low, double high) {
   constexpr int step_count = 64;

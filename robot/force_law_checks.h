@@ -1,4 +1,4 @@
-/// What the force laws of measured muscles have in common.
+/// Helpers shared by the force laws of measured muscles.
 #pragma once
 
 #include <fmt/format.h>
@@ -11,7 +11,7 @@
 
 namespace musclesim {
 
-/// exp(x) up to 0, its tangent 1 + x beyond: a law measured up to its rest length shall not explode when a robot stretches it further.
+/// exp(x) for x <= 0, its tangent 1 + x above. It keeps a law measured up to its rest length from growing exponentially beyond it.
 inline double exponentialUpTo0(double x) {
   return x <= 0 ? std::exp(x) : 1 + x;
 }

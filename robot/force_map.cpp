@@ -46,7 +46,7 @@ Eigen::VectorXd NaturalSpline::weights(double x) const {
   const double to = along - first, from = 1 - to;
   result(first) = from;
   result(first + 1) = to;
-  // Outside of the knots: the straight line with the slope at the end.
+  // Outside the knots the spline continues as a straight line with the slope at its end.
   const double inside = std::clamp(to, 0.0, 1.0), beyond = to - inside, rest = 1 - inside;
   const double bend_first = (rest * rest * rest - rest) / 6 - beyond * (3 * rest * rest - 1) / 6;
   const double bend_second = (inside * inside * inside - inside) / 6 + beyond * (3 * inside * inside - 1) / 6;

@@ -8,7 +8,7 @@ namespace musclesim {
 
 namespace {
 
-/// A point or direction of the world seen from a body; null: the environment.
+/// A point of the world frame in a body's frame; null: the environment.
 Vector pointSeenFrom(dBodyID body, const Vector& point) {
   return body ? Vector(rotationOf(body).transpose() * (point - positionOf(body))) : point;
 }
@@ -53,7 +53,8 @@ void Joint::takeReference() {
 double Joint::angleDeg(int axis) const {
   if (kind_ == Kind::hinge && axis == 0) return dJointGetHingeAngle(id_) * deg_per_rad;
   if (kind_ == Kind::hinge2 && axis == 0) return dJointGetHinge2Angle1(id_) * deg_per_rad;
-  if (kind_ == Kind::hinge2 && axis == 1) return -dJointGetHinge2Angle2(id_) * deg_per_rad;  // ODE: second against first
+  if (kind_ == Kind::hinge2 && axis == 1)
+    return -dJointGetHinge2Angle2(id_) * deg_per_rad;  // ODE's sign: second body relative to the first
   if (kind_ == Kind::universal && axis == 0) return dJointGetUniversalAngle1(id_) * deg_per_rad;
   if (kind_ == Kind::universal && axis == 1) return dJointGetUniversalAngle2(id_) * deg_per_rad;
   throw BadParameter("joint " + name_ + " has no angle about axis " + std::to_string(axis));
@@ -67,7 +68,7 @@ std::pair<double, double> Joint::stopsDeg(int axis) const {
   if (kind_ == Kind::hinge2 && axis == 0) return inDegrees(dJointGetHinge2Param, dParamLoStop1, dParamHiStop1);
   if (kind_ == Kind::universal && axis == 0) return inDegrees(dJointGetUniversalParam, dParamLoStop1, dParamHiStop1);
   if (kind_ == Kind::universal && axis == 1) return inDegrees(dJointGetUniversalParam, dParamLoStop2, dParamHiStop2);
-  angleDeg(axis);  // throws where there is no such axis
+  angleDeg(axis);  // throws if there is no such axis
   return {-dInfinity, dInfinity};
 }
 

@@ -14,10 +14,10 @@ namespace musclesim {
 
 namespace {
 
-constexpr double dry_speed_mm_per_s = 100;      ///< dry friction is at 76 % of its force at this speed
-constexpr double stop_stiffness_N_per_mm = 10;  ///< beyond the longest length
+constexpr double dry_speed_mm_per_s = 100;      ///< at this speed dry friction has 76 % of its full force
+constexpr double stop_stiffness_N_per_mm = 10;  ///< of the spring beyond the longest length
 
-/// Speeds of the original's world are smaller by the square root of its forces' deficit.
+/// Speed in world units over true speed. In `original`, forces are too small by a factor, and speeds by its square root.
 double speedRatio(const PhysicsSettings& physics) {
   return std::sqrt(physics.force_per_N / world_force_per_N);
 }
@@ -28,7 +28,7 @@ LineOfPull::LineOfPull(const Vector& start_mm, const Vector& end_mm) : points_{{
 
 LineOfPull::Point LineOfPull::pointOn(Primitive* primitive, const Vector& point_mm) {
   if (!primitive) return {nullptr, point_mm, true};
-  primitive->body().has_joint = true;  // its body must not be joined to another any more
+  primitive->body().has_joint = true;  // from now on its body must not be merged into another body
   const dBodyID body = primitive->body().id;
   return {body, rotationOf(body).transpose() * (point_mm - musclesim::positionOf(body)), true};
 }

@@ -1,4 +1,4 @@
-/// Between ODE's arrays and Eigen's types.
+/// Conversions between ODE's arrays and Eigen's types.
 #pragma once
 
 #include <ode/ode.h>

@@ -30,7 +30,7 @@ PhysicsSettings::PhysicsSettings(PhysicsKind physics_kind, Parameters& parameter
                                             "share of a joint error corrected per internal step where the rate is 0");
   error_reduction_rate_per_s = parameters.number("physics.error_reduction_rate_per_s", si ? 500 : 0, "1/s", 0, 1e4,
                                                  "rate at which joint errors are corrected; 0 = a fixed share per internal step");
-  // A constraint force times CFM is a velocity, so in `scaled` units, sqrt(1000) times faster and forces 1000 times larger, CFM is smaller.
+  // CFM times a constraint force is a velocity. In `scaled` velocities are sqrt(1000) and forces 1000 times larger, so CFM is smaller.
   const double cfm = kind == PhysicsKind::scaled ? 1e-10 / std::sqrt(original_force_deficit_ratio) : 1e-10;
   constraint_force_mixing =
       parameters.number("physics.constraint_force_mixing", cfm, "s/g", 0, 1, "softness of all constraints (CFM of ODE)");
@@ -48,7 +48,7 @@ PhysicsSettings::PhysicsSettings(PhysicsKind physics_kind, Parameters& parameter
 void PhysicsSettings::readOwnConstants(Parameters& parameters) {
   longest_internal_step_s = parameters.number("physics.longest_internal_step_s", 2e-3, "s", 1e-7, 0.1, "upper bound of the internal step");
   contact_compliance =
-      parameters.number("physics.contact_compliance_mm_per_N", 0.3, "mm/N", 0, 1e3, "compliance of a contact; 0 = as joint errors") /
+      parameters.number("physics.contact_compliance_mm_per_N", 0.3, "mm/N", 0, 1e3, "compliance of a contact; 0 = soft as a joint") /
       force_per_N;
   contact_time_constant_s = parameters.number("physics.contact_time_constant_s", 0.002, "s", 1e-6, 10,
                                               "time in which bodies that overlap separate; damping of a contact over its stiffness");

@@ -1,14 +1,14 @@
 /// The RoboticArm as a table of numbers: bones, the operations that put them together, and muscles.
 ///
 /// World frame right-handed, x to the side, y up, z to the front; the arm hangs down along -y beside the ribs. Positions and sizes in mm,
-/// masses in g, angles in degrees; everything is given in the world frame as it is at the start.
+/// masses in g, angles in degrees; all values are given in the world frame, in the initial pose.
 ///
 /// Source: M. Braun, Simulating Artificial Muscles for Controlling a Robotic Arm with Fluctuation, Osaka University, 2007; the numbers of
-/// the program published with it. Bones, operations and muscles 0 to 9 are those numbers unchanged.
+/// the program published with it. Bones, operations and muscles 0 to 9 have these numbers unchanged.
 ///
 /// Muscles 10 to 29 are additions of this program: 10 + k and 20 + k have the lengths of muscle k, run beside it and span the same joints.
 /// At the start their beads keep at least 3 mm from the beads of every other muscle and 1.5 mm from all bones; only the first and the last
-/// bead touch the bone they are attached to.
+/// bead touch a bone, the one they are attached to.
 #pragma once
 
 #include <array>
@@ -38,7 +38,7 @@ enum class Kind {
   hinge       ///< hinge between them about the world's `axis` through `anchor_mm`, from `low_deg` to `high_deg`
 };
 
-/// One building operation; they act in the order of the table. A name stands for the body its primitive belongs to by then.
+/// One building operation. Operations act in the order of the table. A name stands for the body that its primitive belongs to at that time.
 struct OperationRow {
   static constexpr std::size_t maximum_parts_count = 6;
 
@@ -52,7 +52,7 @@ struct OperationRow {
   double low_deg = 0.0;                                  ///< hinge
   double high_deg = 0.0;                                 ///< hinge
 
-  /// The names in `parts`, without the empty places.
+  /// The names in `parts`, without empty entries.
   std::span<const char* const> partNames() const;
 };
 

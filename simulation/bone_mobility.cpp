@@ -11,7 +11,7 @@ namespace musclesim {
 
 namespace {
 
-constexpr double turn_scale_mm = 100;  ///< weight of rows that hold angles against those that hold points
+constexpr double turn_scale_mm = 100;  ///< lever that weights the rows on angles against the rows on points
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
@@ -26,13 +26,13 @@ Matrix6 inverseInertia(dBodyID body) {
   return inverse;
 }
 
-/// What a joint holds: a point along some directions, and the angle about some directions (columns, world frame).
+/// What a joint constrains: the motion of a point along some directions and the rotation about some directions (columns, world frame).
 struct Hold {
   Vector point;
   Eigen::Matrix3Xd along, about;
 };
 
-/// The two directions across an axis.
+/// Two directions perpendicular to an axis.
 Eigen::Matrix3Xd across(const Vector& axis) {
   Eigen::Matrix3Xd directions(3, 2);
   directions.col(0) = axis.unitOrthogonal();

@@ -1,4 +1,4 @@
-/// How easily bones that joints hold together give way to forces.
+/// Mobility of jointed bones: how they accelerate under forces.
 #pragma once
 
 #include <ode/ode.h>
@@ -12,22 +12,22 @@
 
 namespace musclesim {
 
-/// Accelerations of bones per force, in their present poses and at rest, joints obeyed exactly:
+/// Accelerations of bones per force, for the present poses, at rest and with exact joints:
 ///     P = W - W G^T (G W G^T)^+ G W
-/// W = diag(1/m, (R I R^T)^-1) over all bones, G the rows that joints demand of velocities (G v = 0), ^+ the pseudoinverse: joints may
-/// demand the same thing twice. Stops and friction are left out, and so are the second rows of joints with two axes: without them bones
-/// give way more.
+/// W = diag(1/m, (R I R^T)^-1) over all bones; G holds the joints' constraint rows (G v = 0); ^+ is the pseudoinverse, because joints may
+/// be redundant. Stops and friction are left out, and so is the row that keeps the angle between the axes of a two-axis joint; without them
+/// the mobility is larger.
 class BoneMobility {
  public:
-  /// Of all bodies that `joints` hold, apart from `left_out` (sorted), whose joints are left out too.
+  /// Covers all bodies of `joints` except those in `left_out` (sorted); joints on a body in `left_out` are ignored.
   BoneMobility(const std::vector<std::unique_ptr<Joint>>& joints, const std::vector<dBodyID>& left_out);
 
-  /// J_a P J_b^T: how fast line a gets longer under a force of 1 on line b, per time; in 1/g. Bodies without a joint move freely.
+  /// J_a P J_b^T in 1/g: second derivative of line a's length under a unit force of line b. Bodies without a joint move freely.
   double between(const std::vector<LineOfPull::Push>& a, const std::vector<LineOfPull::Push>& b) const;
 
  private:
   Eigen::Index placeOf(dBodyID body) const;
-  std::vector<dBodyID> bodies_;  ///< in the order of the joints, not of addresses: rounding must not depend on memory
+  std::vector<dBodyID> bodies_;  ///< in the order of the joints, not of addresses, so that rounding does not depend on memory
   Eigen::MatrixXd mobility_;     ///< P, 6 unknowns per body: velocity of the centre of mass, angular velocity, world frame
 };
 

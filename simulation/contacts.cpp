@@ -24,7 +24,7 @@ void Contacts::collide(long revision) {
 }
 
 void Contacts::onNear(void* contacts, dGeomID first, dGeomID second) {
-  // A muscle's beads share one space; its members are not tested against each other.
+  // The beads of a muscle share one space, and geoms of the same space are not tested against each other.
   if (dGeomIsSpace(first) || dGeomIsSpace(second)) return dSpaceCollide2(first, second, contacts, &Contacts::onNear);
   static_cast<Contacts*>(contacts)->add(first, second);
 }
@@ -32,7 +32,7 @@ void Contacts::onNear(void* contacts, dGeomID first, dGeomID second) {
 void Contacts::add(dGeomID first, dGeomID second) {
   const dBodyID first_body = dGeomGetBody(first), second_body = dGeomGetBody(second);
   if (first_body == second_body) return;
-  // Contact joints made earlier in this step count: one contact per pair of bodies.
+  // Contact joints made earlier in this step count too, so a pair of bodies gets only one contact.
   if (first_body && second_body && dAreConnected(first_body, second_body)) return;
   dContact contact = {};
   contact.surface = surface_;

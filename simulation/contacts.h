@@ -1,4 +1,4 @@
-/// Contacts between bodies: at most one per pair of bodies and step, none between bodies that a joint connects, none within one muscle.
+/// Contacts between bodies: at most one per pair of bodies and step. Bodies connected by a joint and beads of the same muscle do not touch.
 #pragma once
 
 #include <ode/ode.h>
@@ -9,7 +9,7 @@
 
 namespace musclesim {
 
-/// One contact of this step: bodies (null: the environment), and a normal that points into the first.
+/// One contact of this step: two bodies (null: the environment) and a normal that points into the first body.
 struct ContactPoint {
   dBodyID body[2];
   dContactGeom geometry;
@@ -17,18 +17,18 @@ struct ContactPoint {
 
 class Contacts {
  public:
-  /// `friction_limit` in world units of force: with ODE's surface mode 0 the tangential force is bounded by this number.
+  /// `friction_limit` bounds the tangential force of a contact, in world units of force (ODE's surface mode 0).
   Contacts(dWorldID world, dSpaceID space, double friction_limit);
   ~Contacts();
   Contacts(const Contacts&) = delete;
   Contacts& operator=(const Contacts&) = delete;
 
-  /// Finds all contacts in the present pose and makes their joints; those of the step before are removed.
+  /// Finds all contacts in the present pose and makes contact joints for them. The contact joints of the previous step are removed.
   /// `revision`: Simulation::revision().
   void collide(long revision);
-  /// Error reduction and softness of contacts from now on, in ODE's terms; without them they are the world's.
+  /// Sets the error reduction (ERP) and softness (CFM) of contacts from now on. Until then contacts use the world's values.
   void soften(double error_reduction, double softness);
-  /// Memory for that many contacts, so that steps need not ask for it.
+  /// Allocates memory for `count` contacts, so that steps do not allocate.
   void reserve(std::size_t count) { points_.reserve(count); }
   int count() const { return static_cast<int>(points_.size()); }
   const std::vector<ContactPoint>& points() const { return points_; }

@@ -13,12 +13,13 @@ namespace musclesim {
 
 namespace {
 
-constexpr double line_margin_ratio = 0.6;  ///< of the limit in the pose as built: in other poses lines have other levers
+constexpr double line_margin_ratio =
+    0.6;  ///< share of the stability limit in the pose as built; the lever arms of lines differ in other poses
 
 using Pushes = std::vector<LineOfPull::Push>;
 
-/// Largest eigenvalue of sqrt(k_a k_b) J_a P J_b^T over all line muscles: squared rate of the fastest vibration of springs k on the bones,
-/// P how easily they move (BoneMobility).
+/// Largest eigenvalue of sqrt(k_a k_b) J_a P J_b^T over all line muscles: squared rate of the fastest vibration of springs k on the bones.
+/// P is the mobility of the bones (BoneMobility).
 double largestEigenvalue(const BoneMobility& mobility, const std::vector<Pushes>& lines, const std::vector<double>& k) {
   const auto count = static_cast<Eigen::Index>(lines.size());
   Eigen::MatrixXd matrix(count, count);
@@ -38,7 +39,7 @@ std::vector<dBodyID> beadsOf(const std::vector<Actuator*>& actuators) {
   return beads;
 }
 
-/// Longest step with h^2 K / 4 + h D / 2 = 1 for the fastest rates K, D of the line muscles' stiffness and friction.
+/// Longest stable step: h^2 K / 4 + h D / 2 = 1 for the largest rates K and D of the line muscles' stiffness and friction.
 double longestLineStepS(const PhysicsSettings& physics, const std::vector<std::unique_ptr<Joint>>& joints,
                         const std::vector<Actuator*>& actuators) {
   std::vector<Pushes> lines;
@@ -99,7 +100,8 @@ double parameterOf(const Joint& joint, int which) {
   return 0;
 }
 
-/// Balls and fixations have an error reduction of their own, the others one per axis at its stops; their positions follow the world's.
+/// Ball and fixed joints have one error reduction (ERP). Other joints have one per axis for its stops and use the world's ERP for their
+/// positions.
 void adaptErrorReduction(const Joint& joint, double before, double now) {
   const bool of_position = joint.kind() == Joint::Kind::ball || joint.kind() == Joint::Kind::fixed;
   const int first_axis = of_position ? dParamERP : dParamStopERP;

@@ -1,4 +1,4 @@
-/// The number of internal steps of a control step, and what of ODE's joints depends on their length.
+/// Chooses the number of internal steps per control step and adapts the joints' parameters to the step's length.
 #pragma once
 
 #include <memory>
@@ -10,15 +10,16 @@
 
 namespace musclesim {
 
-/// As many internal steps as the tension of the muscles asks for, none longer than
-///     margin * 2 / w,   w the fastest sway of neighbouring links (Actuator::fastestSwayRadPerS)
-/// for chains. 2 / w is the stability limit of an explicit force on the beads as they are, so the additional inertia is a safety beyond it.
-/// For line muscles it is 0.6 h with h^2 K / 4 + h D / 2 = 1, K and D the largest rates of their springs and frictions on the bones.
-/// Never longer than `physics.longest_internal_step_s`; in physics without that bound the control step is the internal step.
+/// Number of internal steps per control step that keeps the muscles stable. For chains no internal step is longer than
+///     margin * 2 / w,   w the fastest sway of neighbouring links (Actuator::fastestSwayRadPerS).
+/// 2 / w is the stability limit of an explicit force on beads without additional inertia; that inertia is a further safety. For line
+/// muscles the bound is 0.6 h with h^2 K / 4 + h D / 2 = 1, where K and D are the largest rates of their stiffness and friction on the
+/// bones. No internal step is longer than `physics.longest_internal_step_s`; without that bound the control step is the internal step.
 int automaticSubsteps(double step_s, const PhysicsSettings& physics, const std::vector<std::unique_ptr<Joint>>& joints,
                       const std::vector<Actuator*>& actuators);
 
-/// Gives joints whose error reduction is `before` the one of this step, and the stops of chains their stiffness and damping.
+/// Sets the error reduction for a step of h_s on all joints whose error reduction is `before`, and the stiffness and damping of the chains'
+/// stops.
 void adaptJoints(double h_s, double before, const PhysicsSettings& physics, const std::vector<std::unique_ptr<Joint>>& joints,
                  const std::vector<Actuator*>& actuators);
 

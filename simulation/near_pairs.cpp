@@ -8,8 +8,8 @@ namespace musclesim {
 
 namespace {
 
-constexpr double most_moved_mm = 1e5;  ///< then the list is made anew, before sums lose digits
-constexpr double rounding_mm = 1e-6;   ///< of the sums
+constexpr double most_moved_mm = 1e5;  ///< above this the list is made again, before the sums lose digits
+constexpr double rounding_mm = 1e-6;   ///< rounding error of the sums
 
 double difference(const dReal* a, const dReal* b, int count) {
   double square = 0;
@@ -55,7 +55,7 @@ void NearPairs::look(BodyPair& bodies, double moved_mm) {
   }
 }
 
-/// Adds how far the bodies can have moved since the last call.
+/// Adds the bounds on the bodies' motion since the last call.
 void NearPairs::moveBodies() {
   // |q - q_0| = 2 sin(angle / 4), so angle <= pi / sqrt(2) |q - q_0| up to half a turn.
   constexpr double most_angle_per_difference = 2.23;
@@ -70,7 +70,8 @@ void NearPairs::moveBodies() {
   }
 }
 
-/// In their present order: the space puts what is new or has been moved in front.
+/// Whether the list still matches the space. The space puts new or moved geoms in front, so comparing the count and the first geom is
+/// enough.
 bool NearPairs::holdsTheGeoms() const {
   const std::size_t count = geoms_.size();
   if (count != static_cast<std::size_t>(dSpaceGetNumGeoms(space_))) return false;
@@ -99,7 +100,7 @@ void NearPairs::makeList() {
   listPairs();
 }
 
-/// All pairs of geoms whose bodies are different and not joined.
+/// Lists all pairs of geoms on two different bodies that no joint connects.
 void NearPairs::listPairs() {
   pairs_.clear();
   body_pairs_.clear();
@@ -117,7 +118,7 @@ void NearPairs::listPairs() {
   found_.reserve(pairs_.size());
 }
 
-/// Where a body stands in the list, which notes its pose if it is new.
+/// Index of a body in bodies_. Adds a new body together with its pose.
 std::size_t NearPairs::placeOf(dBodyID body) {
   const auto found = std::ranges::find(bodies_, body, &Body::id);
   if (found != bodies_.end()) return static_cast<std::size_t>(found - bodies_.begin());
@@ -129,7 +130,7 @@ std::size_t NearPairs::placeOf(dBodyID body) {
   return bodies_.size() - 1;
 }
 
-/// One of the body's geoms fills this box.
+/// Extends the body's reach by a geom with this bounding box.
 void NearPairs::extend(Body& body, const Box& box) {
   double square = 0;  // infinite for a plane
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -146,7 +147,7 @@ const NearPairs::Box& NearPairs::boxOf(std::size_t number) {
   return geom.box;
 }
 
-/// The geom as a box whose edges are rounded, where it is one.
+/// The geom as a rounded box; not known for other shapes.
 NearPairs::RoundedBox NearPairs::roundedBoxOf(dGeomID geom) {
   RoundedBox box = {true, {}, 0};
   switch (dGeomGetClass(geom)) {
@@ -168,14 +169,14 @@ NearPairs::RoundedBox NearPairs::roundedBoxOf(dGeomID geom) {
   }
 }
 
-/// Along that of their own axes on which they are farthest apart; 0 where they overlap on all axes or their shapes are unknown.
+/// Distance along the geoms' own axis that separates them most; 0 if they overlap on all axes or a shape is unknown.
 double NearPairs::ownDistanceMm(const Geom& a, const Geom& b) {
   if (!a.shape.known || !b.shape.known) return 0;
   const dReal *ra = dGeomGetRotation(a.id), *rb = dGeomGetRotation(b.id);
   const dReal *xa = dGeomGetPosition(a.id), *xb = dGeomGetPosition(b.id);
   const double way[3] = {xb[0] - xa[0], xb[1] - xa[1], xb[2] - xa[2]};
   const auto along = [](const dReal* r, int axis, const double* v) { return r[axis] * v[0] + r[4 + axis] * v[1] + r[8 + axis] * v[2]; };
-  double reach_of_a[3] = {}, farthest = 0;  // the cores' half widths on the other's axes
+  double reach_of_a[3] = {}, farthest = 0;  // half width of a's box along b's axes
   const double radii = a.shape.radius_mm + b.shape.radius_mm;
   for (int i = 0; i < 3; ++i) {
     const double axis[3] = {ra[i], ra[4 + i], ra[8 + i]};
@@ -191,7 +192,7 @@ double NearPairs::ownDistanceMm(const Geom& a, const Geom& b) {
   return farthest;
 }
 
-/// Along the axis on which they are farthest apart; 0 for boxes that overlap or touch.
+/// Distance along the axis that separates the boxes most; 0 if they overlap or touch.
 double NearPairs::distanceMm(const Box& a, const Box& b) {
   double farthest = 0;
   for (std::size_t axis = 0; axis < 6; axis += 2) farthest = std::max({farthest, a[axis] - b[axis + 1], b[axis] - a[axis + 1]});

@@ -26,8 +26,8 @@ void appendRow(Recording& recording, double time_s, const std::vector<double>& v
   for (std::size_t i = 0; i < values.size(); ++i) recording.signals[i].values.push_back(values[i]);
 }
 
-/// The number of internal steps that was asked of a run of this program by its sidecar; 0 if there is none or it was the automatic one,
-/// which other parameters may change.
+/// Number of internal steps that the sidecar of a run of this program states; 0 if it states none or the automatic number, which may change
+/// with other parameters.
 int recordedSubsteps(const RecordingInfo& info) {
   const auto extra = nlohmann::json::parse(info.extra_json, nullptr, false);
   if (!extra.is_object() || !extra.contains("substeps") || !extra["substeps"].is_number_integer()) return 0;
@@ -43,8 +43,8 @@ nlohmann::json toJson(const Parameter::Value& value) {
   return std::get<std::string>(value);
 }
 
-/// What a replay needs to rebuild the robot: its own parameters, all others of the model that differ from their defaults, and the ground
-/// plane's height, which says that there is one.
+/// Parameters that a replay needs to rebuild the robot: the robot's own, all others of the model that differ from their defaults, and the
+/// ground plane's height if there is a plane.
 std::map<std::string, Parameter::Value> robotParameters(Simulation& simulation) {
   std::map<std::string, Parameter::Value> result;
   const std::string own = simulation.robot().name() + ".";
@@ -68,12 +68,12 @@ void requireRegistered(const std::string& robot, const std::string& source) {
     throw BadFile(source, fmt::format("there is no robot \"{}\"; registered: {}", robot, fmt::join(names, ", ")));
 }
 
-/// What a run notes beside what its robot reports.
+/// Whether a signal comes from the run's task and not from its robot.
 bool isOfTask(const std::string& signal) {
   return signal == "activity" || signal.starts_with("target_");
 }
 
-/// Signals of a recording whose samples an effect loses.
+/// Signals of a recording that lose samples to an effect.
 std::vector<const Signal*> signalsHeldBy(const ActiveEffect& effect, const Recording& recording) {
   std::vector<const Signal*> held;
   if (effect.id != held_effect) return held;
@@ -127,7 +127,7 @@ SimulationOptions simulationOptionsFor(const RecordingInfo& info, const std::str
   result.step_s = options.step_s.value_or(info.step_s.value_or(default_step_s));
   result.stepper = options.stepper;
   result.substeps = options.substeps;
-  // A run of ours is repeated with its own internal steps unless the user changes what they depend on.
+  // A run of this program is replayed with its own number of internal steps unless the user changes the physics or the step.
   if (options.substeps == 0 && !options.physics && !options.step_s) result.substeps = recordedSubsteps(info);
   result.plane = options.plane || info.robot_parameters.contains(plane_height);
   result.seed = options.seed.value_or(info.seed.value_or(1));
@@ -152,7 +152,7 @@ ReplayResult replayRecording(const Recording& recording, const ReplayOptions& op
   ReplayOptions drawn = options;
   std::erase_if(drawn.effects, [&](const ActiveEffect& effect) {
     if (signalsHeldBy(effect, recording).empty()) return false;
-    effectValues(effectInfo(effect.id), effect);  // refuses wrong ones
+    effectValues(effectInfo(effect.id), effect);  // throws for wrong parameters
     held.push_back(effect);
     return true;
   });

@@ -38,8 +38,8 @@ QuickStepper::QuickStepper(dWorldID world, int iteration_count, unsigned long se
 }
 
 void QuickStepper::step(double h_s) {
-  // ODE's generator belongs to the process; with its state put back before every step and one step at a time, simulations, also those in
-  // other threads, do not disturb each other.
+  // All threads share ODE's random generator. Restoring its state before every step, and one step at a time, keeps simulations in different
+  // threads independent.
   static std::mutex generator;
   const std::lock_guard<std::mutex> lock(generator);
   dRandSetSeed(random_state_);

@@ -12,11 +12,11 @@ EffectInfo BaseTilt::info() {
           .stage = Stage::body,
           .acts_on = {ComponentKind::base},
           .summary = "the robot does not stand upright",
-          .equation = "g' = R_z(tilt_z_deg) R_x(tilt_x_deg) g    g gravity, R turns about the world's axes",
-          .signature = "gravity error shifted in the angle, shared by all joints",
+          .equation = "g' = R_z(tilt_z_deg) R_x(tilt_x_deg) g    g gravity, R rotations about the world's axes",
+          .signature = "error of a gravity torque shifted in angle, the same shift for all joints",
           .source = "definition",
-          .parameters = {{"tilt_x_deg", "deg", 0, -180, 180, -8, 8, "turn of gravity about x"},
-                         {"tilt_z_deg", "deg", 0, -180, 180, -8, 8, "turn of gravity about z"}},
+          .parameters = {{"tilt_x_deg", "deg", 0, -180, 180, -8, 8, "rotation of gravity about x"},
+                         {"tilt_z_deg", "deg", 0, -180, 180, -8, 8, "rotation of gravity about z"}},
           .make = [](const EffectValues& values) { return std::make_unique<BaseTilt>(values["tilt_x_deg"], values["tilt_z_deg"]); }};
 }
 

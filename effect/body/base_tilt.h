@@ -1,6 +1,6 @@
 /// Body stage: the robot does not stand upright.
 ///     g' = R_z(tilt_z_deg) R_x(tilt_x_deg) g
-/// g gravity; R right-handed turns about the world's x and z axes. All positions stay in the robot's frame.
+/// g gravity; R_x and R_z are right-handed rotations about the world's x and z axes. All positions stay in the robot's frame.
 /// Neutral: both 0. Range -180 .. 180 deg, usually -8 .. 8.  Source: definition.
 #pragma once
 

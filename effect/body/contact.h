@@ -1,7 +1,8 @@
-/// Body stage: a wall.
+/// Body stage: a joint, the hand or the load meets a wall.
 ///     joint:  torque = -k max(0, s (q - q_w)) s        q angle in deg, q_w = plane_deg, k = stiffness_Nm_per_deg
 ///     hand:   force = -k max(0, s (x - x_w)) s e       x the hand's coordinate along the axis e, x_w = plane_mm, k = stiffness_N_per_mm
-/// s = +1: the wall is beyond the plane, s = -1: below it; side auto takes the sign of the plane's coordinate. Frictionless and elastic.
+/// s = +1: the wall is above the plane's coordinate, s = -1: below it; with side = auto, s is the sign of that coordinate. The wall is
+/// frictionless and elastic.
 /// Neutral: both stiffnesses 0. Ranges 0 .. 1000 N m/deg and 0 .. 1e5 N/mm.  Source: penalty contact.
 #pragma once
 
@@ -12,7 +13,7 @@ namespace musclesim {
 /// A wall across one coordinate.
 struct Wall {
   double plane, stiffness;
-  bool beyond;  ///< or below
+  bool beyond;  ///< true: the wall is above `plane`; false: below
   /// Force along the coordinate.
   double push(double coordinate) const;
 };
@@ -36,7 +37,7 @@ class HandContact final : public HandEffect {
   Vector axis_;
 };
 
-/// One of the two, by its place.
+/// A JointContact or a HandContact, depending on the component.
 class Contact final : public BodyEffect {
  public:
   explicit Contact(EffectValues values) : values_(std::move(values)) {}

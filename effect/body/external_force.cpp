@@ -8,7 +8,7 @@ EffectInfo ExternalForce::info() {
           .acts_on = {ComponentKind::hand},
           .summary = "a constant force on the hand",
           .equation = "F = (force_x_N, force_y_N, force_z_N) at the hand, world frame",
-          .signature = "Jacobian-shaped, present when vented",
+          .signature = "joint torques follow the hand's Jacobian; present even with vented muscles",
           .source = "definition",
           .parameters = {{"force_x_N", "N", 0, -1e4, 1e4, -10, 10, "component to the side"},
                          {"force_y_N", "N", 0, -1e4, 1e4, -10, 10, "component upward"},

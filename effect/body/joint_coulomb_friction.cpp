@@ -15,10 +15,11 @@ EffectInfo JointCoulombFriction::info() {
       .equation =
           "torque = -tau_c sign(dq/dt), at rest within -tau_c .. tau_c; with presliding d: -tau_c z / d, dz = dq within -d .. d    q joint "
           "angle, tau_c = torque_Nm",
-      .signature = "loop width does not depend on pressure; sticks at reversal",
-      .source = "Coulomb friction as a bounded force of constraint; Maxwell slip, Al-Bender, Lampaert and Swevers 2005",
+      .signature = "the width of the loop does not depend on pressure; the joint sticks at reversals",
+      .source = "Coulomb friction as a bounded constraint force; Maxwell slip, Al-Bender, Lampaert and Swevers 2005",
       .parameters = {{"torque_Nm", "N m", 0, 0, 100, 0.02, 1, "tau_c"},
-                     {"presliding_deg", "deg", 0, 0, 90, 0.1, 1, "d, angle within which the contact only gives way", true}},
+                     {"presliding_deg", "deg", 0, 0, 90, 0.1, 1, "d, angle over which friction acts like a spring before the joint slides",
+                      true}},
       .make = [](const EffectValues& v) { return std::make_unique<JointCoulombFriction>(v["torque_Nm"], v["presliding_deg"]); }};
 }
 
@@ -32,7 +33,7 @@ void JointCoulombFriction::attach(const EffectPlace& place) {
   dJointSetHingeParam(joint().id(), dParamVel, 0);
   const double largest = before + torque_Nm_ * mm_per_m * forcePerN();
   dJointSetHingeParam(joint().id(), dParamFMax, largest);
-  // A softness (CFM) is a speed per torque: the joint creeps at this speed under the full torque.
+  // CFM (softness) is a speed per torque; with this one the joint creeps at creep_rad_per_s under the full torque.
   constexpr double creep_rad_per_s = 1e-6;
   dJointSetHingeParam(joint().id(), dParamCFM, creep_rad_per_s / largest);
 }

@@ -1,10 +1,10 @@
 /// Body stage: dry friction in a joint.
-///     torque = -tau_c sign(dq/dt); at rest, whatever keeps it at rest within -tau_c .. tau_c
-/// q joint angle, tau_c = torque_Nm. It is a bound on a force of constraint in the stepper, so the joint sticks without creeping. It adds
-/// to dry friction that the joint has already. With presliding_deg = d > 0 the contact gives way like a spring before it slides:
+///     torque = -tau_c sign(dq/dt); at rest, the torque within -tau_c .. tau_c that keeps it at rest
+/// q joint angle, tau_c = torque_Nm. The stepper treats it as a bounded constraint force, so the joint sticks without creeping. It adds to
+/// the joint's existing dry friction. With presliding_deg = d > 0 the friction acts like a spring before the joint slides:
 ///     torque = -tau_c z / d,    dz/dt = dq/dt, z held within -d .. d
-/// Neutral: tau_c = 0. Range 0 .. 100 N m, usually 0.02 .. 1; d 0 .. 90 deg, usually 0.1 .. 1.  Source: Coulomb; motor with bounded force
-/// of ODE; one Maxwell slip element, Al-Bender, Lampaert and Swevers 2005.
+/// Neutral: tau_c = 0. Range 0 .. 100 N m, usually 0.02 .. 1; d 0 .. 90 deg, usually 0.1 .. 1.  Source: Coulomb; ODE's motor with bounded
+/// force; one Maxwell slip element, Al-Bender, Lampaert and Swevers 2005.
 #pragma once
 
 #include "musclesim/effect/effect_info.h"

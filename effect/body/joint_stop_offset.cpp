@@ -13,7 +13,7 @@ EffectInfo JointStopOffset::info() {
           .acts_on = {ComponentKind::joint},
           .summary = "both stops of a joint are shifted",
           .equation = "low + d <= q <= high + d    q joint angle, d = offset_deg",
-          .signature = "only near the stop",
+          .signature = "the error appears only near the stops",
           .source = "definition",
           .parameters = {{"offset_deg", "deg", 0, -90, 90, -15, 15, "d"}},
           .make = [](const EffectValues& values) { return std::make_unique<JointStopOffset>(values["offset_deg"]); }};
@@ -24,7 +24,7 @@ void JointStopOffset::attach(const EffectPlace& place) {
   const double low = dJointGetHingeParam(joint().id(), dParamLoStop), high = dJointGetHingeParam(joint().id(), dParamHiStop);
   if (std::isinf(low) || std::isinf(high)) throw BadParameter("joint_stop_offset on " + place.component + ": the joint has no stops");
   const double shift = offset_deg_ * rad_per_deg;
-  // ODE refuses a low stop above the high stop in force, so the first call is made twice.
+  // ODE ignores a low stop above the present high stop, so the low stop is set again after the high stop.
   dJointSetHingeParam(joint().id(), dParamLoStop, low + shift);
   dJointSetHingeParam(joint().id(), dParamHiStop, high + shift);
   dJointSetHingeParam(joint().id(), dParamLoStop, low + shift);

@@ -1,8 +1,9 @@
 /// Body stage: a joint resists in proportion to its speed.
 ///     torque = -b dq/dt
-/// q joint angle in rad, b = damping_Nms_per_rad. Taken at the speed at the begin of the internal step: stable while b h < 2 I, I the
-/// moment of inertia about the joint. Neutral: b = 0. Range 0 .. 10 N m s/rad, usually 0.005 .. 0.5.  Source: viscous part of the usual
-/// friction models, Armstrong-Helouvry, Dupont and Canudas de Wit 1994.
+/// q joint angle in rad, b = damping_Nms_per_rad. The torque uses the speed at the start of the internal step, so it is stable while b h <
+/// 2 I, I the moment of inertia about the joint.
+/// Neutral: b = 0. Range 0 .. 10 N m s/rad, usually 0.005 .. 0.5.  Source: viscous part of the usual friction models, Armstrong-Helouvry,
+/// Dupont and Canudas de Wit 1994.
 #pragma once
 
 #include "musclesim/effect/effect_info.h"

@@ -9,9 +9,9 @@ EffectInfo Payload::info() {
   return {.id = "payload",
           .stage = Stage::body,
           .acts_on = {ComponentKind::hand},
-          .summary = "a mass in the hand that the model does not know",
+          .summary = "the hand carries a mass that is not in the model",
           .equation = "m' = m + mass_kg, with the inertia of a point mass at the hand",
-          .signature = "gravity-shaped plus acceleration-shaped",
+          .signature = "torque error with a gravity part and a part in proportion to acceleration",
           .source = "parallel-axis theorem",
           .parameters = {{"mass_kg", "kg", 0, -1000, 1000, -0.3, 1, "mass in the hand; rig: on the load"}},
           .make = [](const EffectValues& values) { return std::make_unique<Payload>(values["mass_kg"]); }};

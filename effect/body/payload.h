@@ -1,6 +1,6 @@
-/// Body stage: a mass in the hand (rig: on the load) that the model does not know; negative: what the model has too much.
-///     m' = m + mass_kg, with centre of mass and inertia of a point mass at the hand added to those of the hand's body
-/// Throws BadParameter where mass or inertia of the body would not stay positive.
+/// Body stage: the hand (rig: the load) carries a mass that is not in the model; a negative mass means that the model's is too large.
+///     m' = m + mass_kg,   a point mass at the hand is added to the mass, centre of mass and inertia of the hand's body
+/// Throws BadParameter if the body's mass or inertia would not stay positive.
 /// Neutral: 0. Range -1000 .. 1000 kg, usually -0.3 .. 1.  Source: parallel-axis theorem.
 #pragma once
 

@@ -8,7 +8,7 @@ EffectInfo ChannelSwap::info() {
           .acts_on = {ComponentKind::muscle_pair},
           .summary = "the commands of two muscles are exchanged",
           .equation = "u_i' = u_j, u_j' = u_i    u commanded, u' delivered",
-          .signature = "antagonists act in mirror image",
+          .signature = "the two muscles respond to each other's commands; antagonists move in the wrong direction",
           .source = "definition",
           .parameters = {},
           .make = [](const EffectValues&) { return std::make_unique<ChannelSwap>(); }};

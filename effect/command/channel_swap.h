@@ -1,7 +1,7 @@
 /// Command stage: the tubes or wires of two muscles are exchanged.
 ///     u_i' = u_j,  u_j' = u_i
-/// u commanded, u' delivered pressure. The component muscle_i+muscle_j names the two. There is no neutral setting: the effect is there or
-/// not.  Source: definition.
+/// u commanded, u' delivered pressure. The component muscle_i+muscle_j names the two muscles. There is no neutral setting: the effect is
+/// either active or absent. Source: definition.
 #pragma once
 
 #include "musclesim/effect/effect_info.h"

@@ -1,4 +1,4 @@
-/// Command stage: a valve does not open for small commands.
+/// Command stage: the valve does not open for small commands.
 ///     u' = 0 for u < u_t,  u otherwise
 /// u commanded, u' delivered pressure, fractions of full scale; u_t = threshold.
 /// Neutral: u_t = 0. Range 0 .. 1, usually 0.02 .. 0.1.  Source: definition; 0.056 measured on a pneumatic muscle drive.

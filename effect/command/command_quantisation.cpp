@@ -14,12 +14,13 @@ EffectInfo CommandQuantisation::info() {
       .acts_on = {ComponentKind::muscle},
       .summary = "commands are rounded to 2^bits levels",
       .equation = "u' = floor(u m + 1 - r) / m, m = 2^bits - top_level, r = rounding_point    u commanded, u' delivered",
-      .signature = "residual on a lattice",
+      .signature = "the residual jumps between discrete levels",
       .source = "definition; the compressor of Braun 2007 takes 8 bits",
       .parameters = {{"bits", "bit", unlimited, 1, unlimited, 6, 10, "resolution of the converter"},
                      {"rounding_point", "", 0.5, 0, 1, 0.5, 1,
-                      "share of an interval from which on the next level is taken; 0.5: rounds, 1: truncates", true},
-                     {"top_level", "", 1, 0, 1, 0, 1, "1: the highest level is full scale; 0: full scale would be one level beyond", true}},
+                      "r, point within an interval from which values go to the next level; 0.5: rounds, 1: truncates", true},
+                     {"top_level", "", 1, 0, 1, 0, 1, "1: the highest level is full scale; 0: full scale would be one level above it",
+                      true}},
       .make = [](const EffectValues& v) { return std::make_unique<CommandQuantisation>(v["bits"], v["rounding_point"], v["top_level"]); }};
 }
 

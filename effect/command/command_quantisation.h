@@ -1,7 +1,8 @@
-/// Command stage: a converter knows a limited number of levels.
+/// Command stage: a converter has a limited number of levels.
 ///     u' = floor(u m + 1 - r) / m,    m = n - e,  n = 2^bits levels
-/// u commanded, u' delivered pressure, fractions of full scale; r = 0.5 rounds, r = 1 truncates; e = 1: the highest level is full scale,
-/// e = 0: full scale would be the level beyond it, as in converters that deliver code / 2^bits of their reference. n need not be whole.
+/// u commanded, u' delivered pressure, fractions of full scale; r = 0.5 rounds, r = 1 truncates. With e = 1 the highest level is full
+/// scale; with e = 0 full scale would be one level above the highest, as in converters that output code / 2^bits of their reference. n need
+/// not be an integer.
 /// Neutral: bits infinite. Range 1 .. infinity, usually 6 .. 10; the compressor of Braun 2007 has 8.  Source: definition.
 #pragma once
 

@@ -8,7 +8,7 @@ EffectInfo TransportDelay::info() {
           .acts_on = {ComponentKind::muscle},
           .summary = "commands reach the valve late",
           .equation = "u'(t) = u(t - T)    u commanded, u' delivered, T = delay_s",
-          .signature = "linear phase without roll-off",
+          .signature = "phase lag in proportion to frequency, amplitude unchanged",
           .source = "dead time of tubes and electronics; 44 to 96 ms measured on a pneumatic muscle drive",
           .parameters = {{"delay_s", "s", 0, 0, 2, 0.003, 0.1, "dead time"}},
           .make = [](const EffectValues& values) { return std::make_unique<TransportDelay>(values["delay_s"]); }};

@@ -11,15 +11,16 @@ EffectInfo BraidHysteresis::info() {
   return {.id = "braid_hysteresis",
           .stage = Stage::force,
           .acts_on = {ComponentKind::muscle},
-          .summary = "the threads of the braid rub on each other",
+          .summary = "the threads of the braid rub against each other",
           .equation =
               "F' = F - w ((1 - c) |F| + c p F_0) z, dz = -dl / s within -1 <= z <= 1    F tension, p pressure, F_0 tension at full "
               "pressure and length, l length, w = relative_width, s = presliding_mm, c = pressure_share",
           .signature = "loop of pressure over length whose width grows with pressure and does not depend on speed",
           .source = "Maxwell slip element, Iwan 1966; friction between threads, Tondu and Lopez 2000",
-          .parameters = {{"relative_width", "", 0, 0, 1, 0.01, 0.12, "w, half the loop's width as a share of the tension, or of p F_0"},
+          .parameters = {{"relative_width", "", 0, 0, 1, 0.01, 0.12,
+                          "w, half the loop's width as a share of the tension (c = 0) or of p F_0 (c = 1)"},
                          {"presliding_mm", "mm", 1, 0.01, 50, 0.5, 3, "s, displacement until the threads slide", true},
-                         {"pressure_share", "", 0, 0, 1, 0, 1, "c; 0: friction goes with the tension, 1: with the pressure alone", true}},
+                         {"pressure_share", "", 0, 0, 1, 0, 1, "c; 0: friction in proportion to the tension, 1: to the pressure", true}},
           .make = [](const EffectValues& values) {
             return std::make_unique<BraidHysteresis>(values["relative_width"], values["presliding_mm"], values["pressure_share"]);
           }};

@@ -10,11 +10,11 @@ EffectInfo Creep::info() {
   return {.id = "creep",
           .stage = Stage::force,
           .acts_on = {ComponentKind::muscle},
-          .summary = "the bladder gives way slowly",
+          .summary = "the bladder yields slowly under load",
           .equation = "F' = F(p, l - x), tau dx/dt = amount (l - x - l_max) - x    F tension, l length, x creep, tau = time_constant_s",
-          .signature = "length drifts at constant measured pressure",
-          .source = "Kelvin-Voigt element in series; 0.07 to 0.19 with 0.53 to 1.0 s measured",
-          .parameters = {{"amount", "", 0, 0, 10, 0.03, 0.25, "share of the immediate change of length that follows slowly"},
+          .signature = "the length drifts while the measured pressure is constant",
+          .source = "Kelvin-Voigt element in series; amounts of 0.07 to 0.19 with time constants of 0.53 to 1.0 s measured",
+          .parameters = {{"amount", "", 0, 0, 10, 0.03, 0.25, "slow change of length over the immediate change"},
                          {"time_constant_s", "s", 1, 1e-3, 1e4, 0.3, 30, "tau", true}},
           .make = [](const EffectValues& values) { return std::make_unique<Creep>(values["amount"], values["time_constant_s"]); }};
 }

@@ -1,6 +1,6 @@
-/// Force stage: the tension drifts over minutes, from temperature or wear.
-///     F' = F (1 + r t)
-/// F tension in N, t time since the start of the run in min, r = rate_per_min; never below 0 of F. While the run settles, t = 0.
+/// Force stage: the tension drifts over minutes because of temperature or wear.
+///     F' = F max(0, 1 + r t)
+/// F tension in N, t time since the start of the run in min, r = rate_per_min. While the run settles, t = 0.
 /// Neutral: r = 0. Range -10 .. 10 per min, usually -0.05 .. 0.05.  Source: linear trend.
 #pragma once
 

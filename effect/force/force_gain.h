@@ -1,6 +1,7 @@
 /// Force stage: a muscle is weaker or stronger than the force law says.
 ///     F' = g F
-/// F tension in N, g = gain. Neutral: g = 1. Range 0 .. 10, usually 0.7 .. 1.3.  Source: definition; ageing, another muscle type.
+/// F tension in N, g = gain.
+/// Neutral: g = 1. Range 0 .. 10, usually 0.7 .. 1.3.  Source: definition. Causes: ageing, another muscle type.
 #pragma once
 
 #include "musclesim/effect/effect_info.h"

@@ -8,9 +8,9 @@ EffectInfo LengthOffset::info() {
           .acts_on = {ComponentKind::muscle},
           .summary = "a muscle is mounted too long or too short",
           .equation = "F' = F(p, l + d)    F tension, l length, d = offset_mm",
-          .signature = "error grows with pressure, vanishes when slack",
+          .signature = "the error grows with pressure and vanishes when the muscle is slack",
           .source = "definition",
-          .parameters = {{"offset_mm", "mm", 0, -500, 500, -15, 15, "d; positive: stretched by more than the model has it"}},
+          .parameters = {{"offset_mm", "mm", 0, -500, 500, -15, 15, "d; positive: stretched by d more than in the model"}},
           .make = [](const EffectValues& values) { return std::make_unique<LengthOffset>(values["offset_mm"]); }};
 }
 

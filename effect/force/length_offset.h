@@ -1,6 +1,6 @@
 /// Force stage: a muscle is mounted too long or too short.
 ///     F' = F(p, l + d)
-/// F tension, l length, d = offset_mm: positive, the muscle is as if stretched by d more than the model has it.
+/// F tension, l length, d = offset_mm: if positive, the muscle acts as if it were stretched by d more than in the model.
 /// Neutral: d = 0. Range -500 .. 500 mm, usually -15 .. 15.  Source: definition.
 #pragma once
 

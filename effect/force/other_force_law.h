@@ -1,8 +1,8 @@
-/// Force stage: the muscle follows another static law than the model's.
-///     F' = G(p, l),  or  F' = max(0, F + G(p, l)) with law = corrected, G then the terms of Chou-Hannaford
-/// G one of the laws of musclesim/robot: Eq. 1 with other constants, Chou-Hannaford, Sarosi, or the measured map of the parameters
-/// "force_law.*". F tension, p pressure, l length; the constants are those of the law, see its header. rest_length_mm 0 stands for the
-/// muscle's own longest length.
+/// Force stage: the muscle follows another static force law than the model.
+///     F' = G(p, l),  or, with law = corrected,  F' = max(0, F + G(p, l))
+/// G is one of the laws of musclesim/robot: Eq. 1 with other constants, Chou-Hannaford, Sarosi, or the measured map of the parameters
+/// "force_law.*"; with law = corrected, G is the Chou-Hannaford formula. F tension, p pressure, l length; each law's header explains its
+/// constants. rest_length_mm = 0 stands for the muscle's own longest length.
 /// Neutral: law = own.  Source: Braun 2007; Chou and Hannaford 1996; Sarosi 2012.
 #pragma once
 

@@ -12,7 +12,7 @@ EffectInfo SeriesElasticity::info() {
           .acts_on = {ComponentKind::muscle},
           .summary = "an elastic tendon between muscle and bone",
           .equation = "F' = F(p, l - x) = k x, x >= 0    F tension, l length of both, x stretch, k = stiffness_N_per_mm",
-          .signature = "dead zone at low tension, softer joint",
+          .signature = "dead zone at low tension; the joint is softer",
           .source = "springs in series",
           .parameters = {{"stiffness_N_per_mm", "N/mm", unlimited, 0.01, unlimited, 5, 1000, "k"}},
           .make = [](const EffectValues& values) { return std::make_unique<SeriesElasticity>(values["stiffness_N_per_mm"]); }};
@@ -28,7 +28,8 @@ MuscleInput SeriesElasticity::inside(const MuscleInput& input, double stretch_mm
 double SeriesElasticity::tensionN(const MuscleInput& input, const ForceBelow& below) const {
   constexpr double accuracy_mm = 1e-10;
   constexpr int round_limit = 100;
-  // The muscle's surplus over the tendon falls with x: regula falsi between slack and a tendon that carries what the slack muscle would.
+  // The difference between the muscle's and the tendon's tension falls with x. Regula falsi brackets x between a slack tendon and one that
+  // carries the muscle's tension at x = 0.
   auto surplus = [&](double x) { return below(inside(input, x)) - stiffness_ * x; };
   double low_mm = 0, at_low = surplus(0), high_mm = at_low / stiffness_;
   stretch_mm_ = 0;
@@ -41,7 +42,7 @@ double SeriesElasticity::tensionN(const MuscleInput& input, const ForceBelow& be
     if (here > 0) {
       low_mm = stretch_mm_;
       at_low = here;
-      at_high /= 2;  // Illinois: the end that stays counts half
+      at_high /= 2;  // Illinois method: halve the value at the end that stays
     } else {
       high_mm = stretch_mm_;
       at_high = here;

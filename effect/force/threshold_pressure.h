@@ -1,6 +1,6 @@
-/// Force stage: the bladder takes some pressure before the braid feels any.
+/// Force stage: the bladder needs some pressure before it presses on the braid.
 ///     F' = F(p', l),    p' = max(0, p - p_t) / (1 - p_t)                            for q = 0, a kink
-///                       p' = (s(p) - s(0)) / (s(1) - s(0)),                         otherwise; a bladder that gives way little by little
+///                       p' = (s(p) - s(0)) / (s(1) - s(0)),                         otherwise; the bladder yields gradually
 ///                       s(p) = q p_t ln(1 + exp((p - p_t) / (q p_t)))
 /// p pressure in the muscle, p' pressure that the force law sees, fractions of full scale; p_t = threshold, q = softness; l length.
 /// Neutral: p_t = 0. Range 0 .. 0.9, usually 0.02 .. 0.15; q 0 .. 2, usually 0 .. 0.6 (estimate).  Source: dead band of bladder muscles;

@@ -17,12 +17,13 @@ EffectInfo ViscousLoss::info() {
   return {.id = "viscous_loss",
           .stage = Stage::force,
           .acts_on = {ComponentKind::muscle},
-          .summary = "a muscle resists the rate of its length",
+          .summary = "a muscle resists changes of its length in proportion to their speed",
           .equation = "F' = F + B dl/dt    F tension, l length, B = damping_Ns_per_m, times shortening_ratio while l gets shorter",
-          .signature = "loop width grows with speed",
+          .signature = "the loop of tension over length gets wider with speed",
           .source = "Reynolds et al. 2003: 1570 (relaxing) to 2900 N s/m (contracting)",
           .parameters = {{"damping_Ns_per_m", "N s/m", 0, 0, 1e5, 20, 3000, "B while the muscle gets longer"},
-                         {"shortening_ratio", "", 1, 0, 100, 0.5, 2, "B while it gets shorter over B while it gets longer", true}},
+                         {"shortening_ratio", "", 1, 0, 100, 0.5, 2, "ratio of B while the muscle gets shorter to B while it gets longer",
+                          true}},
           .make = [](const EffectValues& values) {
             const double damping = values["damping_Ns_per_m"];
             return std::make_unique<ViscousLoss>(damping, damping * values["shortening_ratio"]);
@@ -41,7 +42,7 @@ double ViscousLoss::lossAfter(double rate_mm_per_s, double h_s) const {
 }
 
 double ViscousLoss::tensionN(const MuscleInput& input, const ForceBelow& below) const {
-  // A look shows what the next step will have.
+  // A query without a step (h_s = 0) returns the tension of the next step.
   return below(input) + lossAfter(input.rate_mm_per_s, input.moment.h_s > 0 ? input.moment.h_s : step_s_);
 }
 

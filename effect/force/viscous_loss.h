@@ -1,9 +1,10 @@
-/// Force stage: a muscle resists the rate of its length.
+/// Force stage: a muscle resists changes of its length in proportion to their speed.
 ///     F' = F + D,    tau dD/dt = B dl/dt - D,    tau = B / K,  K = 10 g / h^2
-/// F tension, D loss in N, l length, B = damping_Ns_per_m, h internal step. K belongs to the method, not to the muscle: a stiffness that
-/// keeps the steps stable for any B, about 100 N/mm at the usual step against less than 5 of the muscle; it grows without bound as h
-/// shrinks. Neutral: B = 0. Range 0 .. 1e5 N s/m, usually 20 .. 3000 (a muscle as soft as those of the paper is overdamped above some
-/// hundred). Source: Reynolds et al. 2003 measured 1570 (relaxing) to 2900 N s/m (contracting).
+/// F tension, D loss in N, l length, B = damping_Ns_per_m, h internal step. K is a stiffness of the numerical method, not of the muscle: it
+/// keeps the steps stable for any B. It is about 100 N/mm at the usual step, compared with less than 5 N/mm of the muscle, and grows
+/// without bound as h shrinks.
+/// Neutral: B = 0. Range 0 .. 1e5 N s/m, usually 20 .. 3000 (a muscle as soft as the paper's is overdamped above a few hundred). Source:
+/// Reynolds et al. 2003 measured 1570 (relaxing) to 2900 N s/m (contracting).
 #pragma once
 
 #include "musclesim/effect/effect_info.h"

@@ -12,13 +12,15 @@ EffectInfo FlowLimit::info() {
           .stage = Stage::pressure,
           .acts_on = {ComponentKind::muscle},
           .summary = "choked flow limits how fast the pressure changes",
-          .equation = "dp/dt = rate sat((u - p) / proportional_band), rate by the sign of u - p    u delivered, p actual",
-          .signature = "ramps at large steps, small steps untouched",
+          .equation =
+              "dp/dt = rate sat((u - p) / proportional_band), rate = fill_rate_per_s or vent_rate_per_s by the sign of u - p    u "
+              "delivered, p actual",
+          .signature = "large steps become ramps, small steps are unchanged",
           .source = "choked flow through an orifice (ISO 6358); +7 and -2.7 bar/s of 6 bar measured",
           .parameters = {{"fill_rate_per_s", "1/s", unlimited, 0.01, unlimited, 0.3, 2, "largest dp/dt"},
                          {"vent_rate_per_s", "1/s", unlimited, 0.01, unlimited, 0.3, 2, "largest -dp/dt"},
-                         {"proportional_band", "1", 0, 0, 0.5, 0.01, 0.05, "distance of p from u below which the flow falls in proportion",
-                          true}},
+                         {"proportional_band", "1", 0, 0, 0.5, 0.01, 0.05,
+                          "distance |u - p| below which the flow falls in proportion to it", true}},
           .make = [](const EffectValues& values) {
             return std::make_unique<FlowLimit>(values["fill_rate_per_s"], values["vent_rate_per_s"], values["proportional_band"]);
           }};
@@ -26,9 +28,9 @@ EffectInfo FlowLimit::info() {
 
 double FlowLimit::output(double input, const Moment& moment) {
   const double rate_per_s = input > pressure_ ? fill_per_s_ : vent_per_s_;
-  if (std::isinf(rate_per_s)) return pressure_ = input;  // also at a look: infinity times 0 is not a number
+  if (std::isinf(rate_per_s)) return pressure_ = input;  // also for a query with h_s = 0, where infinity times 0 would be NaN
   const double distance = std::abs(input - pressure_), sign = input > pressure_ ? 1 : -1;
-  const double full_flow_s = std::max(0.0, distance - band_) / rate_per_s;  // until the band is reached
+  const double full_flow_s = std::max(0.0, distance - band_) / rate_per_s;  // time until p reaches the band
   if (full_flow_s >= moment.h_s) return pressure_ += sign * rate_per_s * moment.h_s;
   if (band_ == 0) return pressure_ = input;
   const double left = std::min(distance, band_) * std::exp(-(moment.h_s - full_flow_s) * rate_per_s / band_);

@@ -10,14 +10,15 @@ EffectInfo Leak::info() {
       .id = "leak",
       .stage = Stage::pressure,
       .acts_on = {ComponentKind::muscle},
-      .summary = "a loss of air against a regulator of finite speed",
+      .summary = "a muscle loses air, and a regulator of finite speed replaces it",
       .equation =
           "dp/dt = (u - p) / tau_r - k p^n    u delivered, p actual, k = leak_per_s, tau_r = regulator_time_constant_s, n = flow_exponent",
-      .signature = "decays while held, steady offset when regulated",
-      .source = "mass balance; losses of 3 % to 80 % in 120 s measured with closed valve",
+      .signature = "pressure decays with a closed valve; with a regulator it stays below the command by a steady offset",
+      .source = "mass balance; losses of 3 % to 80 % in 120 s measured with a closed valve",
       .parameters = {{"leak_per_s", "1/s", 0, 0, 100, 0.0003, 1, "k"},
                      {"regulator_time_constant_s", "s", 0.05, 1e-3, 5, 0.02, 0.15, "tau_r", true},
-                     {"flow_exponent", "", 1, 0.3, 1.5, 0.5, 1, "n: 1 laminar or choked, 0.5 a hole at little pressure", true}},
+                     {"flow_exponent", "", 1, 0.3, 1.5, 0.5, 1,
+                      "n; 1: laminar or choked flow, 0.5: turbulent flow through a hole at low pressure", true}},
       .make = [](const EffectValues& values) {
         return std::make_unique<Leak>(values["leak_per_s"], values["regulator_time_constant_s"], values["flow_exponent"]);
       }};
@@ -34,7 +35,7 @@ double Leak::output(double input, const Moment& moment) {
   return pressure_ = held + (pressure_ - held) * std::exp(-moment.h_s * (1 / regulator_s_ + loss_per_s));
 }
 
-/// p + tau_r k p^n = u, whose left side grows with p, by halving.
+/// Solves p + tau_r k p^n = u by bisection; the left side grows with p.
 double Leak::settled(double input) {
   constexpr int halvings = 50;
   double low = 0, high = input;

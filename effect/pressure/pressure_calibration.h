@@ -1,6 +1,6 @@
-/// Pressure stage: the pressure that a regulator makes is not the one it is asked for.
+/// Pressure stage: the regulator's pressure differs from the requested pressure by a gain and an offset.
 ///     p' = max(0, gain p + offset)
-/// p asked, p' actual pressure, fractions of full scale; a muscle cannot be below atmosphere.
+/// p requested, p' actual pressure, fractions of full scale; a muscle's pressure cannot be below atmosphere.
 /// Neutral: gain 1, offset 0. Range of gain 0 .. 5, usually 0.9 .. 1.1; of offset -1 .. 1, usually -0.05 .. 0.05.  Source: definition.
 #pragma once
 

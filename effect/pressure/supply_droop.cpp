@@ -17,9 +17,9 @@ EffectInfo SupplyDroop::info() {
       .id = "supply_droop",
       .stage = Stage::pressure,
       .acts_on = {ComponentKind::all_muscles},
-      .summary = "the supply sags under the demand of all muscles",
+      .summary = "the supply pressure drops under the total demand of all muscles",
       .equation = "p = min(u, 1 - droop (sum over muscles of max(0, s) + mean of u))    u delivered, p actual, s du/dt filtered with 0.2 s",
-      .signature = "a muscle's error follows the demand of the others",
+      .signature = "the error of one muscle follows the demand of the others",
       .source = "pressure drop over the supply's resistance; 0.04 to 0.12 of the supply measured",
       .parameters = {{"droop", "", 0, 0, 1, 0.02, 0.2, "drop of the supply per unit of demand"}},
       .make = [](const EffectValues& values) { return std::make_unique<SupplyDroop>(values["droop"]); }};

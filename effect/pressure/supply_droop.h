@@ -1,4 +1,4 @@
-/// Pressure stage: the supply sags under the demand of all muscles together.
+/// Pressure stage: the supply pressure drops under the total demand of all muscles.
 ///     p_supply = 1 - droop (sum over muscles of max(0, s_i) + mean of u),    s_i: du_i/dt filtered with 0.2 s, per s
 ///     p_i = min(u_i, p_supply)
 /// u delivered, p actual pressure, fractions of full scale. s_i = (u_i - w_i) / 0.2 s with dw_i/dt = (u_i - w_i) / 0.2 s.

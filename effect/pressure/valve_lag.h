@@ -1,7 +1,8 @@
 /// Pressure stage: a valve fills and vents the muscle with a lag.
-///     ((1 - s) tau) dv/dt = u - v,    (s tau) dp/dt = v - p,    tau = fill_time_constant_s while rising, vent_time_constant_s otherwise
-/// u delivered, p actual pressure, v between valve and muscle, fractions of full scale; s = second_lag_share, 0: one lag, p = v.
-/// Exact for a u held over the step.
+///     ((1 - s) tau) dv/dt = u - v,    (s tau) dp/dt = v - p,    tau = fill_ or vent_time_constant_s
+/// tau is that of filling while the pressure rises and that of venting otherwise. u delivered pressure, v pressure between valve and
+/// muscle, p actual pressure, fractions of full scale; s = second_lag_share; s = 0 is a single lag with p = v. Exact if u is constant over
+/// the step.
 /// Neutral: both 0, p = u. Range 0 .. 5 s, usually 0.01 .. 0.2 s.  Source: first-order lag of valve and volume; time constants of 0.05 and
 /// 0.084 s, 0.126 and 0.089 s (filling and venting) measured on two pneumatic muscle drives (see docs/effects.md).
 #pragma once

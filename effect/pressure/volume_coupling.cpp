@@ -17,13 +17,14 @@ EffectInfo VolumeCoupling::info() {
   return {.id = "volume_coupling",
           .stage = Stage::pressure,
           .acts_on = {ComponentKind::muscle},
-          .summary = "a muscle that is stretched compresses its own air",
+          .summary = "stretching a muscle compresses the air in it",
           .equation = "dp/dt = (u - p) / tau - n (p + p_atm) (dV/dt) / V, V ~ 1 + v_0 - r^2    u delivered, p actual, r length ratio",
-          .signature = "pressure moves when the joint is pushed at constant command",
+          .signature = "pushing the joint at constant command changes the pressure",
           .source = "polytropic gas in a changing volume; volume from virtual work as in Chou and Hannaford 1996",
           .parameters = {{"polytropic_exponent", "", 0, 0, 2, 1, 1.4, "n; 1: isothermal, 1.4: adiabatic"},
                          {"regulator_time_constant_s", "s", 0.1, 1e-4, 10, 0.02, 0.5, "tau", true},
-                         {"rest_volume_ratio", "", 1, 0.05, 100, 0.5, 3, "v_0: volume at full length per change of volume", true}},
+                         {"rest_volume_ratio", "", 1, 0.05, 100, 0.5, 3,
+                          "v_0, volume at full length over the change of volume from shortest to full length", true}},
           .make = [](const EffectValues& values) {
             return std::make_unique<VolumeCoupling>(values["polytropic_exponent"], values["regulator_time_constant_s"],
                                                     values["rest_volume_ratio"]);
@@ -41,7 +42,7 @@ double VolumeCoupling::output(double input, const Moment& moment) {
   const double rate_per_s = 1 / regulator_s_ + squeeze_per_s;
   const double drive_per_s = input / regulator_s_ - squeeze_per_s * atmosphere_ratio;
   const double x = rate_per_s * moment.h_s;
-  // p(h) = p e^-x + drive h (1 - e^-x)/x; the muscle may lose volume faster than the valve lets out.
+  // p(h) = p e^-x + drive h (1 - e^-x)/x. x may be negative: the muscle may shrink faster than the valve lets air out.
   const double share = std::abs(x) > 1e-12 ? -std::expm1(-x) / x : 1;
   pressure_ = std::max(0.0, pressure_ * std::exp(-x) + drive_per_s * moment.h_s * share);
   return pressure_;

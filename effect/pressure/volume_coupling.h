@@ -1,9 +1,9 @@
-/// Pressure stage: a muscle whose volume changes compresses its own air while the valve is too slow to let it out.
+/// Pressure stage: a muscle whose volume shrinks compresses its own air if the valve is too slow to let the air out.
 ///     dp/dt = (u - p) / tau - n (p + p_atm) (dV/dt) / V
 ///     V ~ 1 + v_0 - r^2,    r = (l - l_min) / (l_max - l_min)
 /// u delivered, p actual pressure, fractions of full scale; n = polytropic_exponent, tau = regulator_time_constant_s, p_atm = 0.17 of full
-/// scale (1 bar of 6), l length. V is the volume, up to a factor, that makes the work p dV equal to the work of Eq. 1's tension c p r over
-/// dl; v_0 = rest_volume_ratio is the volume at full length in units of the change from l_min to l_max. Exact for u and dV/dt held over the
+/// scale (1 bar of 6), l length. V is chosen, up to a factor, so that the work p dV equals the work of Eq. 1's tension c p r over dl; v_0 =
+/// rest_volume_ratio is the volume at full length over the change of volume from l_min to l_max. Exact if u and dV/dt are constant over the
 /// step.
 /// Neutral: n = 0, p = u. Range of n 0 .. 2, usually 1 (slow) .. 1.4 (fast, adiabatic).  Source: polytropic gas in a changing volume;
 /// virtual work as in Chou and Hannaford 1996.

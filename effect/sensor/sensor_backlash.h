@@ -1,6 +1,6 @@
 /// Sensor stage: play between the joint or muscle and its sensor.
-///     y' follows y within a play of width w: y - w/2 <= y' <= y + w/2
-/// w = width_deg for angles, width_mm for lengths and positions; followed at every internal step. At the start y' = y.
+///     y' follows y with a play of width w: it moves only to keep y - w/2 <= y' <= y + w/2
+/// w = width_deg for angles, width_mm for lengths and positions. y' is updated at every internal step. At the start y' = y.
 /// Neutral: both 0. Range 0 .. 90 deg and 0 .. 1000 mm, usually 0.3 .. 5.  Source: play operator, Krasnosel'skii and Pokrovskii 1989.
 #pragma once
 
@@ -13,7 +13,7 @@ class SensorBacklash final : public SensorEffect {
   SensorBacklash(double width_deg, double width_mm) : width_deg_(width_deg), width_mm_(width_mm) {}
   static EffectInfo info();
 
-  /// Throws BadParameter for one signal whose unit has no width.
+  /// Throws BadParameter if the effect is placed on a single signal and the width for that signal's unit is 0.
   void attach(const EffectPlace& place) override;
   void reset() override { at_start_ = true; }
   double reading(double value, const Moment&, long) override;
@@ -22,7 +22,7 @@ class SensorBacklash final : public SensorEffect {
 
  private:
   double width_deg_, width_mm_;
-  double width_ = 0;  ///< of this signal
+  double width_ = 0;  ///< w of this signal
   bool at_start_ = true;
   double followed_ = 0;
 };

@@ -8,7 +8,7 @@ EffectInfo SensorBias::info() {
           .acts_on = {ComponentKind::signal},
           .summary = "a reading is off by a constant",
           .equation = "y' = y + b    b = offset, in the unit of the signal",
-          .signature = "constant, does not depend on pressure",
+          .signature = "the error is constant and does not depend on pressure",
           .source = "definition",
           .parameters = {{"offset", "unit of the signal", 0, -1e4, 1e4, -5, 5, "b"}},
           .make = [](const EffectValues& values) { return std::make_unique<SensorBias>(values["offset"]); }};

@@ -1,6 +1,7 @@
 /// Sensor stage: a reading is off by a constant.
 ///     y' = y + b
-/// b = offset, in the unit of the signal. Neutral: b = 0.  Source: definition.
+/// b = offset, in the unit of the signal.
+/// Neutral: b = 0.  Source: definition.
 #pragma once
 
 #include "musclesim/effect/effect_info.h"

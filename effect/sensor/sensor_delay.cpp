@@ -10,10 +10,10 @@ EffectInfo SensorDelay::info() {
           .acts_on = {ComponentKind::signal},
           .summary = "a reading comes late",
           .equation = "y'(t) = f(t - (1 - c) T), c T df/dt = y - f    T = delay_s, c = filter_share",
-          .signature = "this signal late against all others",
+          .signature = "this signal lags all others",
           .source = "dead time of sampling, filters and buses",
           .parameters = {{"delay_s", "s", 0, 0, 2, 0.005, 0.1, "T"},
-                         {"filter_share", "", 0, 0, 1, 0, 1, "c, part of the delay that is a filter of first order", true}},
+                         {"filter_share", "", 0, 0, 1, 0, 1, "c, share of the delay that comes from a first-order filter", true}},
           .make = [](const EffectValues& values) { return std::make_unique<SensorDelay>(values["delay_s"], values["filter_share"]); }};
 }
 

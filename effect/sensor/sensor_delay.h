@@ -1,7 +1,7 @@
 /// Sensor stage: a reading comes late.
 ///     y'(t) = f(t - (1 - c) T),    c T df/dt = y - f
-/// T = delay_s, c = filter_share: the part of the delay that is a filter of first order; the rest is dead time. The signal is remembered at
-/// every internal step and joined by straight lines. Before the start of a run it is what it was when the run began to settle.
+/// T = delay_s, c = filter_share: share of the delay that comes from a first-order filter; the rest is dead time. The signal is stored at
+/// every internal step and interpolated linearly. Before the start of a run it has the value from which the run began to settle.
 /// Neutral: T = 0. Range 0 .. 2 s, usually 0.005 .. 0.1; of c 0 .. 1.  Source: dead time of sampling, filters and buses.
 #pragma once
 
@@ -23,7 +23,7 @@ class SensorDelay final : public SensorEffect {
  private:
   double dead_time_s_, filter_s_;
   double filtered_ = 0;
-  SampledHistory history_;  ///< of the filtered signal
+  SampledHistory history_;  ///< f, the filtered signal
 };
 
 }  // namespace musclesim

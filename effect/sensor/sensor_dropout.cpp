@@ -11,12 +11,12 @@ EffectInfo SensorDropout::info() {
       .id = "sensor_dropout",
       .stage = Stage::sensor,
       .acts_on = {ComponentKind::signal},
-      .summary = "samples are lost, the last value is held",
-      .equation = "y'_k = y'_(k-1) for a share fraction of the samples, in gaps of mean_gap_samples",
-      .signature = "plateaus in one signal",
+      .summary = "samples are lost; the reading holds the last value",
+      .equation = "y'_k = y'_(k-1) for a share `fraction` of the samples, in dropouts of mean_gap_samples on average",
+      .signature = "one signal has plateaus",
       .source = "Gilbert 1960, two-state channel",
-      .parameters = {{"fraction", "", 0, 0, 0.99, 0.01, 0.3, "share of the samples that are held"},
-                     {"mean_gap_samples", "", 3, 1, 1e4, 1, 10, "mean length of a gap", true}},
+      .parameters = {{"fraction", "", 0, 0, 0.99, 0.01, 0.3, "share of the samples that are lost"},
+                     {"mean_gap_samples", "", 3, 1, 1e4, 1, 10, "mean number of lost samples in a row", true}},
       .make = [](const EffectValues& values) { return std::make_unique<SensorDropout>(values["fraction"], values["mean_gap_samples"]); }};
 }
 
@@ -33,7 +33,7 @@ void SensorDropout::reset() {
 }
 
 bool SensorDropout::drawGap() {
-  // In the long run a share f is held if gaps end with 1/m and begin with f / (m (1 - f)).
+  // In the long run a share f is lost if a dropout ends with probability 1/m and begins with probability f / (m (1 - f)).
   const double begin = std::min(1.0, fraction_ / (mean_gap_samples_ * (1 - fraction_)));
   return random_->uniform() < (in_gap_ ? 1 - 1 / mean_gap_samples_ : begin);
 }

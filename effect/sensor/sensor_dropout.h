@@ -1,8 +1,8 @@
 /// Sensor stage: samples are lost; the last value is held.
-///     y'_k = y'_(k-1) while a gap lasts, y_k otherwise
-/// fraction: share of the samples that are held, in gaps whose length is geometric with mean mean_gap_samples. Samples are the times at
-/// which the robot is read. Random, from the run's seed and the signal's name; the first sample is never held. Neutral: fraction = 0. Range
-/// 0 .. 0.99, usually 0.01 .. 0.3.  Source: Gilbert 1960, two-state channel.
+///     y'_k = y'_(k-1) during a dropout, y_k otherwise
+/// fraction: share of the samples that are lost. Dropouts have a geometrically distributed length with mean mean_gap_samples. A sample is
+/// one reading of the robot. The random numbers come from the run's seed and the signal's name; the first sample is never lost.
+/// Neutral: fraction = 0. Range 0 .. 0.99, usually 0.01 .. 0.3.  Source: Gilbert 1960, two-state channel.
 #pragma once
 
 #include <optional>
@@ -23,7 +23,7 @@ class SensorDropout final : public SensorEffect {
   bool perSample() const override { return true; }
 
  private:
-  /// Whether the next sample is lost.
+  /// Draws whether the next sample is lost.
   bool drawGap();
 
   double fraction_, mean_gap_samples_;

@@ -1,6 +1,7 @@
 /// Sensor stage: a reading is off by a factor.
 ///     y' = g y
-/// g = gain. Neutral: g = 1. Range -10 .. 10, usually 0.85 .. 1.15.  Source: definition.
+/// g = gain.
+/// Neutral: g = 1. Range -10 .. 10, usually 0.85 .. 1.15.  Source: definition.
 #pragma once
 
 #include "musclesim/effect/effect_info.h"

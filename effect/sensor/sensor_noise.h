@@ -1,6 +1,7 @@
-/// Sensor stage: white noise on a reading; not an effect of the catalogue but a property of the sensor.
+/// Sensor stage: white noise on a reading. It is a property of the sensor, not an effect of the catalogue.
 ///     y' = y + sigma n_k
-/// sigma standard deviation in the unit of the signal, n_k normal, one per sample, from the run's seed and the signal's name.
+/// sigma standard deviation in the unit of the signal, n_k standard normal, one per sample, drawn from the run's seed and the signal's
+/// name.
 #pragma once
 
 #include <optional>

@@ -1,6 +1,6 @@
-/// Foreign laws of the body stage: LuGre friction with Stribeck curve (Canudas de Wit et al. 1995), damping that grows with speed, a
-/// hardening spring, a payload that is held back by the air, a base that sways, attachments displaced in a slanting direction, stops of
-/// rubber, a force from a weak spring, contact after Hunt and Crossley (1975).
+/// Out-of-catalogue laws of the body stage: LuGre friction with a Stribeck curve (Canudas de Wit et al. 1995), damping that grows with
+/// speed, a hardening spring, a payload with air drag, a swaying base, attachments shifted in an oblique direction, rubber stops, a force
+/// from a weak spring, contact after Hunt and Crossley (1975).
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -85,7 +85,7 @@ class DraggedPayload final : public HandEffect {
   double mass_kg_, drag_Ns2_per_m2_;
 };
 
-/// Gravity turned by tilt (1 + a sin(2 pi f t)).
+/// Gravity rotated by tilt (1 + a sin(2 pi f t)).
 class SwayingBase final : public BodyEffect {
  public:
   explicit SwayingBase(const EffectValues& v)
@@ -109,7 +109,7 @@ class SwayingBase final : public BodyEffect {
   Vector upright_;
 };
 
-/// Rubber before both stops: torque = -t exp((q - high) / 2 deg) + t exp((low - q) / 2 deg), stops shifted by d.
+/// Rubber in front of both stops: torque = -t exp((q - high) / 2 deg) + t exp((low - q) / 2 deg), stops shifted by d.
 class RubberStops final : public JointEffect {
  public:
   explicit RubberStops(const EffectValues& v) : offset_deg_(v["offset_deg"]) {}
@@ -128,7 +128,7 @@ class RubberStops final : public JointEffect {
   double offset_deg_, low_deg_ = 0, high_deg_ = 0;
 };
 
-/// F = F_0 (1 - d / L), d the way of the hand along F_0
+/// F = F_0 (1 - d / L), d displacement of the hand along F_0
 class WeakSpring final : public HandEffect {
  public:
   explicit WeakSpring(const EffectValues& v) : force_N_(v["force_x_N"], v["force_y_N"], v["force_z_N"]), stretch_mm_(v["stretch_mm"]) {}
@@ -160,8 +160,8 @@ class HuntCrossley final : public JointEffect {
   double stiffness_, plane_deg_;
 };
 
-/// One end beside its place in a direction between the lever arm and the muscle's line: any, as brackets are mounted.
-/// Where the catalogue's two distances are fitted, that is the same law.
+/// One end is shifted in a direction between the lever arm and the muscle's line, as a misplaced bracket would shift it. If both distances
+/// of the catalogue's attachment_offset are fitted, the laws are the same.
 EffectInfo turnedAttachment(const std::string& id, MuscleEnd displaced) {
   EffectInfo info = entry(id, Stage::body, {ComponentKind::muscle}, "place' = place + d (e cos a + up sin a)",
                           {{"offset_mm", "mm", 0, -200, 200, -8, 8, "d"}, {"turn_deg", "deg", 4, -90, 90, -25, 25, "a", true}},

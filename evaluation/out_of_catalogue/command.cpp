@@ -1,5 +1,6 @@
-/// Foreign laws of the command stage: a dead time that wanders (buses and valves of several speeds), a converter that cuts off with unequal
-/// steps, a dead band with hysteresis (static friction of a spool), two channels that exchange most of their command.
+/// Out-of-catalogue laws of the command stage: a dead time that varies at random (buses and valves of different speeds), a truncating
+/// converter with unequal steps, a dead band with hysteresis (static friction of a spool), two channels that exchange most of their
+/// commands.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -12,7 +13,7 @@ namespace musclesim::out_of_catalogue {
 
 namespace {
 
-/// u'(t) = u(t - T (1 + J w(t))),  w wanders between -1 and 1
+/// u'(t) = u(t - T (1 + J w(t))),  w varies at random between -1 and 1
 class WanderingDelay final : public MuscleRatioEffect {
  public:
   explicit WanderingDelay(const EffectValues& v) : delay_s_(v["delay_s"]), jitter_s_(v["jitter_ratio"] * v["delay_s"]) {}
@@ -55,7 +56,7 @@ class UnequalSteps final : public MuscleRatioEffect {
   double levels_, bow_;
 };
 
-/// Opens at u_t, closes at 0.6 u_t.
+/// Opens at u_t, closes at 0.75 u_t.
 class StickingDeadBand final : public MuscleRatioEffect {
  public:
   explicit StickingDeadBand(const EffectValues& v) : threshold_(v["threshold"]) {}
@@ -75,7 +76,7 @@ class StickingDeadBand final : public MuscleRatioEffect {
   bool open_ = false;
 };
 
-/// u_i' = (1 - c) u_i + c u_j and the other way round.
+/// u_i' = (1 - c) u_i + c u_j, and the same with i and j exchanged.
 class MostlySwapped final : public RatioEffect {
  public:
   explicit MostlySwapped(const EffectValues& v) : share_(v["share"]) {}

@@ -1,6 +1,6 @@
-/// Foreign laws of the force stage: Bouc-Wen hysteresis (Bouc 1967, Wen 1976), a power law of speed, two Kelvin elements, an onset
-/// without a kink, a gain that changes over the length, an offset that grows with the length, a tendon that stiffens, a warm-up that ends,
-/// Eq. 1 bent by a parabola.
+/// Out-of-catalogue laws of the force stage: Bouc-Wen hysteresis (Bouc 1967, Wen 1976), a loss with a power of speed, two Kelvin elements,
+/// a pressure threshold without a kink, a gain that depends on the length, an offset that grows with the length, a tendon that stiffens, a
+/// drift that ends (warm-up), Eq. 1 times a parabola.
 #include <algorithm>
 #include <cmath>
 
@@ -82,7 +82,7 @@ class TwoKelvinElements final : public ForceEffect {
   double amount_, tau_s_, fast_mm_ = 0, slow_mm_ = 0;
 };
 
-/// p' = p^2 (1 + p_t) / (p + p_t): no kink at all, p - p_t far above it.
+/// p' = p^2 (1 + p_t) / (p + p_t): no kink; approaches p - p_t far above p_t.
 class GradualOnset final : public ForceEffect {
  public:
   explicit GradualOnset(const EffectValues& v) : threshold_(v["threshold"]) {}
@@ -114,7 +114,7 @@ class BentForce final : public ForceEffect {
   double gain_, slope_, curvature_;
 };
 
-/// F' = F(p, l + d (3 + 2 r) / 4): an end that straightens as the muscle is stretched
+/// F' = F(p, l + d (3 + 2 r) / 4): the muscle's end straightens as the muscle is stretched
 class BendingEnd final : public ForceEffect {
  public:
   explicit BendingEnd(const EffectValues& v) : offset_mm_(v["offset_mm"]) {}

@@ -1,4 +1,4 @@
-/// The out-of-catalogue laws by stage.
+/// The out-of-catalogue laws, one list per stage.
 #pragma once
 
 #include "out_of_catalogue.h"
@@ -10,10 +10,10 @@ std::vector<OutOfCatalogueLaw> pressureLaws();
 std::vector<OutOfCatalogueLaw> forceLaws();
 std::vector<OutOfCatalogueLaw> bodyLaws();
 std::vector<OutOfCatalogueLaw> sensorLaws();
-/// Laws whose cause the catalogue does not have.
+/// Laws of causes that are not in the catalogue.
 std::vector<OutOfCatalogueLaw> openEffects();
 
-/// What all entries have in common. `id` without the prefix.
+/// An entry with the fields that all laws have in common. `id` comes without the prefix.
 inline EffectInfo entry(const std::string& id, Stage stage, std::vector<ComponentKind> acts_on, const std::string& equation,
                         std::vector<EffectParameter> parameters, std::function<std::unique_ptr<Effect>(const EffectValues&)> make) {
   return {.id = "foreign." + id,
@@ -28,7 +28,7 @@ inline EffectInfo entry(const std::string& id, Stage stage, std::vector<Componen
           .listed = false};
 }
 
-/// A number between -1 and 1 that changes smoothly and at random: straight lines between values drawn every `interval_s`.
+/// A random function of time between -1 and 1: linear interpolation between random values every `interval_s`.
 double wander(std::uint64_t seed, double time_s, double interval_s);
 
 }  // namespace musclesim::out_of_catalogue

@@ -1,5 +1,5 @@
-/// Causes that the catalogue does not have: a shaker, cogging of a joint, ripple of a pump, a magnet that holds a joint at an angle, gusts,
-/// fatigue by travel, interference on a sensor, pressure that leaks from one muscle into its neighbour.
+/// Causes that are not in the catalogue: a shaker, cogging of a joint, pump ripple, a magnet that holds a joint at an angle, gusts, fatigue
+/// that grows with the distance travelled, interference on a sensor, air that leaks from one muscle into another.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -66,7 +66,7 @@ class Magnet final : public JointEffect {
   double torque_Nm_, at_deg_;
 };
 
-/// F = a w(t) along x, w wanders every 0.3 s
+/// F = a w(t) along x, w(t) = wander() with an interval of 0.3 s
 class Gusts final : public HandEffect {
  public:
   explicit Gusts(const EffectValues& v) : force_N_(v["force_N"]) {}

@@ -1,4 +1,4 @@
-/// Laws that the catalogue does not contain. They test the diagnosis on data that its own hypotheses cannot have made.
+/// Laws that the catalogue does not contain. They test the diagnosis on data that none of its hypotheses can reproduce exactly.
 #pragma once
 
 #include <string>
@@ -11,14 +11,14 @@ namespace musclesim {
 /// An effect whose id begins with "foreign.".
 struct OutOfCatalogueLaw {
   EffectInfo info;
-  std::string stands_for;  ///< the catalogue's id of the same cause; empty: no effect of the catalogue has this cause
+  std::string stands_for;  ///< id of the catalogue's effect with the same cause; empty if there is none
 };
 
-/// For every effect of the library a physically different law of the same cause, then laws whose cause the catalogue does not have.
+/// For every effect of the catalogue a physically different law of the same cause, then laws of causes that are not in the catalogue.
 const std::vector<OutOfCatalogueLaw>& outOfCatalogueLaws();
 
-/// Registers all of them as unlisted effects: simulations take them like any other, but the catalogue does not list them and no diagnosis
-/// looks for them. Further calls do nothing.
+/// Registers all laws as unlisted effects: simulations accept them like any other effect, but the catalogue does not list them and no
+/// diagnosis tests them. Further calls do nothing.
 void registerOutOfCatalogueLaws();
 
 }  // namespace musclesim

@@ -1,4 +1,4 @@
-/// Foreign laws of the pressure stage: three lags in a row, an orifice with choked and subsonic flow (ISO 6358), a choked leak,
+/// Out-of-catalogue laws of the pressure stage: three lags in series, an orifice with choked and subsonic flow (ISO 6358), a choked leak,
 /// a tank that empties, the volume of an ideal braid (Chou and Hannaford 1996), a bowed calibration.
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double atmosphere_ratio = 0.17;
 
-/// Three lags in a row: a half, a third and a sixth of the time constant.
+/// Three lags in series with a half, a third and a sixth of the time constant.
 class ThreeLags final : public MuscleRatioEffect {
  public:
   explicit ThreeLags(const EffectValues& v) : fill_s_(v["fill_time_constant_s"]), vent_s_(v["vent_time_constant_s"]) {}
@@ -37,7 +37,7 @@ class ThreeLags final : public MuscleRatioEffect {
   std::array<double, 3> lags_{};
 };
 
-/// Flow over largest flow through an orifice by the ratio of absolute pressures; choked below 0.3.
+/// Flow through an orifice over its largest flow, as a function of the ratio of absolute pressures; choked below 0.3.
 double flowShare(double ratio) {
   constexpr double critical = 0.3;
   if (ratio <= critical) return 1;
@@ -66,7 +66,7 @@ class Orifice final : public MuscleRatioEffect {
   double fill_per_s_, vent_per_s_, pressure_ = 0;
 };
 
-/// dp/dt = (u - p) / tau - k (p + p_atm)^n while p > 0: flow goes with the absolute pressure, n = 1 where it is choked
+/// dp/dt = (u - p) / tau - k (p + p_atm)^n while p > 0: the flow depends on the absolute pressure; n = 1 for choked flow
 class ChokedLeak final : public MuscleRatioEffect {
  public:
   explicit ChokedLeak(const EffectValues& v) : leak_per_s_(v["leak_per_s"]), regulator_s_(v["regulator_s"]), exponent_(v["exponent"]) {}
@@ -76,7 +76,7 @@ class ChokedLeak final : public MuscleRatioEffect {
   double output(double input, const Moment& moment) override {
     return pressure_ = std::max(0.0, pressure_ + moment.h_s * ((input - pressure_) / regulator_s_ - lossPerS(pressure_)));
   }
-  /// p + tau k (p + p_atm)^n = u by halving.
+  /// Solves p + tau k (p + p_atm)^n = u by bisection.
   double settled(double input) override {
     constexpr int halvings = 50;
     double low = 0, high = input;

@@ -1,5 +1,5 @@
-/// Foreign laws of the sensor stage: a bias that wanders, a scale with a wave, a filter of second order in place of a dead time, play
-/// with a weak spring that centres it, a slower clock in place of lost samples.
+/// Out-of-catalogue laws of the sensor stage: a bias that varies at random, a gain error that varies sinusoidally, a second-order filter
+/// instead of a dead time, play with a weak centring spring, a slower clock instead of lost samples.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -11,7 +11,7 @@ namespace musclesim::out_of_catalogue {
 
 namespace {
 
-/// y' = y + b (1 + 0.15 w(t)),  w wanders
+/// y' = y + b (1 + 0.15 w(t)),  w varies at random
 class WanderingBias final : public SensorEffect {
  public:
   explicit WanderingBias(const EffectValues& v) : offset_(v["offset"]) {}
@@ -39,7 +39,7 @@ class WavyScale final : public SensorEffect {
   double gain_, period_;
 };
 
-/// Two lags in a row, each with half of the delay.
+/// Two lags in series, each with half of the delay.
 class Filter final : public SensorEffect {
  public:
   explicit Filter(const EffectValues& v) : tau_s_(v["delay_s"] / 2) {}
@@ -59,7 +59,7 @@ class Filter final : public SensorEffect {
   bool begun_ = false;
 };
 
-/// Play of width w in which the reading also creeps to the middle within T.
+/// Play of width w in which the reading also creeps towards the middle with time constant T.
 class CentredPlay final : public SensorEffect {
  public:
   explicit CentredPlay(const EffectValues& v) : width_(v["width"]), centring_s_(v["centring_s"]) {}
@@ -79,7 +79,7 @@ class CentredPlay final : public SensorEffect {
   bool begun_ = false;
 };
 
-/// Only every n-th sample is taken.
+/// Takes only every n-th sample and holds it in between.
 class SlowClock final : public SensorEffect {
  public:
   explicit SlowClock(const EffectValues& v) : every_(static_cast<long>(1 + std::lround(v["skipped_samples"]))) {}

@@ -63,7 +63,7 @@ void BodyState::integrate(double h_s, const std::vector<Vector6>& u, const BodyB
   }
 }
 
-/// A body whose pose is still the same, bit by bit, is not placed again: ODE would work out its geoms' places anew.
+/// Leaves out bodies whose pose is unchanged to the bit: setting a pose makes ODE recompute the placement of the body's geoms.
 void BodyState::scatter() const {
   for (int body = 0; body < count(); ++body) {
     const dBodyID id = ids_[static_cast<std::size_t>(body)];

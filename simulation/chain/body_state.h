@@ -1,4 +1,4 @@
-/// All bodies of the chain stepper in one piece of memory: read from ODE before a step, written back after it.
+/// All bodies of the chain stepper in contiguous memory. They are read from ODE before a step and written back after it.
 #pragma once
 
 #include <ode/ode.h>
@@ -20,7 +20,7 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 struct BodyMotion {
   Vector position;           ///< centre of mass, mm
   Quaternion quaternion;     ///< orientation
-  Eigen::Matrix3d rotation;  ///< the same as a matrix: columns are the body's axes
+  Eigen::Matrix3d rotation;  ///< orientation as a matrix whose columns are the body's axes
   Vector velocity;           ///< mm/s
   Vector spin;               ///< angular velocity, rad/s
   Vector force;              ///< g mm/s^2
@@ -32,19 +32,19 @@ class BodyState {
   BodyState() { clear(); }
   void clear();
   int add(dBodyID id);
-  /// Without the environment.
+  /// Number of bodies, the environment not counted.
   int count() const { return static_cast<int>(ids_.size()); }
   dBodyID id(int body) const { return ids_[static_cast<std::size_t>(body)]; }
-  /// Body -1 is the environment: at rest, its frame is the world's.
+  /// Body -1 is the environment: it is at rest in the world frame.
   BodyMotion& operator[](int body) { return motions_[static_cast<std::size_t>(body + 1)]; }
   const BodyMotion& operator[](int body) const { return motions_[static_cast<std::size_t>(body + 1)]; }
-  /// Number of a body, -1 if it is not one of these. Valid after sort().
+  /// Index of a body, or -1 if it was never added. Valid after sort().
   int find(dBodyID id) const;
   void sort();
 
   /// Reads pose, velocities and the forces accumulated on ODE's bodies.
   void gather();
-  /// Moves all bodies by one step as ODE does, u (6 x bodies) being new velocity / h:
+  /// Moves all bodies by one step as ODE does. u (6 numbers per body) is the new velocity divided by h:
   ///     v+ = h u,  x+ = x + h v+,  q+ = normalised(q + h/2 (0, w+) q).
   /// Throws BodyOutOfBounds, with ODE's bodies unchanged, if a body leaves the bounds.
   void integrate(double h_s, const std::vector<Vector6>& u, const BodyBounds& bounds);

@@ -8,7 +8,7 @@ namespace musclesim::chain {
 
 namespace {
 
-/// The state that the row's own condition asks for.
+/// The state that the row's complementarity condition requires.
 RowState demanded(const BoundedRow& row, double force_tolerance, double slack_tolerance) {
   switch (row.state) {
     case RowState::free:
@@ -25,7 +25,7 @@ RowState demanded(const BoundedRow& row, double force_tolerance, double slack_to
   return row.state;
 }
 
-/// How far the row is from its condition, as a force.
+/// By how much the row violates its condition, as a force.
 double violationOf(const BoundedRow& row) {
   if (row.state == RowState::free) return std::max(row.lower - row.force, row.force - row.upper);
   return std::abs(row.slack) / row.diagonal;
@@ -49,7 +49,7 @@ double stepWithin(const std::vector<BoundedRow>& rows, double tolerance) {
   return step;
 }
 
-/// Moves the feasible point; rows that meet a bound stay there. Returns whether any did.
+/// Moves the feasible point; rows that reach a bound stay there.
 void moveWithin(BoxProblem& problem, std::vector<BoundedRow>& rows, double step, double tolerance) {
   constexpr double rounding = 1e-12;
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -105,7 +105,7 @@ int BoxActiveSet::changeAll(BoxProblem& problem, std::vector<BoundedRow>& rows) 
   return count;
 }
 
-/// Returns the same as changeAll().
+/// Returns the number of rows that violate their condition.
 int BoxActiveSet::changeWorst(BoxProblem& problem, std::vector<BoundedRow>& rows) {
   const double force_tolerance = problem.forceTolerance(), slack_tolerance = problem.slackTolerance();
   worst_.clear();

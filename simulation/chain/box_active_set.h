@@ -1,9 +1,9 @@
-/// Which bounded rows stick and which are at a bound: the active set of a box-constrained problem.
+/// Active set of a box-constrained problem: decides which bounded rows are free and which are at a bound.
 ///
 /// Find forces l with  w = A l - b  and, row by row,  lower <= l <= upper,
 ///     l free: w = 0,   l = lower: w >= 0,   l = upper: w <= 0.
 /// A is symmetric positive definite, so there is exactly one solution: the minimum of 1/2 l^T A l - b^T l over the box.
-/// Rows without bounds are no rows here: the problem eliminates them.
+/// Rows without bounds do not appear here: the BoxProblem eliminates them.
 #pragma once
 
 #include <vector>
@@ -14,25 +14,25 @@ enum class RowState : signed char { free, at_lower, at_upper };
 
 struct BoundedRow {
   double lower = 0, upper = 0;
-  double diagonal = 1;  ///< of A, or an estimate: tells whether a violation reaches beyond the other bound
+  double diagonal = 1;  ///< diagonal entry of A or an estimate of it; tells whether a violation reaches beyond the other bound
   RowState state = RowState::free;
-  double force = 0;     ///< l: given by solve() for free rows, the bound for others
-  double slack = 0;     ///< w: given by solve() for rows at a bound
-  int group = 0;        ///< 0, 1, ...: rows of one group act on each other strongly
-  double feasible = 0;  ///< l of the present point within the box, used by the monotone phase
+  double force = 0;     ///< l: solve() computes it for free rows; for other rows it is the bound
+  double slack = 0;     ///< w: solve() computes it for rows at a bound
+  int group = 0;        ///< 0, 1, ...: rows of the same group are strongly coupled
+  double feasible = 0;  ///< l at the monotone phase's current point, which lies within the box
 
   double bound() const { return state == RowState::at_lower ? lower : upper; }
 };
 
-/// The problem behind the rows.
+/// The linear system that the rows belong to.
 class BoxProblem {
  public:
   virtual ~BoxProblem() = default;
-  /// For the rows' present states: the forces of the free rows (w = 0) and the slacks of the others.
+  /// Computes, for the present states, the forces of the free rows (w = 0) and the slacks of the rows at a bound.
   virtual void solve(std::vector<BoundedRow>& rows) = 0;
-  /// Row `row` has got another state since the last solve().
+  /// Tells the problem that the state of `row` has changed since the last solve().
   virtual void changed(int row) = 0;
-  /// What counts as zero, after solve().
+  /// Thresholds below which a force or a slack counts as zero. Valid after solve().
   virtual double forceTolerance() const = 0;
   virtual double slackTolerance() const = 0;
 };
@@ -40,14 +40,14 @@ class BoxProblem {
 struct ActiveSetResult {
   bool solved = false;
   int rounds = 0;           ///< calls of solve()
-  int monotone_rounds = 0;  ///< of them in the monotone phase
+  int monotone_rounds = 0;  ///< calls of solve() in the monotone phase
 };
 
-/// Phase 1, primal-dual: all rows that violate their condition change their state in the first rounds, then only the worst of every group;
-/// a row at a bound whose violation reaches beyond the whole box goes to the other bound. Starts from the rows' states, so states of the
-/// step before make it short. It may cycle, so after `patience` rounds without progress phase 2 takes over: from a point within the box
-/// towards the minimum for the present set, up to the first bound met (where that row stays); rows are released only at such a minimum. The
-/// objective falls all the time: it ends.
+/// Phase 1, primal-dual: in the first rounds every row that violates its condition changes its state, later only the worst row of each
+/// group. A row at a bound whose violation reaches beyond the whole box goes to the other bound. The phase starts from the rows' states, so
+/// it is short if these come from the previous step. It may cycle; after `patience` rounds without progress phase 2 takes over. Phase 2,
+/// monotone: moves from a point within the box towards the minimum for the present active set and stops at the first bound it meets, where
+/// that row stays. Rows are released only at such a minimum. The objective decreases in every round, so the phase ends.
 class BoxActiveSet {
  public:
   BoxActiveSet() { worst_.reserve(256); }
@@ -65,7 +65,7 @@ class BoxActiveSet {
     double violation = 0;
     RowState demanded = RowState::free;
   };
-  std::vector<Worst> worst_;  ///< by group
+  std::vector<Worst> worst_;  ///< one per group
 };
 
 }  // namespace musclesim::chain

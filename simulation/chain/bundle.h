@@ -1,4 +1,4 @@
-/// A ChainBundle of two or of four lanes: two chains in four lanes would take twice the memory.
+/// A ChainBundle of two or four lanes, chosen by the number of chains: two chains in four lanes would take twice the memory.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace musclesim::chain {
 
-/// Members: see ChainBundle.
+/// Forwards every call to the ChainBundle; see there.
 class Bundle {
   using Lanes = std::variant<ChainBundle<2>, ChainBundle<4>>;
 
@@ -26,7 +26,7 @@ class Bundle {
  public:
   static constexpr std::size_t most_chains = 4;
 
-  /// Bead counts of one to four chains.
+  /// `bead_counts` has one entry per chain, for one to four chains.
   explicit Bundle(const std::vector<int>& bead_counts)
       : lanes_(bead_counts.size() <= 2 ? Lanes(ChainBundle<2>(arrayOf<2>(bead_counts))) : Lanes(ChainBundle<4>(arrayOf<4>(bead_counts)))) {}
 

@@ -15,7 +15,7 @@ ChainBundle<lane_count>::ChainBundle(const std::array<int, lane_count>& bead_cou
   axes_.resize(nodes_.size());
   std::memset(static_cast<void*>(nodes_.data()), 0, nodes_.size() * sizeof(Node));
   std::memset(static_cast<void*>(beads_.data()), 0, beads_.size() * sizeof(Bead));
-  // Rows that hold nothing: force 0.
+  // Unused rows: with softness 1 and target 0 their force is 0.
   for (Node& node : nodes_)
     for (Pack& softness : node.softness) softness = all(1);
   for (Axis& axis : axes_) axis = {all(1), all(0), all(0), all(0), all(1)};
@@ -29,7 +29,7 @@ void ChainBundle<lane_count>::setJoint(int lane, int joint, const JointRows& row
       for (int row = first_row; row < end_row; ++row)
         for (int i = first; i < end; ++i) node.jacobian[body][row][i][lane] = rows.jacobian[body][row][i];
   };
-  // What is 0 or 1 stays.
+  // After the first call only entries other than the constants 0 and 1 are copied.
   if (node.present[lane] == 0)
     copy(0, 6, 0, 6);
   else if (firstPushing(joint) == 3)
@@ -116,7 +116,7 @@ void ChainBundle<lane_count>::growBorder(int count) {
   last_node_.resize(border_capacity_);
 }
 
-/// B_k,j = J_k S J_j^T for all border rows j, at the nodes with which they couple.
+/// B_k,j = J_k S J_j^T for all border rows j, at the nodes they couple to.
 template <int lane_count>
 void ChainBundle<lane_count>::fillBorder() {
   growBorder(border_count_);
@@ -148,7 +148,7 @@ void ChainBundle<lane_count>::fillBorder() {
   for (std::size_t i = 0; i < count; ++i) border_right_[i].value = border_force_[i].value = all(0);
 }
 
-/// What node k subtracts from node k + 1.
+/// Terms of node k that are subtracted from node k + 1.
 template <int lane_count>
 struct ChainBundle<lane_count>::Carry {
   Pack own[6][6] = {};
@@ -168,7 +168,7 @@ MUSCLESIM_INLINE void ChainBundle<lane_count>::moveBeads() {
   }
 }
 
-/// L D L^T of `own`, whose lower part is used up.
+/// Factorises `own` = L D L^T and overwrites its lower part.
 template <int lane_count>
 MUSCLESIM_INLINE void ChainBundle<lane_count>::factorise(Node& node, Pack own[6][6]) const {
   for (int p = 0; p < 6; ++p) {
@@ -182,7 +182,7 @@ MUSCLESIM_INLINE void ChainBundle<lane_count>::factorise(Node& node, Pack own[6]
   }
 }
 
-/// A_k' with row 5 masked, factored.
+/// Masks row 5 of A_k' and factorises it.
 template <int lane_count>
 MUSCLESIM_INLINE void ChainBundle<lane_count>::factoriseNode(int k, const Carry& carry) {
   Node& node = nodes_[static_cast<std::size_t>(k)];
@@ -195,7 +195,7 @@ MUSCLESIM_INLINE void ChainBundle<lane_count>::factoriseNode(int k, const Carry&
   factorise(node, own);
 }
 
-/// Three rows of r_k, less what node k - 1 takes from it.
+/// Computes three rows of r_k and subtracts the terms of node k - 1.
 template <int lane_count>
 template <bool push>
 MUSCLESIM_INLINE void ChainBundle<lane_count>::makeThreeRights(std::size_t k, int first, const Carry& carry) {
@@ -206,7 +206,7 @@ MUSCLESIM_INLINE void ChainBundle<lane_count>::makeThreeRights(std::size_t k, in
   }
 }
 
-/// L^-1 times the right side, the coupling with the next node and the border.
+/// Multiplies the right-hand side, the coupling to the next node and the border by L^-1.
 template <int lane_count>
 MUSCLESIM_INLINE void ChainBundle<lane_count>::reduceColumns(int k, const Carry& carry) {
   const auto last = static_cast<int>(nodes_.size()) - 1;
@@ -234,7 +234,7 @@ MUSCLESIM_INLINE void ChainBundle<lane_count>::reduceColumns(int k, const Carry&
   }
 }
 
-/// What node k takes from node k + 1: W^T D^-1 times W, the right side and the border.
+/// Terms that node k subtracts from node k + 1: W^T D^-1 times W, the right-hand side and the border.
 template <int lane_count>
 MUSCLESIM_INLINE void ChainBundle<lane_count>::carryOver(int k, Carry& carry) {
   const Node& node = nodes_[static_cast<std::size_t>(k)];

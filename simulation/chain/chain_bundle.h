@@ -1,13 +1,14 @@
 /// Block elimination of two or four chains at once, one per lane of a Pack.
 ///
-/// The unknowns of a chain are the forces of its joints, node k for the joint between bead k and bead k + 1 (the last: the ball at the end
-/// on the bone B), six rows each. With the beads eliminated they couple neighbour with neighbour only:
+/// The unknowns of a chain are the forces of its joints. Node k stands for the joint between bead k and bead k + 1 (the last node for the
+/// ball joint between the end and the bone B) and has six rows. Once the beads are eliminated, each node couples only to its neighbours:
 ///     A_k,k-1 l_k-1 + A_k l_k + A_k,k+1 l_k+1 + sum_j B_k,j y_j (+ J u_B at the last node) = r_k
 ///     A_k = J_k S J_k^T + cfm/h,   A_k,k+1 = J_k S J_k+1^T,   r_k = c/h - J_k a,   a = v/h + S f
-/// S the beads' inverse inertia, u_B the bone's new velocity / h, y_j the forces of the border rows, which stay for the core: the ball at
-/// the start (3 rows) and the free rows of contacts on the beads. Elimination runs from the start to the end, A_k = L D L^T.
+/// S is the beads' inverse inertia, u_B the bone's new velocity / h, y_j the forces of the border rows. The core solves the border rows:
+/// the ball joint at the start (3 rows) and the free rows of contacts on the beads. Elimination runs from the start to the end of the
+/// chain, A_k = L D L^T.
 ///
-/// Joints are a slider, a hinge, a slider, ..., a slider, the ball, with J of their two bodies as joint_rows makes them:
+/// The joints are a slider, a hinge, a slider, ..., a slider and the ball joint. joint_rows makes their Jacobians J, one per body:
 ///     slider (0 1; d t) and (0 -1; -d t),   hinge (1 C; 0 e) and (-1 D; 0 -e),   ball (1 C) and (-1 D), or 0 for the environment.
 #pragma once
 
@@ -30,51 +31,52 @@ struct BeadInertia {
 template <int lane_count>
 class ChainBundle {
  public:
-  /// Chains of different length are aligned at their ends; the shorter one's first nodes are empty. Bead counts are even; 0: empty lane.
+  /// Chains of different length are aligned at their ends; the first nodes of a shorter chain are empty. Bead counts are even; 0 leaves a
+  /// lane empty.
   explicit ChainBundle(const std::array<int, lane_count>& bead_counts);
 
   int nodeCount() const { return static_cast<int>(nodes_.size()); }
 
-  /// Rows of joint k of a chain, for the step h. J must be as above.
+  /// Sets the rows of joint k of a chain for a step of h. J must have the form above.
   void setJoint(int lane, int joint, const JointRows& rows, double h_s);
   void setInertia(int lane, const BeadInertia& inertia);
-  /// a without the forces of rows at a bound.
+  /// Sets a of a bead without the forces of rows at a bound.
   void setFreeMotion(int lane, int bead, const Vector6& a);
-  /// The blocks A_k and A_k,k+1, after all joints are set.
+  /// Computes the blocks A_k and A_k,k+1. Call it after all joints are set.
   void makeBlocks();
 
-  /// Row 5 of a joint: free, or at a bound with that force.
+  /// Sets row 5 of a joint free, or to a bound with the given force.
   void setFree(int lane, int joint);
   void setForce(int lane, int joint, double force);
-  /// Forces on beads besides those of row 5: of contact rows at a bound.
+  /// Clears the forces of contact rows at a bound on the beads, and adds one.
   void clearBeadForces();
   void addBeadForce(int lane, int bead, const double jacobian[6], double force);
-  /// Memory for that many border rows.
+  /// Allocates memory for `border_count` border rows.
   void reserve(int border_count);
   /// Starts a new set of border rows; each lane numbers its own from 0.
   void clearBorder();
-  /// A border row's Jacobian on one bead.
+  /// Sets the Jacobian of a border row on one bead.
   void addBorder(int lane, int column, int bead, const double jacobian[6]);
 
-  /// Elimination for the present states and border.
+  /// Eliminates the chains for the present states and border.
   void eliminate();
-  /// What it leaves for the core, to be subtracted there: border x border (lower part), border x 1, and for the bone B
-  /// mass (6x6), momentum (6) to be added and coupling (6) per border row.
+  /// Results of the elimination for the core. The core subtracts borderBlock() (lower part) and borderRight(); it adds boneMass() (6x6),
+  /// boneMomentum() (6) and boneCoupling() (6 per border row) to the system of the bone B.
   double borderBlock(int lane, int i, int j) const { return border_block_[blockIndex(i, j)].value[lane]; }
   double borderRight(int lane, int i) const { return border_right_[static_cast<std::size_t>(i)].value[lane]; }
   const Matrix6& boneMass(int lane) const { return bone_mass_[lane]; }
   const Vector6& boneMomentum(int lane) const { return bone_momentum_[lane]; }
   Vector6 boneCoupling(int lane, int i) const;
-  /// a of a bead with all forces of rows at a bound.
+  /// a of a bead including the forces of all rows at a bound.
   Vector6 motion(int lane, int bead) const;
 
-  /// Velocities of the bone B for the back substitution and forces of the border rows.
+  /// Inputs of the back substitution: velocity of the bone B and forces of the border rows.
   void setBoneVelocity(int lane, const Vector6& u);
   void setBorderForce(int lane, int column, double force) { border_force_[static_cast<std::size_t>(column)].value[lane] = force; }
-  /// Back substitution: forces of all joints, then the beads' new velocities / h.
+  /// Back substitution: computes the forces of all joints, then the beads' new velocities / h.
   void substitute();
   double axisForce(int lane, int joint) const { return axes_[index(lane, joint)].force[lane]; }
-  /// w of row 5 at a bound.
+  /// Slack w of row 5 at a bound.
   double axisSlack(int lane, int joint) const { return axes_[index(lane, joint)].slack[lane]; }
   double axisDiagonal(int lane, int joint) const { return axes_[index(lane, joint)].diagonal[lane]; }
   Vector6 velocity(int lane, int bead) const;
@@ -98,17 +100,17 @@ class ChainBundle {
     Pack right[6];           ///< L^-1 r_k
     Pack force[6];           ///< l
   };
-  /// Row 5 of a node, apart from the rest because it is asked about joint by joint.
+  /// Row 5 of a node; stored apart from Node because callers read it joint by joint.
   struct Axis {
-    Pack free;      ///< 1 where it takes part, 0 where its force is given
-    Pack given;     ///< that force
+    Pack free;      ///< 1 where the row is free, 0 where its force is given
+    Pack given;     ///< the given force
     Pack force;     ///< l
     Pack slack;     ///< w
-    Pack diagonal;  ///< of A_k
+    Pack diagonal;  ///< diagonal entry of A_k
   };
   struct Bead {
     Pack free_motion[6];  ///< v/h + S f
-    Pack outer_force[6];  ///< of contact rows at a bound
+    Pack outer_force[6];  ///< forces of contact rows at a bound
     Pack motion[6];       ///< a
     Pack velocity[6];     ///< u
   };
@@ -132,7 +134,7 @@ class ChainBundle {
     for (int i = 1; i < 6; ++i) sum += a[i] * b[i];
     return sum;
   }
-  /// The same; without `push`, v of one of them is 0.
+  /// dot() that skips v unless `push`: v of one factor is then 0.
   template <bool push>
   MUSCLESIM_INLINE static Pack dotOf(const Pack a[6], const Pack b[6]) {
     if constexpr (push) return dot(a, b);
@@ -151,7 +153,7 @@ class ChainBundle {
       for (int j = 0; j < i; ++j) y[i] -= factor[i][j] * y[j];
   }
   std::size_t index(int lane, int joint) const { return static_cast<std::size_t>(offset_[static_cast<std::size_t>(lane)] + joint); }
-  /// The first of the three rows of a joint that push. A slider stands between the two beads of each link.
+  /// First of the joint's three rows that act on v. The slider of each link lies between its two beads.
   static constexpr int firstPushing(int joint) { return joint % 2 == 0 ? 3 : 0; }
   static std::size_t blockIndex(int i, int j) {
     const int high = i > j ? i : j, low = i > j ? j : i;
@@ -159,7 +161,7 @@ class ChainBundle {
   }
   Column* borderOf(int node) { return border_.data() + static_cast<std::size_t>(node) * border_capacity_; }
   const Column* borderOf(int node) const { return border_.data() + static_cast<std::size_t>(node) * border_capacity_; }
-  // In functions of their own, since what is compiled several times cannot be called from other files.
+  // These are separate functions because other files cannot call a function that is compiled several times.
   MUSCLESIM_WIDE void makeAllBlocks();
   MUSCLESIM_WIDE void eliminateNodes();
   MUSCLESIM_WIDE void substituteAll();
@@ -181,7 +183,7 @@ class ChainBundle {
   MUSCLESIM_INLINE void substituteVelocities();
   MUSCLESIM_INLINE void makeSlacks();
   MUSCLESIM_INLINE Pack inertia(int component) const { return component < 3 ? per_mass_ : per_inertia_; }
-  /// Border rows that act on node k or on one before it.
+  /// True if the border row acts on node k or a node before it.
   bool reaches(int column, int k) const { return first_node_[static_cast<std::size_t>(column)] <= k; }
 
   std::array<int, lane_count> bead_count_;
@@ -194,7 +196,7 @@ class ChainBundle {
   std::vector<Bead> beads_;
   std::vector<Column> border_;
   std::vector<BorderEntry> entries_;
-  std::vector<int> first_node_, last_node_;  ///< of every border row: with which it couples before the elimination
+  std::vector<int> first_node_, last_node_;  ///< per border row: first and last node it couples to before the elimination
   std::vector<Single> border_block_, border_right_, border_force_;
   std::vector<Column> bone_coupling_;
   Matrix6 bone_mass_[lane_count];

@@ -3,7 +3,7 @@
 
 namespace musclesim::chain {
 
-/// J of a slider's bodies, (0 1; d t) and (0 -1; -d t), with those of the hinge or ball that follows, (1 C; 0 e).
+/// Blocks of a slider, with J = (0 1; d t) and (0 -1; -d t), and of the hinge or ball joint after it, with J = (1 C; 0 e).
 template <int lane_count>
 MUSCLESIM_INLINE void ChainBundle<lane_count>::makeSliderBlocks(std::size_t k) {
   Node& node = nodes_[k];
@@ -26,7 +26,7 @@ MUSCLESIM_INLINE void ChainBundle<lane_count>::makeSliderBlocks(std::size_t k) {
   }
 }
 
-/// J of a hinge's bodies, (1 C; 0 e) and (-1 D; 0 -e), with those of the slider that follows, (0 1; d t).
+/// Blocks of a hinge, with J = (1 C; 0 e) and (-1 D; 0 -e), and of the slider after it, with J = (0 1; d t).
 template <int lane_count>
 MUSCLESIM_INLINE void ChainBundle<lane_count>::makeHingeBlocks(std::size_t k) {
   Node& node = nodes_[k];
@@ -57,7 +57,7 @@ MUSCLESIM_INLINE void ChainBundle<lane_count>::makeHingeBlocks(std::size_t k) {
   }
 }
 
-/// J of the ball's bead, (1 C; 0 0). The bone B stands in place of a next node.
+/// Blocks of the ball joint, with J = (1 C; 0 0) on its bead. The bone B takes the place of a next node.
 template <int lane_count>
 MUSCLESIM_INLINE void ChainBundle<lane_count>::makeBallBlocks(std::size_t k) {
   Node& node = nodes_[k];

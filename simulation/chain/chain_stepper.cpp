@@ -36,7 +36,7 @@ std::string ChainStepper::message() const {
   return reason_.empty() ? "" : "dWorldStep is used, which is slow, because " + reason_;
 }
 
-/// Line muscles only: chains are asked when their rows are made.
+/// Only line muscles need this: the forces of chains are read when their rows are made.
 void ChainStepper::applyForces(const Actuators& actuators, double) {
   if (!upToDate()) prepare();
   for (const auto& actuator : actuators)

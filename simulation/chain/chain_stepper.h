@@ -1,4 +1,4 @@
-/// The default stepper: solves the same problem as dWorldStep, at a cost that grows with the number of links instead of its cube.
+/// The default stepper. It solves the same problem as dWorldStep, but its cost grows with the number of links and not with the cube of it.
 #pragma once
 
 #include <memory>
@@ -16,17 +16,18 @@ class World;
 
 struct ChainStatistics {
   long steps = 0;
-  long unsolved_steps = 0;   ///< left to dWorldStep
+  long unsolved_steps = 0;   ///< steps that dWorldStep had to do
   long rounds = 0;           ///< linear solves
-  long monotone_rounds = 0;  ///< of them in the active set's second phase
-  int largest_rounds = 0;    ///< in one step
+  long monotone_rounds = 0;  ///< linear solves in the active set's second phase
+  int largest_rounds = 0;    ///< most linear solves in one step
 };
 
-/// Takes robots made of bones and actuators: balls, hinges and sliders between bones or to the environment, bones fixed to the
-/// environment, chains of equal beads with both ends connected, contacts. Everything else is left to dWorldStep, with a message.
+/// Handles robots made of bones and actuators: ball joints, hinges and sliders between bones or to the environment, bones fixed to the
+/// environment, chains of equal beads with both ends connected, and contacts. For any other robot dWorldStep does the steps, and message()
+/// says why.
 class ChainStepper final : public Stepper {
  public:
-  /// `strict`: a robot that it cannot take is an error, not left to dWorldStep.
+  /// `strict`: throws for a robot that it cannot handle instead of using dWorldStep.
   ChainStepper(const World& world, const Contacts& contacts, const BodyBounds& bounds, bool strict);
   ~ChainStepper() override;
 
@@ -51,13 +52,13 @@ class ChainStepper final : public Stepper {
   BodyBounds bounds_;
   bool strict_;
   double registered_reduction_ = 0;  ///< ODE's ERP of the world as the simulation set it
-  long revision_ = -1;               ///< of the simulation when the model was registered
-  std::string reason_;               ///< why dWorldStep is used; empty: it is not
+  long revision_ = -1;               ///< revision of the simulation when the model was registered
+  std::string reason_;               ///< why dWorldStep is used; empty if it is not used
   chain::Model model_;
   std::unique_ptr<chain::StepProblem> problem_;
   chain::BoxActiveSet active_set_;
   std::vector<chain::Vector6> new_velocity_;  ///< u of all bodies
-  bool state_is_current_ = false;             ///< the model's bodies are where ODE's are
+  bool state_is_current_ = false;             ///< the model's bodies have the poses of ODE's bodies
   ChainStatistics statistics_;
 };
 

@@ -41,7 +41,7 @@ bool ContactSet::make(const std::vector<ContactPoint>& points, const BodyState& 
   std::swap(contacts_, before_);
   contacts_.clear();
   for (const ContactPoint& point : points) {
-    // ODE exchanges the bodies where the first is the environment.
+    // ODE swaps the bodies if the first is the environment.
     const bool exchanged = !point.body[0];
     ContactRows contact = {};
     for (int side = 0; side < 2; ++side) {
@@ -84,7 +84,8 @@ void ContactSet::linkBodies(int body_count) {
     }
 }
 
-/// A new contact presses, and slides as its bodies move.
+/// Takes the states of the contact between the same bodies in the last step. A new contact starts as pressing, and as sliding in the
+/// direction in which its bodies move.
 void ContactSet::warmStart(ContactRows& contact, const BodyState& bodies) const {
   const auto same = std::find_if(before_.begin(), before_.end(), [&](const ContactRows& other) {
     return other.body[0] == contact.body[0] && other.body[1] == contact.body[1];

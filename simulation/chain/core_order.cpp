@@ -25,7 +25,7 @@ void CoreOrder::connect(int chain, int other) {
   }
 }
 
-/// Of the chains without a place.
+/// The chain with the fewest neighbours among the chains without a place.
 int CoreOrder::leastConnected() const {
   int least = -1;
   for (int chain = 0; chain < static_cast<int>(count()); ++chain)

@@ -1,7 +1,8 @@
-/// The order in which the core's rows are eliminated, so that little is filled in, and their numbers.
+/// Numbers the core's rows in an elimination order that causes little fill-in.
 ///
-/// Rows that belong to chains, the band: the balls at their starts and contacts of their beads. Two chains are neighbours where a contact
-/// acts on both. A chain with the fewest neighbours comes next; those it leaves behind become neighbours of each other (minimum degree).
+/// The band is the set of rows that belong to chains: the ball joints at their starts and the contacts of their beads. Two chains are
+/// neighbours if a contact acts on both. The chain with the fewest neighbours is always eliminated next; its remaining neighbours then
+/// become neighbours of each other (minimum degree).
 #pragma once
 
 #include <vector>
@@ -13,16 +14,16 @@ class CoreOrder {
   /// Starts with chains that have no neighbours.
   void reset(int chain_count);
   void connect(int chain, int other);
-  /// Decides the order; all neighbours are known.
+  /// Computes the order. Call it after all connect() calls.
   void arrange();
-  /// Of two chains on which a row acts: the later one, to which it belongs. Either may be -1; -1 if both are.
+  /// The chain that owns a row acting on two chains: the later of the two. Either may be -1 (none); returns -1 if both are.
   int ownerOf(int chain, int other) const;
 
   void clearRows();
   void addRows(int chain, int count) { row_count_[static_cast<std::size_t>(chain)] += count; }
-  /// Gives every chain its numbers; all rows are counted.
+  /// Gives every chain its row numbers. Call it after all addRows() calls.
   void number();
-  /// The chain's next number that has not been given out.
+  /// Returns the chain's next unused row number.
   int takeRow(int chain) { return next_row_[static_cast<std::size_t>(chain)]++; }
   int rowCount() const { return total_; }
 
@@ -33,10 +34,10 @@ class CoreOrder {
   void visit(int chain);
 
   std::vector<char> neighbours_;  ///< chain x chain
-  std::vector<int> degree_;       ///< number of neighbours that have no place yet
+  std::vector<int> degree_;       ///< per chain: number of neighbours without a place so far
   std::vector<int> sequence_;     ///< chains in their order
-  std::vector<int> place_;        ///< of a chain in the sequence, -1 before it is known
-  std::vector<int> left_;         ///< neighbours that the chain visited last leaves behind
+  std::vector<int> place_;        ///< per chain: its place in the sequence, -1 before it is known
+  std::vector<int> left_;         ///< remaining neighbours of the chain visited last
   std::vector<int> row_count_, next_row_;
   int total_ = 0;
 };

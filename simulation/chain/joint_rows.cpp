@@ -20,7 +20,7 @@ Pair bodiesOf(const JointModel& joint, const BodyState& bodies) {
   return {bodies[joint.body[0]], bodies[joint.body[1]], joint.body[1] >= 0};
 }
 
-/// Two unit vectors that span the plane across the unit vector n, as dPlaneSpace chooses them.
+/// Two unit vectors that span the plane perpendicular to the unit vector n, chosen as dPlaneSpace chooses them.
 void planeAcross(const Vector& n, Vector& p, Vector& q) {
   constexpr double half_root = std::numbers::sqrt2 / 2;
   if (std::abs(n.z()) > half_root) {
@@ -44,13 +44,13 @@ void setRow(JointRows& rows, int body, int row, const Vector& linear, const Vect
   }
 }
 
-/// Turn of the second body against the first since registration, as a quaternion in the first body's frame.
+/// Rotation of the second body relative to the first since registration, as a quaternion in the first body's frame.
 Quaternion turnOf(const JointModel& joint, const Pair& pair) {
   const Quaternion relative = product(conjugate(pair.first.quaternion), pair.second.quaternion);
   return product(relative, conjugate(joint.reference.rotation));
 }
 
-/// Three rows w1 - w2 = 2 k e, e the vector part of the turn in the world's frame.
+/// Three rows w1 - w2 = 2 k e, where e is the vector part of that rotation in the world frame.
 void setOrientationRows(const JointModel& joint, const Pair& pair, double k, int first_row, JointRows& rows) {
   const Quaternion turn = turnOf(joint, pair);
   const Vector e = pair.first.rotation * ((turn[0] < 0 ? -1.0 : 1.0) * turn.tail<3>());
@@ -61,7 +61,7 @@ void setOrientationRows(const JointModel& joint, const Pair& pair, double k, int
   }
 }
 
-/// Three rows v1 + w1 x a1 - v2 - w2 x a2 = k (x2 + a2 - x1 - a1), a the anchor from each centre.
+/// Three rows v1 + w1 x a1 - v2 - w2 x a2 = k (x2 + a2 - x1 - a1), where a is the anchor seen from each centre of mass.
 void setAnchorRows(const JointModel& joint, const Pair& pair, double k, JointRows& rows) {
   const Vector a1 = pair.first.rotation * joint.reference.anchor[0];
   const Vector a2 = pair.second.rotation * joint.reference.anchor[1];
@@ -74,7 +74,7 @@ void setAnchorRows(const JointModel& joint, const Pair& pair, double k, JointRow
   }
 }
 
-/// The stop that is reached at a position, as ODE tests it: before the step.
+/// The stop that the joint has reached. Like ODE, it is tested with the position before the step.
 AxisContact stopAt(const AxisLimits& limits, double position, bool active) {
   if (active && limits.low_stop <= limits.high_stop) {
     if (limits.low_stop == limits.high_stop) return AxisContact::locked;
@@ -103,8 +103,8 @@ void setMotorRow(const AxisLimits& limits, JointRows& rows) {
   rows.upper = limits.motor_force;
 }
 
-/// Row 5 at a stop: it replaces the motor's row, and the motor's whole force presses into the stop.
-///     c = -(erp/h) (position - stop), or -bounce * velocity where that drives out faster
+/// Row 5 at a stop replaces the motor's row; the motor presses into the stop with its full force.
+///     c = -(erp/h) (position - stop), or -bounce * velocity if that leaves the stop faster
 void setStopRow(const AxisLimits& limits, double position, double velocity_before, double k, JointRows& rows) {
   const bool low = rows.contact == AxisContact::low_stop;
   const bool locked = rows.contact == AxisContact::locked;
@@ -135,9 +135,10 @@ void setAxisRow(const JointModel& joint, const Pair& pair, double h_s, const Err
   setStopRow(limits, position, axisVelocity(pair, rows, joint.kind == Joint::Kind::hinge), reduction.of(limits.stop_reduction) / h_s, rows);
 }
 
-/// Slider: equal orientation; the second body's offset point stays on the axis through the first; axis row. With both bodies
+/// Slider: both bodies keep the same orientation (3 rows), and the second body's offset point stays on the axis through the first (2 rows);
+/// the last row acts along the axis. If both bodies move, a row along d is
 ///     d . (v1 - v2) + 1/2 (c x d) . (w1 + w2),   c = x2 - x1,
-/// for d across and along the axis, so that forces along d put no torque on the pair.
+/// for d perpendicular to or along the axis, so that a force along d exerts no torque on the pair.
 void setSliderRows(const JointModel& joint, const Pair& pair, double h_s, const ErrorReduction& reduction, JointRows& rows) {
   const double k = reduction.of(joint.reduction) / h_s;
   setOrientationRows(joint, pair, k, 0, rows);
@@ -156,7 +157,7 @@ void setSliderRows(const JointModel& joint, const Pair& pair, double h_s, const 
   setAxisRow(joint, pair, h_s, reduction, -d[2].dot(error), has_stops, rows);
 }
 
-/// Angle of a hinge, -pi .. pi, from the turn about the axis seen from the first body.
+/// Angle of a hinge, -pi .. pi, from the rotation about the axis seen from the first body.
 double hingeAngle(const Quaternion& turn, const Vector& axis) {
   const double sine = turn.tail<3>().norm();
   double angle = turn.tail<3>().dot(axis) >= 0 ? 2 * std::atan2(sine, turn[0]) : 2 * std::atan2(sine, -turn[0]);
@@ -164,7 +165,7 @@ double hingeAngle(const Quaternion& turn, const Vector& axis) {
   return -angle;
 }
 
-/// Hinge: common anchor; the axes seen from both bodies stay parallel; axis row  axis . (w1 - w2).
+/// Hinge: both bodies keep a common anchor (3 rows), and their axes stay parallel (2 rows); the last row is axis . (w1 - w2).
 void setHingeRows(const JointModel& joint, const Pair& pair, double h_s, const ErrorReduction& reduction, JointRows& rows) {
   const double k = reduction.of(joint.reduction) / h_s;
   setAnchorRows(joint, pair, k, rows);
@@ -200,7 +201,7 @@ int JointModel::positionRowCount() const {
 
 namespace {
 
-/// A number that ODE keeps of a slider or hinge.
+/// A parameter that ODE stores for a slider or hinge.
 double parameterOf(const JointModel& joint, int which) {
   const dJointID id = joint.joint->id();
   return joint.kind == Joint::Kind::slider ? dJointGetSliderParam(id, which) : dJointGetHingeParam(id, which);

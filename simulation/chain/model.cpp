@@ -12,7 +12,7 @@ namespace musclesim::chain {
 
 namespace {
 
-/// Thrown while registering; ends as the reason.
+/// Thrown while registering; registerModel() returns its reason.
 struct NotTaken {
   std::string reason;
 };
@@ -20,19 +20,19 @@ struct NotTaken {
 void requirePlainBody(dBodyID id, const std::string& name) {
   if (!dBodyIsEnabled(id)) throw NotTaken{name + " is disabled"};
   if (dBodyIsKinematic(id)) throw NotTaken{name + " is kinematic"};
-  if (dBodyGetLinearDamping(id) != 0 || dBodyGetAngularDamping(id) != 0) throw NotTaken{name + " has a damping of its own"};
-  if (dBodyGetFiniteRotationMode(id) != 0) throw NotTaken{name + " turns in finite rotations"};
+  if (dBodyGetLinearDamping(id) != 0 || dBodyGetAngularDamping(id) != 0) throw NotTaken{name + " has its own damping"};
+  if (dBodyGetFiniteRotationMode(id) != 0) throw NotTaken{name + " uses ODE's finite rotation mode"};
   if (dBodyGetAutoDisableFlag(id) != 0) throw NotTaken{name + " may be disabled automatically"};
-  if (dBodyGetMaxAngularSpeed(id) < dInfinity) throw NotTaken{name + " has a largest angular speed"};
+  if (dBodyGetMaxAngularSpeed(id) < dInfinity) throw NotTaken{name + " has a limit on its angular speed"};
 }
 
-/// All joints that ODE knows on the body, contacts apart, must be registered ones.
+/// Requires that all of ODE's joints on the body, except contacts, are registered.
 void requireKnownJoints(dBodyID id, const std::string& name, const std::vector<dJointID>& known) {
   for (int i = 0; i < dBodyGetNumJoints(id); ++i) {
     const dJointID joint = dBodyGetJoint(id, i);
     if (dJointGetType(joint) == dJointTypeContact) continue;
     if (!std::binary_search(known.begin(), known.end(), joint))
-      throw NotTaken{fmt::format("a joint of {} is of a kind that only dWorldStep takes (universal, two-axis or limited ball)", name)};
+      throw NotTaken{fmt::format("a joint of {} is of a kind that only dWorldStep can handle (universal, two-axis or limited ball)", name)};
     if (dJointGetFeedback(joint)) throw NotTaken{fmt::format("a joint of {} reports its forces", name)};
   }
 }
@@ -41,7 +41,8 @@ JointModel registerKnown(const Joint& joint, const BodyState& bodies, std::vecto
   const dJointID id = joint.id();
   if (!dJointGetBody(id, 0)) throw NotTaken{joint.name() + " has the environment as its first body"};
   for (int i = 0; i < 2; ++i)
-    if (dJointGetBody(id, i) && bodies.find(dJointGetBody(id, i)) < 0) throw NotTaken{joint.name() + " holds a body of unknown origin"};
+    if (dJointGetBody(id, i) && bodies.find(dJointGetBody(id, i)) < 0)
+      throw NotTaken{joint.name() + " connects a body that is not part of the robot"};
   known.push_back(id);
   return registerJoint(joint, bodies);
 }
@@ -66,7 +67,7 @@ void registerBodies(const World& world, Model& model) {
   model.bodies.sort();
 }
 
-/// Mass and moment of inertia that all beads of the chain share.
+/// Reads the mass and moment of inertia that all beads of the chain have in common.
 void registerBeads(const Actuator& actuator, Chain& chain) {
   for (const Link& link : actuator.links())
     for (const dBodyID bead : link.bead) {
@@ -98,7 +99,7 @@ Chain registerChain(const Actuator& actuator, const BodyState& bodies, std::vect
   return chain;
 }
 
-/// The joints that belong to no chain.
+/// Registers the joints that belong to no chain.
 void registerSkeleton(const World& world, Model& model, std::vector<dJointID>& known) {
   std::vector<dJointID> of_chains = known;
   std::sort(of_chains.begin(), of_chains.end());
@@ -109,7 +110,7 @@ void registerSkeleton(const World& world, Model& model, std::vector<dJointID>& k
     JointModel registered = registerKnown(*joint, model.bodies, known);
     if (kind == Joint::Kind::fixed && registered.body[1] >= 0) throw NotTaken{joint->name() + " fixes two bodies to each other"};
     if (model.placeOf(registered.body[0]).chain >= 0 || model.placeOf(registered.body[1]).chain >= 0)
-      throw NotTaken{joint->name() + " holds a bead of a chain"};
+      throw NotTaken{joint->name() + " is attached to a bead of a chain"};
     (kind == Joint::Kind::fixed ? model.fixed : model.skeleton).push_back(registered);
   }
 }

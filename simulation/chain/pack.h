@@ -1,4 +1,4 @@
-/// Two or four numbers side by side, one per chain of a bundle: the unit in which chains are computed.
+/// SIMD vector of two or four numbers, one per chain of a bundle.
 #pragma once
 
 #if defined(__GNUC__) && !defined(__clang__)
@@ -7,10 +7,10 @@
 
 namespace musclesim::chain {
 
-/// Packs are passed in different ways on different processors: functions that take or return one must become part of their callers.
+/// Processors pass packs to functions in different ways, so functions that take or return a pack must be inlined.
 #define MUSCLESIM_INLINE __attribute__((always_inline)) inline
 
-/// Arithmetic works lane by lane; a plain number acts on all lanes. The alignment is that of processors that have such registers.
+/// Arithmetic works lane by lane; a plain number acts on all lanes. The alignment is the one of SIMD registers of this size.
 template <int lanes>
 struct PackOf;
 template <>

@@ -84,7 +84,7 @@ SkeletonCore::TileRows& SkeletonCore::rowsOfTile(BoneSystem& system, int bone, i
 
 namespace {
 
-/// M = L L^T in place, for the rows and columns from `first` on.
+/// Factorises M = L L^T in place, starting at row and column `first`.
 template <int first>
 void factoriseFrom(Matrix6& m, double per_pivot[6]) {
   for (int j = first; j < 6; ++j) {
@@ -115,7 +115,7 @@ void solveUpperFrom(const Matrix6& l, const double per_pivot[6], Vector6& x) {
 
 }  // namespace
 
-/// Where no chain ends on the bone, nothing couples its first three unknowns, and what is 0 is left out.
+/// If no chain ends on the bone, its first three unknowns are not coupled, and the factorisation skips the zeros.
 void SkeletonCore::factorise(BoneSystem& bone) {
   Matrix6& m = bone.mass;
   const bool alone = (m.bottomLeftCorner<3, 3>().array() == 0).all() && m(1, 0) == 0 && m(2, 0) == 0 && m(2, 1) == 0;
@@ -125,7 +125,7 @@ void SkeletonCore::factorise(BoneSystem& bone) {
   factoriseFrom<3>(m, bone.per_pivot);
 }
 
-/// Factors M and replaces J^T by L^-1 J^T, g by L^-1 g.
+/// Factorises M and replaces J^T by L^-1 J^T and g by L^-1 g.
 void SkeletonCore::reduce(BoneSystem& bone) {
   factorise(bone);
   bone.reduced = bone.velocity;
@@ -143,7 +143,7 @@ void SkeletonCore::addProducts(const BoneSystem& bone) {
   }
 }
 
-/// -M and -g of a kept bone.
+/// Enters -M and -g of a kept bone into the matrix and the right-hand side.
 void SkeletonCore::enter(const BoneSystem& bone) {
   for (int i = 0; i < 6; ++i) {
     for (int j = 0; j <= i; ++j) matrix_.add(bone.kept_place + i, bone.kept_place + j, -bone.mass(i, j));

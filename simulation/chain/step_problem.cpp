@@ -10,10 +10,10 @@ namespace musclesim::chain {
 
 namespace {
 
-/// Least share of a contact's softness in its diagonal of A that makes it a soft one.
+/// A contact row is soft if its softness is at least this share of its diagonal entry of A.
 constexpr double least_softness_ratio = 1e-3;
 
-/// Torque of Lacoursiere's implicit gyroscopic term as ODE adds it: I (I - h [L]x)^-1 L / h - L / h = L x (I - h [L]x)^-1 L, L = I w.
+/// Gyroscopic torque in Lacoursiere's implicit form, as ODE adds it: I (I - h [L]x)^-1 L / h - L / h = L x (I - h [L]x)^-1 L, L = I w.
 Vector gyroscopicTorque(const Eigen::Matrix3d& inertia, const Vector& l, double h_s) {
   Eigen::Matrix3d cross;
   cross << 0, -l.z(), l.y(), l.z(), 0, -l.x(), -l.y(), l.x(), 0;
@@ -21,7 +21,7 @@ Vector gyroscopicTorque(const Eigen::Matrix3d& inertia, const Vector& l, double 
   return l.cross(effective.inverse() * l);
 }
 
-/// ODE's motors may rest at stops from a step that dWorldStep did.
+/// Sets the motor explicitly because a step of dWorldStep may have left ODE's motor at a stop.
 void setViscousMotor(JointModel& joint, const MuscleSettings& settings) {
   const double dry = joint.kind == Joint::Kind::slider ? settings.slider_friction_N : settings.hinge_friction_Nm;
   joint.limits.motor_force = dry > 0 ? dInfinity : 0;
@@ -36,7 +36,7 @@ StepProblem::StepProblem(Model& model) : model_(model) {
     return model.chains[static_cast<std::size_t>(a)].beadCount() < model.chains[static_cast<std::size_t>(b)].beadCount();
   });
   chains_.resize(order.size());
-  // The incomplete bundle takes the shortest.
+  // The shortest chains go into the incomplete bundle.
   constexpr std::size_t most = Bundle::most_chains;
   for (std::size_t first = 0, end = (order.size() + most - 1) % most + 1; first < order.size(); first = end, end += most) {
     std::vector<int> counts;
@@ -53,7 +53,7 @@ StepProblem::StepProblem(Model& model) : model_(model) {
   skeleton_.resize(model.skeleton.size());
   fixed_.resize(model.fixed.size());
   bones_.resize(model.bones.size());
-  // With fewer chains it costs less to eliminate the bones.
+  // With fewer chains, eliminating the bones costs less than keeping them.
   constexpr std::size_t chains_per_bone = 2;
   keeps_bones_ = chains_.size() > chains_per_bone * (bones_.size() - fixed_.size());
   layout_.kept.assign(bones_.size(), keeps_bones_ ? 1 : 0);
@@ -62,7 +62,7 @@ StepProblem::StepProblem(Model& model) : model_(model) {
   reserve();
 }
 
-/// Bones that are fixed once and to which nothing else is joined.
+/// Finds bones that have one fixation and no other joint.
 void StepProblem::findLoneBones() {
   const auto join = [&](const JointModel& joint) {
     for (const int body : joint.body)
@@ -80,7 +80,7 @@ void StepProblem::findLoneBones() {
   }
 }
 
-/// Memory for as many contacts as a robot can be expected to have, so that steps need not ask for it.
+/// Allocates memory for as many contacts as a robot is expected to have, so that steps do not allocate.
 void StepProblem::reserve() {
   constexpr int contacts_per_chain = 20;
   const int contact_count = 100 + contacts_per_chain * static_cast<int>(chains_.size());
@@ -123,7 +123,7 @@ bool isSame(const BodyMotion& a, const BodyMotion& b) {
 
 }  // namespace
 
-/// A lone bone that nothing touches and that begins this step as it began the last one ends it in the same way.
+/// Finds lone bones that nothing touches and that start this step in the same state as the last one: they end it in the same state too.
 void StepProblem::findRestingBones(bool same_conditions) {
   for (BoneState& state : bones_) state.touched = false;
   for (const ContactRows& contact : contacts_.all())
@@ -142,7 +142,7 @@ void StepProblem::findRestingBones(bool same_conditions) {
   }
 }
 
-/// Gravity, and for bones inertia in the frame of the world and the gyroscopic torque.
+/// Adds gravity. For bones it also computes the inertia in the world frame and adds the gyroscopic torque.
 void StepProblem::addLoads() {
   for (int i = 0; i < model_.boneCount(); ++i) {
     BoneState& state = bones_[static_cast<std::size_t>(i)];
@@ -236,7 +236,7 @@ void StepProblem::setUpStart(std::size_t number) {
   }
 }
 
-/// M = diag(m, R I R^T), g = M v/h + f; a fixation, whose J is 1, adds h/cfm and (h/cfm) c/h.
+/// M = diag(m, R I R^T), g = M v/h + f; a fixation (J = 1) adds h/cfm to M and (h/cfm) c/h to g.
 void StepProblem::setUpBones() {
   const double per_h = 1 / conditions_.h_s;
   for (int i = 0; i < model_.boneCount(); ++i) {

@@ -1,7 +1,7 @@
-/// The box-constrained problem of one step, solved by elimination: beads, chains, bones, core.
+/// The box-constrained problem of one step. It is solved by eliminating beads, chains and bones, then solving the core.
 ///
 ///     M u - J^T l = M v/h + f,   J u + cfm/h l = c/h + w,   lower <= l <= upper, w complementary      u = v+ / h
-/// A row at a bound takes no part; its force acts on its bodies like any other.
+/// A row at a bound is left out of the linear system; its force acts on its bodies like any other force.
 #pragma once
 
 #include <vector>
@@ -28,16 +28,17 @@ class StepProblem final : public BoxProblem {
     double contact_reduction;  ///< share of a contact's depth corrected in the step
     double contact_softness;   ///< ODE's CFM of a contact's normal
     double world_softness;     ///< ODE's CFM of the world, for a contact's friction
-    double friction_force;     ///< bound of a contact's friction
+    double friction_force;     ///< largest friction force of a contact
     bool operator==(const Conditions&) const = default;
   };
-  /// Sets up the step for the bodies' present state and the actuators' tensions. Returns false if a contact touches an unknown body.
+  /// Sets up the step for the present state of the bodies and the tensions of the actuators. Returns false if a contact touches an unknown
+  /// body.
   bool begin(const Conditions& conditions, const std::vector<ContactPoint>& contacts);
-  /// The bounded rows; their states are those at the end of the last step where the row is the same.
+  /// The bounded rows. A row that existed in the last step starts with its state at the end of that step.
   std::vector<BoundedRow>& rows() { return rows_; }
-  /// Keeps the states for the next step, and gives u of all bodies.
+  /// Keeps the states for the next step and writes u of all bodies.
   void end(std::vector<Vector6>& u);
-  /// Forgets the states.
+  /// Forgets the states of the last step.
   void forget();
 
   void solve(std::vector<BoundedRow>& rows) override;
@@ -57,7 +58,7 @@ class StepProblem final : public BoxProblem {
     AxisContact contact_before = AxisContact::none;
     RowState state = RowState::free;
     bool bounded = false;
-    double force = 0;  ///< of the bounded row at a bound
+    double force = 0;  ///< force of the bounded row while it is at a bound
     int core_row = 0;  ///< skeleton: number of the first row in the core
     bool axisFree() const { return rows.row_count == 6 && state == RowState::free; }
   };
@@ -65,7 +66,7 @@ class StepProblem final : public BoxProblem {
     int bundle, lane;
     std::vector<JointState> joints;
     JointState start;
-    std::vector<int> border_rows;  ///< core rows of its border: the start ball's, then free contact rows
+    std::vector<int> border_rows;  ///< core rows of its border: three of the ball joint at the start, then free contact rows
     std::vector<RowPlace> border_contacts;
     bool start_in_band[3];
     Eigen::Matrix3d start_block;  ///< J S J^T + cfm/h of the ball at the start
@@ -73,13 +74,13 @@ class StepProblem final : public BoxProblem {
   struct BoneState {
     Eigen::Matrix3d inertia;         ///< in the frame of the world
     Vector spin_momentum;            ///< I w
-    Matrix6 mass = Matrix6::Zero();  ///< with what a fixation adds
+    Matrix6 mass = Matrix6::Zero();  ///< including the stiffness of a fixation
     Vector6 momentum;                ///< M v/h + f
     double per_mass, per_inertia;
-    bool lone = false;       ///< fixed, and nothing else is joined to it
-    bool touched = false;    ///< by a contact
-    bool rests = false;      ///< its u is that of the last step
-    bool was_alone = false;  ///< lone and not touched in the last step, which began with
+    bool lone = false;       ///< fixed and without other joints
+    bool touched = false;    ///< a contact touches it
+    bool rests = false;      ///< its u is the same as in the last step
+    bool was_alone = false;  ///< lone and not touched in the last step, which started from motion_before and bone_before
     BodyMotion motion_before;
     Bone bone_before;
   };
@@ -132,7 +133,7 @@ class StepProblem final : public BoxProblem {
   std::vector<Bundle> bundles_;
   std::vector<char> bundle_dirty_;
   CoreOrder order_;
-  bool keeps_bones_ = false;  ///< bones that move are unknowns of the core
+  bool keeps_bones_ = false;  ///< moving bones are unknowns of the core
   SkeletonCore core_;
   SkeletonCore::Layout layout_;
   std::vector<BoundedRow> rows_;

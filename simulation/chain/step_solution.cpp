@@ -97,7 +97,7 @@ int StepProblem::ownerOf(const ContactRows& contact) const {
   return keeps_bones_ ? order_.ownerOf(first, second) : std::max(first, second);
 }
 
-/// Numbers the core's rows: the band, further rows of chains, contacts, the skeleton.
+/// Numbers the core's rows in this order: the band, further rows of chains, contacts, the skeleton.
 void StepProblem::numberRows() {
   chooseBand();
   int next = layout_.band = order_.rowCount();
@@ -117,7 +117,8 @@ void StepProblem::numberRows() {
       chain.border_rows.push_back(contacts_.all()[static_cast<std::size_t>(place.owner)].core_row[place.part]);
 }
 
-/// Into the band: what stands before the bones. Elsewhere rows that are nearly stiff while all bones are held.
+/// Counts the rows of the band, which are eliminated before the bones. Rows that would be nearly rigid if all bones were held do not belong
+/// in it.
 void StepProblem::chooseBand() {
   order_.clearRows();
   for (std::size_t c = 0; c < chains_.size(); ++c) {
@@ -129,8 +130,8 @@ void StepProblem::chooseBand() {
   order_.number();
 }
 
-/// A stretched muscle whose joints stick is a rod: its start cannot move along it while its end is held. Elimination with the largest pivot
-/// first tells which rows are left with none.
+/// Finds rows of the ball joint at the start that have no usable pivot. A stretched muscle whose joints stick acts as a rod: while its end
+/// is held, its start cannot move along the rod. Elimination with the largest pivot first shows which rows remain without a pivot.
 void StepProblem::findStiffStart(std::size_t number) {
   constexpr double least_pivot_ratio = 1e-4;
   ChainState& state = chains_[number];
@@ -169,7 +170,7 @@ void StepProblem::assembleCore() {
     for (int row = 0; row < contacts_.all()[i].row_count; ++row) addContact(i, row);
 }
 
-/// Own mass and momentum, and the forces of rows at a bound.
+/// Adds each bone's own mass and momentum and the forces of rows at a bound.
 void StepProblem::addBones() {
   for (int i = 0; i < model_.boneCount(); ++i) {
     const BoneState& bone = bones_[static_cast<std::size_t>(i)];
@@ -262,7 +263,8 @@ void StepProblem::addContact(std::size_t number, int row) {
     if (model_.placeOf(contact.body[side]).chain >= 0) addSharedBead(contact, row, side);
 }
 
-/// Contact rows couple through the bead that both act on: the rows of the same contact up to this one, and of the contacts before.
+/// Contact rows couple through a bead that both act on. Adds the coupling with the contact's rows up to this one and with the rows of
+/// earlier contacts.
 void StepProblem::addSharedBead(const ContactRows& contact, int row, int side) {
   const int body = contact.body[side];
   const auto add = [&](const ContactRows& other, int other_side, int other_row) {

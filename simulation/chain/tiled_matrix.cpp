@@ -14,7 +14,7 @@ void TiledMatrix::reserve(int size) {
   targets_.reserve(count);
 }
 
-/// Rows that fill the last tile are those of the unit matrix.
+/// Fills the last tile with rows of the unit matrix.
 void TiledMatrix::reset(int size) {
   size_ = size;
   tile_count_ = (size + tile_width - 1) / tile_width;
@@ -44,7 +44,7 @@ void TiledMatrix::listColumn(int tile_column) const {
     }
 }
 
-/// L and D of a tile column, and what it subtracts from the columns behind: L D L^T.
+/// Computes L and D of a tile column and subtracts L D L^T from the columns after it.
 void TiledMatrix::eliminate(int tile_column) {
   double* per_pivots = per_pivots_.data() + tile_column * tile_width;
   double* diagonal = tile(number(tile_column, tile_column));
@@ -53,7 +53,7 @@ void TiledMatrix::eliminate(int tile_column) {
   const std::size_t count = rows_.size();
   for (std::size_t i = 0; i < count; ++i) solveTile(tile(column_tiles_[i]), scaled_.data() + i * tile_size, diagonal, per_pivots);
   for (std::size_t k = 0; k < count; ++k) {
-    // Tiles may move in memory while new ones are made.
+    // makeTile() may move tiles in memory, so the pointers are taken after all tiles exist.
     for (std::size_t i = k; i < count; ++i) makeTile(rows_[i], rows_[k]);
     targets_.clear();
     for (std::size_t i = k; i < count; ++i) targets_.push_back(tile(number(rows_[i], rows_[k])));

@@ -8,14 +8,14 @@ namespace {
 
 constexpr int width = tile_width;
 
-/// Eight numbers; loaded from and stored to any address. Inlined into the functions that are compiled for several processors.
+/// Eight numbers that may be at any address. Functions that use it are inlined into the functions that are compiled for several processors.
 using Wide = double __attribute__((vector_size(width * sizeof(double)), aligned(sizeof(double)), may_alias));
 
 [[gnu::always_inline]] inline double sumOf(const Wide& p) {
   return ((p[0] + p[1]) + (p[2] + p[3])) + ((p[4] + p[5]) + (p[6] + p[7]));
 }
 
-/// Forward substitution with six rows, of which those before `first` stand alone.
+/// Forward substitution with six rows; the rows before `first` are not coupled.
 template <int first>
 [[gnu::always_inline]] inline void solveRowsFrom(Wide* rows, const double* l, const double* per_pivot) {
   for (int i = 0; i < first; ++i) rows[i] *= per_pivot[i];

@@ -1,8 +1,8 @@
-/// Loops over long rows of numbers, in the widest registers that the processor has.
+/// SIMD kernels: loops over long rows of numbers in the widest registers of the processor.
 ///
-/// Functions marked MUSCLESIM_WIDE are compiled several times; which one runs is decided when the program is loaded. All do the same
-/// operations on the same numbers in the same order (nothing is summed across a register but in a fixed order, and products and sums are
-/// not contracted), so the bits do not depend on the processor.
+/// Functions marked MUSCLESIM_WIDE are compiled several times; the loader selects the version that fits the processor. All versions do the
+/// same operations on the same numbers in the same order (sums across a register have a fixed order, and products and sums are not
+/// contracted), so the result does not depend on the processor to the last bit.
 #pragma once
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
@@ -13,15 +13,15 @@
 
 namespace musclesim::chain {
 
-/// Tiles: eight by eight numbers, one column after another. l is a unit lower triangle, of which only what is below the diagonal is used.
+/// A tile has eight by eight numbers in column-major order. l is a unit lower triangle; only the entries below its diagonal are used.
 inline constexpr int tile_width = 8, tile_size = tile_width * tile_width;
 
 void clear(double* numbers, int count);
-/// a = L D L^T: below the diagonal of a stands L, above it nothing of use; per_pivots are the reciprocals of D.
+/// Factorises a = L D L^T: writes L below the diagonal of a and the reciprocals of D to per_pivots. The rest of a is undefined afterwards.
 void factoriseTile(double* a, double* per_pivots);
 /// scaled = a L^-T = B D,  a = B
 void solveTile(double* a, double* scaled, const double* l, const double* per_pivots);
-/// targets[i] -= left[i] right^T; `left` are tiles in a row.
+/// targets[i] -= left[i] right^T; `left` points to consecutive tiles.
 void subtractTileProducts(double* const* targets, const double* left, const double* right, int count);
 /// x <- L^-1 x and L^-T x
 void solveLower(const double* l, double* x);
@@ -30,8 +30,8 @@ void solveUpper(const double* l, double* x);
 void subtractProduct(double* y, const double* a, const double* x);
 void subtractTransposed(double* y, const double* a, const double* x);
 
-/// Six rows of eight numbers, y. l is a lower triangle of six by six numbers by columns, per_pivot its diagonal's reciprocals; the columns
-/// before `first_coupled`, 0 or 3, hold nothing below the diagonal.
+/// The functions below work on y, six rows of eight numbers. l is a lower triangle of six by six numbers in column-major order, per_pivot
+/// the reciprocals of its diagonal; the columns before `first_coupled` (0 or 3) are zero below the diagonal.
 /// y <- l^-1 y
 void solveSixRows(double y[6][tile_width], const double* l, const double per_pivot[6], int first_coupled);
 /// tile += left^T right, for the columns whose bits are set

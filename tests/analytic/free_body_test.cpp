@@ -1,4 +1,4 @@
-/// Bodies without joints: free fall, and momentum without forces from outside.
+/// Bodies without joints: free fall, and conservation of momentum without external forces.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-/// A chain that hangs at rest and carries itself and a load.
+/// A chain that hangs at rest and carries its own weight and a load.
 #include <gtest/gtest.h>
 
 #include "musclesim/robot/muscle.h"
@@ -21,7 +21,7 @@ TEST(HangingChain, SettlesWhereForceCarriesTheLoadAndHalfTheChain) {
 TEST(HangingChain, ItsFixedPointCarriesTheWeightOfChainAndLoad) {
   SimulationOptions options;
   options.substeps = 5;
-  options.stepper = StepperKind::ode;  // it reports the joints' forces
+  options.stepper = StepperKind::ode;  // only this stepper reports the joints' forces
   Simulation simulation(options);
   Robot& robot = simulation.build("rig");
   simulation.start("settled", {0.6});

@@ -1,4 +1,4 @@
-/// A physical pendulum: a rod on a hinge of the environment.
+/// A physical pendulum: a rod on a hinge to the environment.
 ///     T = 2 pi sqrt(I / (m g d)) (1 + phi_0^2 / 16),   phi(t) = phi_0 cos(2 pi t / T)   for small amplitudes phi_0
 /// I moment of inertia about the hinge, d distance of the centre of mass from it.
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ constexpr double distance_mm = 150, rod_g = 200;
 struct Swing {
   double period_error_ratio;  ///< relative, over five periods
   double angle_error_rad;     ///< largest over the first period
-  double energy_error_ratio;  ///< largest over five periods, as a share of the energy of the swing
+  double energy_error_ratio;  ///< largest over five periods, relative to the energy of the swing
 };
 
 Swing swing(PhysicsKind kind, double step_s) {

@@ -1,13 +1,13 @@
-/// The load frame at rest: where the muscle comes to a stop, and where it should by the force law.
+/// The load frame at rest: the length at which the muscle stops, and the length that the force law predicts.
 ///
 /// Link i = 0 .. n - 1 from the top carries the load and the beads below its slider, weight w_i. At rest each of its links obeys
 ///     |F(p, l) - w_i| <= friction              between its stops,
 ///     F(p, l) - w_i <= friction                at its long stop,
 ///     F(p, l) - w_i >= -friction               at its short stop,
-/// l the length of the whole chain: all sliders pull with the same F, so without friction the upper links run to their long stops, the
-/// lower ones to their short stops, and one in between balances. With k links at their long stops the length is
+/// l is the length of the whole chain. All sliders pull with the same F, so without friction the upper links move to their long stops, the
+/// lower links to their short stops, and one link in between balances. With k links at their long stops the length is
 ///     F(p, l) = w_k,   l_k <= l <= l_k+1,   l_k = (k l_max + (n - k) l_min) / n,
-/// or l = l_k where F(p, l_k) lies between w_k and w_k-1: one crossing, F growing and w falling with l.
+/// or l = l_k if F(p, l_k) lies between w_k and w_k-1. There is only one solution, because F grows and w falls with l.
 #pragma once
 
 #include <algorithm>
@@ -32,7 +32,7 @@ inline const std::vector<double>& staticLoadsKg() {
 
 struct StaticRig {
   double pressure_ratio, load_kg, slider_friction_N;
-  bool from_longer;  ///< whether the chain starts longer than where it can rest, or shorter
+  bool from_longer;  ///< whether the chain starts longer or shorter than its rest lengths
 
   struct Link {
     double weight_N;  ///< w_i
@@ -54,13 +54,13 @@ struct StaticRig {
   double weightN(int link) const { return loadN() + bead_weight_N * (2 * (link_count - link) - 1); }
   BraunForceLaw law() const { return {minimum_mm, maximum_mm}; }
 
-  /// Length at which the muscle pulls with a given force, between the stops.
+  /// Length between the stops at which the muscle pulls with a given force.
   double lengthForMm(double force_N) const {
     return rootBetween([&](double l) { return law().tensionN(pressure_ratio, l) - force_N; }, minimum_mm, maximum_mm);
   }
-  /// As if half of the chain's weight acted at its lower end.
+  /// Rest length if half of the chain's weight acted at its lower end.
   double simpleLengthMm() const { return lengthForMm(loadN() + chainN() / 2); }
-  /// Without friction, link by link.
+  /// Rest length without friction, computed link by link.
   double frictionlessLengthMm() const {
     return rootBetween(
         [&](double l) {
@@ -70,8 +70,8 @@ struct StaticRig {
         minimum_mm, maximum_mm);
   }
 
-  /// Lets the rig go a little outside of where it can rest and waits until it does. Without friction nothing would end the swinging: then
-  /// all velocities are set to 0 whenever the kinetic energy has passed a maximum.
+  /// Releases the rig a little outside its range of rest lengths and waits until it rests. Without friction it would swing forever, so all
+  /// velocities are set to 0 whenever the kinetic energy has passed a maximum.
   Result settle() const {
     SimulationOptions options;
     options.substeps = 3;

@@ -8,7 +8,7 @@
 namespace musclesim {
 namespace {
 
-/// One pressure; all loads, both directions.
+/// Tests one pressure with all loads from both directions.
 class StaticRigAt : public ::testing::TestWithParam<double> {};
 
 TEST_P(StaticRigAt, RestsWithinTheFrictionBandFromBothDirections) {
@@ -22,14 +22,14 @@ TEST_P(StaticRigAt, RestsWithinTheFrictionBandFromBothDirections) {
                                       << " at short ones");
       EXPECT_TRUE(result.at_rest);
       if (result.long_stop_count == StaticRig::link_count || result.short_stop_count == StaticRig::link_count) {
-        ++at_stops_count;  // the stops carry the load; the force law says nothing about the length
+        ++at_stops_count;  // the stops carry the load, so the force law does not determine the length
         continue;
       }
-      // The band of the closed form: the chain's weight acts somewhere between its upper and its lower end, friction on either side.
+      // Closed-form bounds: the chain's weight acts somewhere between its upper and lower end, plus or minus friction.
       constexpr double solver_N = 0.02;
       EXPECT_GT(result.tension_N, rig.loadN() - 1 - solver_N);
       EXPECT_LT(result.tension_N, rig.loadN() + StaticRig::chainN() + 1 + solver_N);
-      // The same for every link by itself.
+      // The same check for each link.
       for (std::size_t i = 0; i < result.links.size(); ++i) {
         const auto& link = result.links[i];
         const double excess_N = result.tension_N - link.weight_N;

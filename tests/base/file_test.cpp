@@ -29,7 +29,7 @@ TEST(File, ReplacesAsAWhole) {
 TEST(File, TemporaryNamesDifferAlsoBetweenProcessesWithTheSameId) {
   const TemporaryFolder folder;
   const std::string file = folder.file("a.txt");
-  // What two processes in two containers would do: the same id, both at their first file.
+  // As two processes in two containers: both have the same process id and write their first file.
   const auto nameOfFirst = [&] {
     const FileReplacement mine(file, "x");
     for (const auto& entry : std::filesystem::directory_iterator(folder.file(""))) return entry.path().filename().string();

@@ -54,7 +54,7 @@ TEST(ParallelFor, CallsWithinShareTheThreads) {
   EXPECT_LE(most, 3) << "no more threads than the outer call has";
 }
 
-/// Each piece waits for the other one, which only another thread can begin.
+/// Each piece waits for the other one, which only another thread can start.
 TEST(ParallelFor, IdleThreadsHelpWithin) {
   std::atomic<int> begun = 0;
   parallelFor(1, 2, [&](int) {

@@ -1,5 +1,5 @@
-// What the effects of one stage cost: CPU time of a control step of the arm with all of them active on all components, over that without.
-// Usage: effect_cost [--document docs/effects.md]
+// Cost of the effects of one stage: CPU time of a control step of the arm with all of them active on all components, over the time without
+// effects. Usage: effect_cost [--document docs/effects.md]
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ using namespace musclesim;
 
 namespace {
 
-/// All effects of a stage, so weak that the motion stays nearly the same.
+/// All effects of a stage, weak enough that the motion hardly changes.
 std::vector<ActiveEffect> allOf(Stage stage, const Robot& robot) {
   std::vector<ActiveEffect> effects;
   for (const EffectInfo& info : effectCatalogue()) {
@@ -26,7 +26,7 @@ std::vector<ActiveEffect> allOf(Stage stage, const Robot& robot) {
     }
     for (const std::string& component : componentsFor(info, robot)) {
       effects.push_back(activeEffect(info, component, values));
-      break;  // "all", or the first
+      break;  // "all", or the first component
     }
   }
   return effects;
@@ -56,7 +56,7 @@ struct Arm {
     }
     best_s = std::min(best_s, (cpuSeconds() - begin) / static_cast<double>(steps));
   }
-  /// The stages alone, per control step.
+  /// CPU time of the stages alone, per control step.
   void callStages() {
     constexpr int count = 2000;
     EffectChain& effects = simulation.effects();

@@ -1,5 +1,5 @@
-// A figure per effect of the catalogue: a standard recording of rig or elbow, clean and with the effect.
-// Usage: effect_figures DOCUMENT.md   (its section "catalogue" is written, the figures go to figures/effects beside it)
+// Draws a figure for each effect of the catalogue: a standard recording of rig or elbow, with and without the effect.
+// Usage: effect_figures DOCUMENT.md   (writes the document's section "catalogue", and the figures to figures/effects beside it)
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,10 +23,10 @@ constexpr double width = 760, height = 340, left = 62, right = 14, panel_height 
 
 struct Case {
   std::string robot, component;
-  std::vector<std::string> signals;  ///< two panels
+  std::vector<std::string> signals;  ///< one per panel, two in all
 };
 
-/// Where the effect is shown.
+/// Robot and component on which the figure shows the effect.
 Case caseOf(const EffectInfo& info) {
   const bool on_rig =
       info.stage == Stage::force || info.stage == Stage::pressure || (info.stage == Stage::command && info.id != "channel_swap");
@@ -83,7 +83,7 @@ std::string neutralOf(const EffectParameter& p) {
   return p.choices.empty() ? fmt::format("{:g}", p.neutral) : p.choices[static_cast<std::size_t>(p.neutral)];
 }
 
-/// The section of one effect.
+/// The document's section on one effect.
 std::string describe(const EffectInfo& info) {
   std::string text = fmt::format("### {}\n\n{}.\n\n    {}\n\nSignature: {}. Source: {}.\n\n", info.id, info.summary, info.equation,
                                  info.signature, info.source);

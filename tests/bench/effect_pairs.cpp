@@ -1,6 +1,6 @@
-// Look-alikes: data made with one effect, explained by another one as well as it can. For every pair of the catalogue's list one recording
-// in which the two cannot be told apart and one in which they can. The number is the largest RMSE of any measured signal over its noise
-// that is left by the best fit of the look-alike: below 1 it hides in the noise. Usage: effect_pairs [--document docs/effects.md]
+// Look-alikes: fits data made with one effect by another effect. For every pair of the catalogue's list there is one recording that cannot
+// tell the two apart and one that can. The number is the largest RMSE of any measured signal over its noise after the best fit of the
+// look-alike; below 1 the difference is hidden in the noise. Usage: effect_pairs [--document docs/effects.md]
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ struct Setup {
   std::string words;
 };
 
-/// An effect with the parameters that a fit may change and where it begins.
+/// An effect with the parameters that a fit may change and their start values.
 struct Candidate {
   ActiveEffect effect;
   std::vector<std::string> free = {};
@@ -44,7 +44,8 @@ double misfit(const Recording& a, const Recording& b, const std::vector<std::str
   return largest;
 }
 
-/// Compass search from the best of some values of the first parameter: a step along each parameter, halved when none helps.
+/// Compass search, starting from the best of several values of the first parameter: tries a step along each parameter and halves the steps
+/// when none helps.
 double bestFit(const Setup& setup, const Recording& data, const Candidate& candidate) {
   auto trial = [&](const std::vector<double>& values) {
     ActiveEffect effect = candidate.effect;
@@ -85,7 +86,7 @@ double bestFit(const Setup& setup, const Recording& data, const Candidate& candi
   return best_value;
 }
 
-/// A slow wave that begins gently, so that nothing rings.
+/// A slow wave with a gentle start, so that it excites no vibrations.
 Recording elbowWave(double amplitude, double both = 0.4) {
   constexpr double frequency_Hz = 0.2, rise_s = 1.5;
   return recordingOf("elbow", 10, [=](double t) {
@@ -94,7 +95,7 @@ Recording elbowWave(double amplitude, double both = 0.4) {
   });
 }
 
-/// The same where the friction of the chains grows with speed: dry friction tells a delay from a damping even in slow motion.
+/// The same with viscous instead of dry friction in the chains: dry friction would tell a delay from damping even in slow motion.
 Recording smoothElbowWave() {
   Recording recording = elbowWave(0.02);
   recording.info.robot_parameters["muscle.joint_friction"] = "viscous";

@@ -1,4 +1,4 @@
-/// Standard recordings for studies of effects: what is commanded, and how large the sensors' noise is taken to be.
+/// Standard recordings for studies of effects: their commands and the assumed noise of the sensors.
 #pragma once
 
 #include <cmath>
@@ -31,7 +31,7 @@ inline double wave(double frequency_Hz, double time_s) {
   return std::sin(2 * std::numbers::pi * frequency_Hz * time_s);
 }
 
-/// Up and down between 0 and 1 with a period, from 0.
+/// A triangle wave between 0 and 1 with the given period, starting at 0.
 inline double triangle(double period_s, double time_s) {
   const double phase = time_s / period_s - std::floor(time_s / period_s);
   return phase < 0.5 ? 2 * phase : 2 - 2 * phase;
@@ -48,7 +48,7 @@ inline Recording standardRig(double middle = 0.45) {
   return recordingOf("rig", 6, [=](double t) { return Action{middle + 0.2 * standardShape(t)}; });
 }
 
-/// Flexor and extensor against each other, with co-contraction that grows.
+/// Flexor and extensor in opposition, with growing co-contraction.
 inline Recording standardElbow() {
   return recordingOf("elbow", 6, [](double t) {
     const double both = 0.3 + 0.02 * t, difference = 0.05 * standardShape(t);
@@ -56,7 +56,7 @@ inline Recording standardElbow() {
   });
 }
 
-/// Standard deviation of a sensor's noise by the quantity that it measures.
+/// Standard deviation of a sensor's noise, by the measured quantity.
 inline double noiseOf(const std::string& signal) {
   if (signal.starts_with("pressure_")) return 0.003;
   if (signal.starts_with("force_")) return 0.5;
@@ -70,7 +70,8 @@ inline Recording simulate(const Recording& commands, const std::vector<ActiveEff
   return replayRecording(commands, options).simulated;
 }
 
-/// The effect as strong as a figure or table shows it: the upper end of what is usual, or a little more where that could not be seen.
+/// The effect with the strength used in figures and tables: the upper end of the usual range, or a little more if that would not be
+/// visible.
 inline ActiveEffect shownEffect(const EffectInfo& info, const std::string& component) {
   if (info.id == "channel_swap") return {info.id, component, {}};
   if (info.id == "command_quantisation") return {info.id, component, {{"bits", 4.0}}};

@@ -1,7 +1,7 @@
 /// Throughput of several simulations in one process: one thread against two, the same simulations.
 /// Usage: ensemble_study [--document docs/stepper.md]
-/// Throughput = threads * serial time / parallel time, times of all simulations on the clock less what their threads waited for a processor
-/// (Linux: schedstat): other programs of the machine are left out, while waiting for each other counts.
+/// Throughput = threads * serial time / parallel time. The times are wall times of all simulations minus the time their threads waited for
+/// a processor (Linux: schedstat), so other programs on the machine do not count, but waiting for each other does.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -41,7 +41,7 @@ double clockSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// How long the calling thread has been ready to run without a processor.
+/// How long the calling thread has waited for a processor while it was ready to run.
 double queuedSeconds() {
   std::ifstream file("/proc/thread-self/schedstat");
   double running_ns = 0, queued_ns = 0;

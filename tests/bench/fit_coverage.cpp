@@ -1,4 +1,4 @@
-/// How often the 95 % intervals of a fit of Eq. 1 hold the planted constants, over 1000 seeded repeats, as a table in Markdown.
+/// Prints how often the 95 % intervals of a fit of Eq. 1 contain the true constants, over 1000 seeded repeats, as a table in Markdown.
 /// Usage: fit_coverage [repeats]
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
-/// How soon controllers bring the hand to the target, and how long they keep it there: ASM on the height task, AASM on the reaching task,
-/// random pressures on both. Resumable: every run is a line of a CSV file, and runs that are there are not repeated. A run that diverges is
-/// listed; the time that it lacks counts as time away from the target.
-/// Usage: height_task_study RUNS.csv [--seeds 1-20] [--duration 300] [--physics original] [--controllers asm,random,aasm]
+/// Measures how soon controllers bring the hand to the target and how long they keep it there: ASM on the height task, AASM on the reaching
+/// task, random pressures on both. The study can be resumed: every run is a line of a CSV file, and runs in the file are not repeated. Runs
+/// that diverge are listed; their missing time counts as time away from the target. Usage: height_task_study RUNS.csv [--seeds 1-20]
+/// [--duration 300] [--physics original] [--controllers asm,random,aasm]
 ///                          [--document docs/controlling.md --figure docs/figures/controllers.svg] [name=value ...]
 #include <fmt/format.h>
 
@@ -35,7 +35,7 @@ struct Run {
   std::string physics, controller;
   int seed = 0;
   double duration_s = 0, reached_s = -1, held_ratio = 0, near_ratio = 0;  ///< reached_s < 0: never
-  double ended_s = 0;                                                     ///< before duration_s: it diverged
+  double ended_s = 0;                                                     ///< below duration_s if the run diverged
 };
 
 /// Counts how long the hand is near a target.
@@ -65,7 +65,7 @@ class Near {
   double near_s_ = 0;
 };
 
-/// One run of a controller; random pressures are looked at with both tasks' targets.
+/// One run of a controller; random pressures are evaluated with the targets of both tasks.
 std::vector<Run> simulate(const Settings& settings, const std::string& name, int seed) {
   SimulationOptions options;
   options.physics = physicsFromName(settings.physics);
@@ -156,7 +156,7 @@ std::string tableOf(const Groups& groups) {
   return table;
 }
 
-/// One row per group: every run a vertical stroke at the share of time it held the target.
+/// One row per group; every run is a vertical stroke at the share of time for which it held the target.
 std::string figureOf(const Groups& groups) {
   const double left = 290, width = 540, row_height = 44;
   Svg svg(left + width + 40, 70 + row_height * static_cast<double>(groups.size()), "Share of time within 20 mm after reaching the target");

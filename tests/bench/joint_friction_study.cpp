@@ -1,4 +1,4 @@
-/// What viscous friction in the joints of the muscles changes: the same commands with dry and with viscous friction, in `si`.
+/// Effect of viscous instead of dry friction in the joints of the muscles: the same commands with each, in `si`.
 /// Usage: joint_friction_study [--document docs/stepper.md]
 #include <fmt/format.h>
 
@@ -33,7 +33,8 @@ struct ArmRun {
   double settling_s = 0, slow_mm = 0, ratio = 0, rounds = 0;
 };
 
-/// After every change: the time from which on the hand stays within 20 mm of where it is at the end, and its way in the last second.
+/// After every change of pressure: the time after which the hand stays within 20 mm of its final position, and the distance it travels in
+/// the last second.
 void addSettling(ArmRun& run, double step_s) {
   const auto per_hold = static_cast<std::size_t>(std::lround(hold_s / step_s));
   for (std::size_t first = 0; first + per_hold <= run.hand_mm.size(); first += per_hold) {
@@ -64,10 +65,10 @@ ArmRun runArm(const std::string& friction, std::uint64_t seed) {
   return run;
 }
 
-/// The rig: pressure 0.5, coming from a lower and from a higher one.
+/// The rig at pressure 0.5, approached from a lower and from a higher pressure.
 struct RigRun {
-  double difference_mm = 0;  ///< of the lengths at which it comes to rest
-  double rest_s = 0;         ///< after which the length stays within 1 mm, the longer of the two
+  double difference_mm = 0;  ///< difference of the two rest lengths
+  double rest_s = 0;         ///< time after which the length stays within 1 mm; the longer of the two
 };
 
 RigRun runRig(const std::string& friction) {

@@ -1,4 +1,4 @@
-/// What the parts of a step cost, with google-benchmark. Target parts_benchmark, made where the library is installed.
+/// Cost of the parts of a step, measured with google-benchmark. The target parts_benchmark exists if that library is installed.
 #include <benchmark/benchmark.h>
 
 #include <memory>
@@ -64,7 +64,7 @@ void gatherAndScatter(benchmark::State& state) {
 }
 BENCHMARK(gatherAndScatter)->Arg(10)->Arg(30);
 
-/// Rows of all joints.
+/// Makes the rows of all joints.
 void jointRows(benchmark::State& state) {
   const auto simulation = movingArm(static_cast<int>(state.range(0)));
   chain::Model model;
@@ -80,7 +80,7 @@ void jointRows(benchmark::State& state) {
 }
 BENCHMARK(jointRows)->Arg(10)->Arg(30);
 
-/// Elimination and back substitution of four chains of so many beads, each with the three rows of its start.
+/// Elimination and back substitution of four chains of the given number of beads, each with the three rows of its start.
 void fourChains(benchmark::State& state) {
   const auto bead_count = static_cast<int>(state.range(0));
   RandomStream random(1, "benchmark");
@@ -120,7 +120,7 @@ void fourChains(benchmark::State& state) {
 }
 BENCHMARK(fourChains)->Arg(8)->Arg(12);
 
-/// One linear solve of the active set, with all chains eliminated anew.
+/// One linear solve of the active set that eliminates all chains again.
 void linearSolve(benchmark::State& state) {
   const auto simulation = movingArm(static_cast<int>(state.range(0)));
   const PhysicsSettings& physics = simulation->physics();
@@ -146,7 +146,7 @@ void linearSolve(benchmark::State& state) {
 }
 BENCHMARK(linearSolve)->Arg(10)->Arg(30);
 
-/// Factoring and solving a full matrix of so many rows.
+/// Factorising and solving a full matrix of the given number of rows.
 void denseCore(benchmark::State& state) {
   const auto size = static_cast<int>(state.range(0));
   chain::TiledMatrix matrix;

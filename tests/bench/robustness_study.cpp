@@ -82,7 +82,7 @@ Outcome run(const Settings& settings, int muscle_count, std::uint64_t seed) {
   return outcome;
 }
 
-/// All seeds, shared out among the threads.
+/// Runs all seeds, distributed over the threads.
 Outcome runAll(const Settings& settings, int muscle_count) {
   std::vector<Outcome> outcomes(static_cast<std::size_t>(settings.seed_count));
   runEnsemble(settings.seed_count, settings.thread_count, [&](int i) {

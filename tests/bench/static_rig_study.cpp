@@ -1,4 +1,4 @@
-/// Prints where the load frame comes to rest, with and without friction, from both loading directions, as a table in Markdown.
+/// Prints the rest lengths of the load frame with and without friction, from both loading directions, as a table in Markdown.
 /// Build and run: cmake --build build --target static_rig_study && build/tests/analytic/static_rig_study
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 /// Relative difference of velocities between the chain stepper and dWorldStep, step by step from the same state along dWorldStep's path.
 /// Usage: step_exactness [--document docs/stepper.md] [--resume] [--quick]
-/// --quick: a tenth of the steps.   --resume: rows that the document already has are not measured again.
+/// --quick: a tenth of the steps.   --resume: does not repeat rows that are already in the document.
 /// Moving: random pressures, new ones every 0.25 s of true time. Resting: the first pressures held, 20 s of true time beforehand (5 s for
 /// more than ten muscles).
 #include <fmt/format.h>
@@ -17,7 +17,7 @@ using namespace musclesim;
 
 namespace {
 
-/// What tells a row from the others.
+/// The part of a row that identifies it.
 std::string beginningOf(const ComparisonCase& c) {
   return fmt::format("| {}{} | `{}` | {} | {} | ", c.robot, c.muscle_count ? fmt::format(", n = {}", c.muscle_count) : "",
                      nameOf(c.physics), c.hold_s > 0 ? "moving" : "resting", c.steps);
@@ -37,7 +37,7 @@ std::vector<std::string> linesOf(const std::string& document) {
   return lines;
 }
 
-/// The line that begins so, with its end of line; "" if there is none.
+/// The line that begins with this text, with its end of line; "" if there is none.
 std::string rowOf(const std::vector<std::string>& lines, const std::string& beginning) {
   for (const std::string& line : lines)
     if (line.starts_with(beginning)) return line + "\n";
@@ -71,7 +71,7 @@ int main(int argc, char** argv) {
         const double slowness = physics == PhysicsKind::original ? std::sqrt(1000.0) : 1;
         ComparisonCase c{.robot = name, .physics = physics, .muscle_count = count, .steps = std::max(1, steps / divisor)};
         c.hold_s = moving ? 0.25 * slowness : 0;
-        // Large arms: a few steps only, so the motion is well under way before them.
+        // Large arms get only a few steps, so these start when the motion is well under way.
         c.rest_s = moving ? (count > 10 ? 0.1 * slowness : 0) : (count > 10 ? 5 : 20) * slowness / divisor;
         std::string line = rowOf(known, beginningOf(c));
         if (line.empty()) line = row(c, cpuSeconds());

@@ -24,7 +24,7 @@ struct Timing {
   double msPerStep() const { return 1e3 * cpu_s / static_cast<double>(steps); }
 };
 
-/// Runs up to so many steps within so much CPU time.
+/// Runs up to a number of steps within a CPU time.
 Timing run(StepperKind stepper, const Schedule& schedule, int muscle_count, long steps, double time_limit_s) {
   ComparisonCase c;
   c.muscle_count = muscle_count;

@@ -1,4 +1,4 @@
-/// What the longer measurements share: commands, CPU time, and sections of documents that they write.
+/// Helpers of the longer measurements: commands, CPU time, and writing sections of documents.
 #pragma once
 
 #include <ctime>
@@ -25,7 +25,7 @@ struct Schedule {
   std::vector<double> time_s;
   std::vector<Action> command;
 
-  /// The command at a time, for so many muscles: further muscles repeat the commands from the first on.
+  /// The command at a time, for the given number of muscles; additional muscles repeat the commands, starting with the first.
   Action at(double time_s_now, int muscle_count) const {
     std::size_t row = 0;
     while (row + 1 < time_s.size() && time_s[row + 1] <= time_s_now + 1e-9) ++row;
@@ -60,7 +60,7 @@ inline Schedule randomSchedule(double hold_s, double duration_s, std::uint64_t s
   return schedule;
 }
 
-/// Replaces what stands between the lines "<!-- NAME: written by ... -->" and "<!-- end of NAME -->" of a document.
+/// Replaces the text between the lines "<!-- NAME: written by ... -->" and "<!-- end of NAME -->" of a document.
 inline void writeSection(const std::string& document, const std::string& name, const std::string& program, const std::string& text) {
   std::ifstream in(document);
   std::stringstream whole;

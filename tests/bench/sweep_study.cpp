@@ -1,4 +1,4 @@
-/// A sweep that is disturbed ends with the same table as one that is not, and two workers do twice the work of one.
+/// Checks that a disturbed sweep ends with the same table as an undisturbed one, and that two workers do twice the work of one.
 ///
 /// Usage: sweep_study PROGRAM [rows = 500] [seed = 1]
 /// Runs the same short runs three times: with one worker, with two, and with two while a tenth of the runs is killed (SIGKILL) at random
@@ -58,7 +58,7 @@ double cpuOfChildrenS() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-/// Workers on a sweep, each a process; `disturb` is called with those that live, again and again.
+/// Runs workers on a sweep, each in its own process. `disturb` is called repeatedly with the living workers.
 Cost workOn(const std::string& program, const std::string& sweep, int worker_count,
             const std::function<void(const std::vector<pid_t>&)>& disturb = {}) {
   const auto begin = std::chrono::steady_clock::now();

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Sweeps under GNU parallel and under a real Slurm, disturbed on purpose, must give the table of the undisturbed sweep.
+# Checks that sweeps under GNU parallel and under a real Slurm, disturbed on purpose, give the table of an undisturbed sweep.
 #
 #     tests/cluster/cluster_check.sh parallel|slurm|mpirun [PROGRAM]      default: build/release/musclesim
 #
 # slurm: starts munged, slurmctld and slurmd on this machine with a configuration of their own in a temporary folder, submits the batch file
 # of docs/cluster.md as an array of three workers, kills one worker (SIGKILL) in mid-row and lets one run crash (SIGSEGV). Needs root.
-# Exit status 77, with a line that says why, where the tool cannot be had.
+# Exit status 77, with a line that says why, if the tool is not available.
 set -euo pipefail
 root=$(dirname "$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")")
 tool=${1:?usage: cluster_check.sh parallel|slurm|mpirun [PROGRAM]}
@@ -54,7 +54,7 @@ plan_and_reference() {
   musclesim collect undisturbed >/dev/null || fail "the undisturbed sweep is not complete"
 }
 
-# Kills one worker in mid-row, and another worker's run as if it had crashed.
+# Kills one worker in the middle of a row, and the run of another worker as if it had crashed.
 disturb() {
   local found=() pid run
   for ((i = 0; i < 600; ++i)); do
@@ -149,7 +149,7 @@ TEXT
 under_slurm() {
   start_slurm
   say "Slurm runs after $((SECONDS - start)) s: $(sinfo -h -o '%P %D node, %c processors, %t')"
-  # The batch file as the documentation has it.
+  # The batch file from the documentation.
   awk '/^```$/ { inside = !inside; text = ""; next } inside { text = text $0 "\n" } inside && /^musclesim work RUNS --time-limit/ { printf "%s", text }' \
     "$root/docs/cluster.md" >workers.sh
   grep -q '^#SBATCH --array' workers.sh || fail "docs/cluster.md has no batch file"

@@ -70,7 +70,7 @@ TEST(AasmController, DecidesByCountAndHoldsBetween) {
 }
 
 TEST(AasmController, StepsByItsTimeConstantAndNoiseVariance) {
-  // No pull far away from the target: one step is sqrt(0.36 * 0.01 / 0.1) N(0, 1) = 0.18974 N(0, 1).
+  // Far away from the target nothing pulls: one step is sqrt(0.36 * 0.01 / 0.1) N(0, 1) = 0.18974 N(0, 1).
   Prepared prepared{"aasm.steps_per_decision=1"};
   prepared.request.task = "reach";
   AasmController controller(prepared.request);
@@ -131,7 +131,7 @@ double lateDistanceMm(Controller& controller, std::uint64_t seed) {
 }
 
 TEST(AasmController, AttractorsMoveWithin300SecondsAndTheHandComesNearer) {
-  // A handful of the 500 attractors, those visited while active, moves by more than 0.1, the farthest by more than 1 on average.
+  // Only a few of the 500 attractors move by more than 0.1: the ones visited while active. The farthest moves by more than 1 on average.
   double late_mm = 0, late_random_mm = 0, farthest = 0, moved = 0;
   constexpr int runs = 8;
   for (std::uint64_t seed = 1; seed <= runs; ++seed) {

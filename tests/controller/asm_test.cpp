@@ -41,7 +41,7 @@ TEST(AsmController, DecidesByCountAndHoldsBetween) {
   AsmController controller(prepared.request);
   Action last;
   for (int step = 0; step < 400; ++step) {
-    // Only the hand at decisions counts; the time in the state does not.
+    // Only the hand's position at decisions matters; the state's time does not.
     const Action action = controller.output(stateAtHeight(step % 4 == 0 ? -240 : 0));
     ASSERT_EQ(action != last, step % 4 == 0);
     ASSERT_DOUBLE_EQ(*controller.activity(), 5.0 / 245);
@@ -64,7 +64,8 @@ TEST(AsmController, RepeatsWithTheSeedOnly) {
 }
 
 TEST(AsmController, NegativeActivityIsLoggedAndLeavesFluctuationOnly) {
-  // The hand goes away from the target at every decision; without noise the state must not move then, without pull either way.
+  // The hand moves away from the target at every decision. Without noise the state must then stay where it is: there is no pull in either
+  // direction.
   Prepared prepared{"asm.noise_std=0"};
   prepared.request.task = "reach";
   prepared.request.decision_interval_s = 0.01;
@@ -102,7 +103,7 @@ TEST(AsmController, SaysWhenTheHandIsMissingOrLost) {
   EXPECT_THROW(other.output(stateAtHeight(std::nan(""))), Diverged);
 }
 
-/// What a height run of 300 s with a decision every 6 s achieved, judged at the end of each decision interval.
+/// Result of a height run of 300 s with a decision every 6 s, evaluated at the end of each decision interval.
 struct HeightRun {
   bool reached = false;   ///< |error| below 20 mm at some time
   double held_after = 0;  ///< share of the intervals from then on with |error| below 20 mm
@@ -126,7 +127,7 @@ TEST(AsmController, LiftsASurrogateArmAndHoldsIt) {
   double held_after = 0, held_after_random = 0;
   constexpr int runs = 20;
   for (std::uint64_t seed = 1; seed <= runs; ++seed) {
-    Parameters parameters;  // what suits this plant, which is at rest sooner than the arm
+    Parameters parameters;  // parameters for this plant, which settles faster than the arm
     parameters.set("height_task.error_scale_mm", 5.0, "test");
     parameters.set("asm.noise_std", 0.13, "test");
     const ControllerRequest request{parameters, 10, 0.1, 6, seed, "height", std::nullopt};

@@ -145,7 +145,7 @@ TEST(DiscountedMean, EqualsTheSumItIsARecursionOf) {
 TEST(DecisionTimer, CountsStepsAndDecidesAtTheFirst) {
   DecisionTimer timer(6, 0.01);
   EXPECT_EQ(timer.stepsPerDecision(), 600);
-  // A million steps of 0.01 s: 1667 decisions, at every 600th step exactly, which comparing accumulated times would miss.
+  // A million steps of 0.01 s: 1667 decisions, exactly one every 600 steps. A comparison of accumulated times would miss some.
   int decisions = 0;
   for (int step = 0; step < 1000000; ++step) {
     const bool due = timer.due();

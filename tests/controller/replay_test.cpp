@@ -55,7 +55,7 @@ TEST(ReplayController, RoundingOfTimesDelaysNoRow) {
   }
   recording.signals = {{"command_0", values}};
   ReplayController replay(recording, 1);
-  double accumulated = 0;  // differs from 0.1 * row by rounding, to either side
+  double accumulated = 0;  // differs from 0.1 * row by rounding, in both directions
   for (int row = 0; row < 1000; ++row, accumulated += 0.1) ASSERT_EQ(replay.output(at(accumulated)).at(0), row / 1000.0);
 }
 

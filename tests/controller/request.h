@@ -1,4 +1,4 @@
-/// What the controller tests share: a request with its own parameters, and states with a hand.
+/// Helpers of the controller tests: a request with its own parameters, and states with a hand.
 #pragma once
 
 #include <initializer_list>
@@ -27,7 +27,7 @@ inline State stateWithHand(const Vector& hand_mm, double time_s = 0) {
   return state;
 }
 
-/// A hand off the default targets in one direction only: `height_mm` for the height task.
+/// A hand that misses the default targets in one direction only: by `height_mm` for the height task.
 inline State stateAtHeight(double height_mm) {
   return stateWithHand({-200, height_mm, 0});
 }

@@ -55,7 +55,7 @@ TEST(Target, ComesFromParametersOrFromTheRequest) {
   Prepared set{"reach_task.target_y_mm=20"};
   set.request.task = "reach";
   EXPECT_EQ(Target::make(set.request).point_mm, Vector(-300, 20, 150));
-  // A target in the request replaces the parameters, and is what --print-config shows.
+  // A target in the request replaces the parameters, and --print-config shows it.
   set.request.target_mm = Vector(1, 2, 3);
   Parameters fresh;
   const Target target = Target::make({fresh, 2, 0.01, 6, 1, "reach", Vector(1, 2, 3)});

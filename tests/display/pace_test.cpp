@@ -14,7 +14,7 @@ bool never() {
   return false;
 }
 
-/// Runs steps of 10 ms in a thread of its own until the pace says no.
+/// Runs steps of 10 ms in a separate thread until the pace stops it.
 class Runner {
  public:
   explicit Runner(Pace& pace)

@@ -98,7 +98,7 @@ Session::Session(const XServer& server, const fs::path& folder, std::vector<std:
   arguments.insert(arguments.begin(), MUSCLESIM_PROGRAM);
   arguments.insert(arguments.end(), {"--out", "run", "--window-log", "window.jsonl"});
   child_ = start(arguments, folder, display_);
-  // The first lines say that the window is there.
+  // The first lines report that the window exists.
   waitUntil("window", [&] { return lineCount() >= 1 || !isAlive(); });
   xdotool("mousemove 150 200");
 }

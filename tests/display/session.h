@@ -1,4 +1,4 @@
-/// An X server and a window of musclesim on it, steered by real keys and a real mouse.
+/// An X server with a window of musclesim, controlled by real key and mouse events.
 #pragma once
 
 #include <sys/types.h>
@@ -13,7 +13,7 @@ namespace musclesim {
 /// Xvfb on a free display.
 class XServer {
  public:
-  /// Empty if Xvfb and xdotool are there, otherwise what is missing.
+  /// Names the missing one of Xvfb and xdotool; empty if both are installed.
   static std::string missing();
   XServer();
   ~XServer();
@@ -27,25 +27,25 @@ class XServer {
   std::string display_;
 };
 
-/// The program with a window, run in a folder; its recording goes to run/run.csv there, its window's log to window.jsonl.
+/// The program with a window, running in a folder. Its recording goes to run/run.csv in that folder, the window's log to window.jsonl.
 class Session {
  public:
-  /// Waits until the window has drawn and has the pointer over its middle. Throws std::runtime_error if that takes a minute.
+  /// Waits until the window has drawn and the pointer is over its middle. Throws std::runtime_error if that takes a minute.
   Session(const XServer& server, const std::filesystem::path& folder, std::vector<std::string> arguments);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Presses keys, by X's names, waits until the window has seen them all, and returns its state after the last.
+  /// Presses keys (X names), waits until the window has handled all of them, and returns its state after the last.
   nlohmann::json press(const std::string& key, int times = 1);
   /// Runs xdotool with words separated by spaces.
   void xdotool(const std::string& words) const;
-  /// Waits until the window's log has so many lines and returns the last.
+  /// Waits until the window's log has this number of lines and returns the last.
   nlohmann::json stateAfter(std::size_t line_count) const;
   std::size_t lineCount() const;
-  /// Presses a key without effect on the run until its clock shows more than that; before, a run may still be settling.
+  /// Presses a key that does not affect the run until the run's clock shows more than this; earlier the run may still be settling.
   void runUntil(double time_s);
-  /// As a window manager asks for it.
+  /// Closes the window as a window manager would.
   void requestClose() const;
   void signal(int number) const;
   bool isAlive();

@@ -37,7 +37,7 @@ Image readPng(const fs::path& file) {
   return image;
 }
 
-/// Pixels of the red that selected muscles have; the red cap of muscle 3 is brighter.
+/// Pixels with the red of selected muscles; the red cap of muscle 3 is brighter.
 long selectedPixels(const Image& image) {
   long count = 0;
   for (std::size_t i = 0; i < image.rgb.size(); i += 3)
@@ -71,7 +71,7 @@ class WindowTest : public testing::Test {
 
   json sidecar() const { return json::parse(contentOf(folder_ / "run" / "run.json")); }
 
-  /// The run has failed for this reason and its files hold what was recorded.
+  /// Expects that the run failed for this reason and that its files hold the recording up to then.
   void expectWindowLost(Session& session, const std::string& reason) {
     EXPECT_EQ(session.exitStatus(), 5);
     const std::string said = contentOf(folder_ / "output.txt");
@@ -83,7 +83,7 @@ class WindowTest : public testing::Test {
     EXPECT_TRUE(fs::exists(folder_ / "run" / "run.svg"));
   }
 
-  /// A picture by the key s.
+  /// Takes a picture with the key s.
   Image picture(Session& session) {
     const fs::path file = folder_ / "run" / ("window-" + std::to_string(++picture_count_) + ".png");
     session.press("s");
@@ -128,7 +128,7 @@ TEST_F(WindowTest, HandSetsAPressureThatIsRecordedAndTheMuscleTurnsRed) {
   EXPECT_EQ(verdict["signals"]["length_3_mm"]["largest"], 0) << "a session by hand is a recording like any other";
 }
 
-/// What every other key of the help does.
+/// Tests every other key of the help.
 TEST_F(WindowTest, EveryKeyDoesWhatTheHelpSays) {
   Session session(*server_, folder_, small_arm);
   std::set<int> tried = {'i', 'r', '+', 's', 'q'};  // in the test above

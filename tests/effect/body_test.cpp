@@ -72,7 +72,7 @@ class Swing {
 
 const ActiveEffect oil = {"joint_viscous_friction", "all", {{"damping_Nms_per_rad", 0.3}}};
 
-/// Where the pendulum comes to rest in oil.
+/// Rest position of the pendulum, with viscous damping.
 double restDeg(std::vector<ActiveEffect> effects) {
   effects.push_back(oil);
   Swing swing(std::move(effects));
@@ -94,7 +94,7 @@ TEST(Payload, AddsItsWeight) {
 }
 
 TEST(Payload, AddsItsInertia) {
-  // Pushed with the same momentum: the first amplitude follows from the energy, weightless.
+  // Both get the same momentum; without gravity the first amplitude follows from the energy.
   SimulationOptions options = optionsWith({{"payload", "hand", {{"mass_kg", 0.7}}}});
   Simulation simulation(options);
   const Robot& robot = simulation.build("elbow");
@@ -103,7 +103,7 @@ TEST(Payload, AddsItsInertia) {
   EXPECT_NEAR(mass.mass, 1300, 1e-9);
   const Vector center = robot.hand()->getPosition();
   EXPECT_NEAR(center.y(), -(0.6 * 120 + 0.7 * 250) / 1.3, 1e-9);
-  // About the hinge, along z: the forearm's own and the point's.
+  // Inertia about the hinge (z): the forearm's own plus the point mass's.
   const double about_hinge =
       (robot.hand()->getRotation() * Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(mass.I).leftCols<3>() *
        robot.hand()->getRotation().transpose())(2, 2) +
@@ -158,7 +158,7 @@ TEST(Contact, HoldsThePendulumAtAJointOrAtTheHand) {
   const double depth_mm = length_m * mm_per_m * std::sin(at_hand) - 40;
   EXPECT_GT(depth_mm, 0);
   EXPECT_NEAR(3 - 0.5 * depth_mm, weight_N * std::tan(at_hand), 1e-3);
-  // The other side of the plane is free.
+  // There is no wall on the other side of the plane.
   EXPECT_NEAR(
       restDeg(
           {side,
@@ -189,7 +189,7 @@ TEST(JointCoulombFriction, TakesTheSameFromEverySwing) {
   swing.run(5);
   const double stuck_deg = swing.angleDeg();
   swing.run(2);
-  EXPECT_NEAR(swing.angleDeg(), stuck_deg, 2 * 1e-6 * deg_per_rad);  // creeps at no more than 1e-6 rad/s
+  EXPECT_NEAR(swing.angleDeg(), stuck_deg, 2 * 1e-6 * deg_per_rad);  // it creeps at 1e-6 rad/s at most
 }
 
 TEST(JointCoulombFriction, HoldsUpToItsTorque) {
@@ -241,7 +241,7 @@ TEST(DissipativeBodies, NeverAddEnergy) {
       swing.run(0.01);
       clean.run(0.01);
       const double now_J = swing.simulation().mechanicalEnergyJ(), clean_now_J = clean.simulation().mechanicalEnergyJ();
-      // The integrator itself lets the energy of a free swing waver by this much.
+      // The integrator alone makes the energy of a free swing vary by this much.
       EXPECT_LE(now_J, before_J + 2e-4) << kind.id << " at " << i;
       before_J = now_J;
       clean_before_J = clean_now_J;
@@ -269,7 +269,8 @@ TEST(AttachmentOffset, MayRise) {
 }
 
 TEST(AttachmentOffset, MovesTheEndOfTheMuscleWithTheForearm) {
-  // Elbow at 0 deg: from (35, 240) to (35 + 8, -20 + 2); the lever arm about the hinge grows with it, wherever the forearm is.
+  // Elbow at 0 deg: from (35, 240) to (35 + 8, -20 + 2); the lever arm about the hinge grows by the same amount at every angle of the
+  // forearm.
   Simulation simulation(
       optionsWith({{"attachment_offset", "muscle_0", {{"offset_mm", 8.0}, {"rise_mm", 2.0}, {"attachment", std::string("end")}}}}));
   Robot& robot = simulation.build("elbow");
@@ -325,7 +326,7 @@ TEST(AttachmentOffset, IsRefusedByRobotsThatDoNotAskForIt) {
 }
 
 TEST(Settling, EquilibriumIncludesTheEffects) {
-  // A run that begins settled stays where it is, up to the chains' friction.
+  // A run that begins settled stays at rest, except for the chains' friction.
   const std::vector<std::vector<ActiveEffect>> lists = {
       {{"payload", "hand", {{"mass_kg", 0.3}}}},
       {{"base_tilt", "base", {{"tilt_z_deg", 6.0}}}},

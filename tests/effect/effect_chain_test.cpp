@@ -1,4 +1,4 @@
-/// How effects are put together: order, several at once, several on different components, sidecars, users' own classes.
+/// Combination of effects: their order, several at once, several on different components, sidecars, classes written by users.
 #include "musclesim/effect/effect_chain.h"
 
 #include "effect_runs.h"

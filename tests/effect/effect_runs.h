@@ -13,7 +13,7 @@
 
 namespace musclesim {
 
-/// Commands over time: `command(time_s)` for every muscle of a robot.
+/// A recording of commands over time: `command(time_s)` for every muscle of a robot.
 inline Recording commandsFor(const std::string& robot, double duration_s, const std::function<Action(double)>& command,
                              double interval_s = 0.01) {
   Recording recording;
@@ -54,7 +54,7 @@ inline const std::vector<double>& valuesOf(const ReplayResult& result, const std
   return found->values;
 }
 
-/// Bit for bit.
+/// Whether both are equal bit for bit.
 inline void expectSame(const Recording& a, const Recording& b) {
   ASSERT_EQ(a.signals.size(), b.signals.size());
   for (std::size_t i = 0; i < a.signals.size(); ++i) {

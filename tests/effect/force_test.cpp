@@ -62,7 +62,7 @@ TEST(ForceLaw, IsTheOtherLaw) {
         {{"law", "corrected"}, {"braid_N", 6.0}, {"bore_N", 1.0}, {"elastic_N", 0.0}, {"threshold_N", 0.5}, {"stretch_N", 0.0}}}});
   EXPECT_NEAR(corrected.tensionAt(230), corrected.lawN(0.5, 230) + 0.5 * (6 * std::pow(230.0 / 300, 2) - 1) - 0.5, 1e-9);
   LengthMachine map({{"force_law", "all", {{"law", "map"}}}});
-  EXPECT_NEAR(map.tensionAt(230), map.lawN(0.5, 230), 1.0);  // its defaults resemble Eq. 1
+  EXPECT_NEAR(map.tensionAt(230), map.lawN(0.5, 230), 1.0);  // its defaults approximate Eq. 1
   LengthMachine same({{"force_law", "all", {{"law", "braun"}}}});
   EXPECT_EQ(same.tensionAt(230), same.lawN(0.5, 230));
 }
@@ -105,7 +105,7 @@ TEST(BraidHysteresis, DoesNotPush) {
 TEST(BraidHysteresis, ReversesOverTwicePresliding) {
   LengthMachine machine({{"braid_hysteresis", "all", {{"relative_width", 0.1}, {"presliding_mm", 1.5}}}}, 0.5, 210);
   machine.moveTo(225, 50, h_s);
-  machine.moveTo(223.5, 50, h_s);  // half of the way from one side to the other
+  machine.moveTo(223.5, 50, h_s);  // half of the play
   EXPECT_NEAR(machine.tensionAt(223.5), machine.lawN(0.5, 223.5), 1e-6);
 }
 
@@ -121,7 +121,7 @@ TEST(ViscousLoss, GrowsWithSpeedAndDirection) {
   }
 }
 
-/// The length at which the machine's muscle carries a load now.
+/// The present length at which the machine's muscle carries a load.
 double lengthUnder(LengthMachine& machine, double load_N) {
   double low_mm = 130, high_mm = 295;
   for (int i = 0; i < 60; ++i) {
@@ -183,7 +183,7 @@ TEST(SeriesElasticity, IsSlackWhereTheMuscleWouldPush) {
   EXPECT_EQ(short_one.tensionAt(125), 0);
 }
 
-/// Work that a machine spends on a muscle along a random walk of its length, beyond what the law gives back.
+/// Net work that a machine does on a muscle along a random walk of its length, beyond the energy that the law returns.
 double workAlongRandomWalk(const std::vector<ActiveEffect>& effects, unsigned seed) {
   LengthMachine machine(effects, 0.5, 220);
   std::mt19937 random(seed);
@@ -209,7 +209,7 @@ TEST(DissipativeForces, NeverGiveEnergy) {
 }
 
 TEST(ForceEffects, EncloseEachOther) {
-  // Gain inside, offset around it, tendon outermost.
+  // From the inside to the outside: gain, offset, tendon.
   LengthMachine machine({{"series_elasticity", "all", {{"stiffness_N_per_mm", 2.0}}},
                          {"length_offset", "all", {{"offset_mm", 4.0}}},
                          {"force_gain", "all", {{"gain", 0.9}}}});

@@ -1,4 +1,4 @@
-/// A muscle in a machine that prescribes its length: the rig's muscle, moved by hand.
+/// A testing machine that prescribes the length of the rig's muscle.
 #pragma once
 
 #include "musclesim/robot/muscle.h"
@@ -16,25 +16,25 @@ class LengthMachine {
     look();
   }
 
-  /// Law without effects.
+  /// Tension of the force law without effects.
   double lawN(double pressure_ratio, double length_mm) const { return muscle().calculateForce(pressure_ratio, length_mm); }
   double lengthMm() const { return muscle().lengthMm(); }
   void setPressure(double ratio) {
     muscle().setPressure(ratio);
     look();
   }
-  /// The tension now that the length has been set, without time passing.
+  /// Sets the length and returns the tension, without advancing time.
   double tensionAt(double length_mm) {
     setLength(length_mm);
     return look();
   }
-  /// Holds the present length for h_s.
+  /// Holds the present length for a step of h_s.
   double hold(double h_s) {
     stages(h_s);
     simulation_.effects().track(h_s);
     return look();
   }
-  /// Goes to a length at a constant rate in steps of h_s; calls `each(length_mm, tension_N)` after each.
+  /// Moves to a length at a constant rate in steps of h_s and calls `each(length_mm, tension_N)` after each step.
   template <class Function>
   void moveTo(double length_mm, double rate_mm_per_s, double h_s, const Function& each) {
     const double begin_mm = lengthMm();

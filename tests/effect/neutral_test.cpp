@@ -1,4 +1,4 @@
-/// For every effect of the catalogue: neutral is no effect bit for bit, on all robots; the effect is felt where it is not neutral.
+/// For every effect of the catalogue, on all robots: a neutral effect changes no bit, and an effect that is not neutral changes the run.
 #include <algorithm>
 #include <map>
 
@@ -14,7 +14,7 @@ double durationFor(const std::string& robot) {
   return robot == "arm" ? 0.03 : 0.25;
 }
 
-/// The clean run of a robot, made once.
+/// The run of a robot without effects, computed once.
 const ReplayResult& cleanRun(const std::string& robot) {
   static std::map<std::string, ReplayResult> runs;
   const auto found = runs.find(robot);
@@ -27,14 +27,14 @@ std::vector<std::string> componentsOf(const EffectInfo& info, const std::string&
   return componentsFor(info, simulation.build(robot));
 }
 
-/// All parameters neutral but those that only say how.
+/// Values with all strengths neutral; parameters that only say how an effect acts keep their defaults.
 ActiveEffect neutralEffect(const EffectInfo& info, const std::string& component) {
   std::vector<double> values;
   for (const EffectParameter& p : info.parameters) values.push_back(p.shape ? p.usual_high : p.neutral);
   return activeEffect(info, component, values);
 }
 
-/// As strong as is usual, or so that a short run meets it.
+/// Values of usual strength, or strong enough to show in a short run.
 ActiveEffect usualEffect(const EffectInfo& info, const std::string& component) {
   if (info.id == "foreign.hunt_crossley") return {info.id, component, {{"stiffness_Nm_per_deg15", 0.5}, {"plane_deg", 0.0}}};
   if (info.id == "foreign.tank") return {info.id, component, {{"loss_per_fill", 1.5}}};
@@ -70,7 +70,8 @@ TEST_P(EveryEffect, IsFeltWhereItIsNot) {
   for (const char* robot : {"rig", "elbow", "arm"}) {
     SCOPED_TRACE(robot);
     const std::vector<std::string> components = componentsOf(info, robot);
-    const bool refused = info.id == "foreign.turned_end" && std::string(robot) == "rig";  // the end would do what the start does
+    const bool refused =
+        info.id == "foreign.turned_end" && std::string(robot) == "rig";  // an offset of the end would act like one of the start
     if (components.empty() || refused) continue;
     const ReplayResult run = replayWith(wavesFor(robot, durationFor(robot)), {usualEffect(info, components.front())});
     ASSERT_FALSE(run.divergence) << *run.divergence;

@@ -51,7 +51,7 @@ TEST(FlowLimit, IsARampByDirection) {
 TEST(FlowLimit, LeavesSlowCommandsAlone) {
   const Recording commands = commandsFor("rig", 0.4, [](double t) { return Action{0.3 + 0.2 * t}; });
   const ReplayResult run = replayWith(commands, {{"flow_limit", "all", {{"fill_rate_per_s", 1.0}}}});
-  // Within the first internal steps after each row a staircase of 0.002 is followed.
+  // The commands rise in stairs of 0.002; the pressure reaches each stair in the first internal steps after its row.
   for (std::size_t row = 1; row < commands.time_s.size(); ++row)
     EXPECT_NEAR(valuesOf(run, "pressure_0")[row], commands.signals[0].values[row - 1], 1e-12);
 }
@@ -114,7 +114,7 @@ TEST(SupplyDroop, LimitsAllMusclesByTheirCommonDemand) {
 }
 
 TEST(VolumeCoupling, ConservesThePolytropicProductWhereTheValveIsSlow) {
-  // Built, the rig's load falls or is pulled up from the middle of the range.
+  // In the pose as built, the rig's load starts in the middle of the range and falls or is pulled up.
   const double n = 1.3, atmosphere = 0.17;
   ReplayOptions options;
   options.initial_state = "built";

@@ -1,4 +1,4 @@
-/// Sensor stage: readings in closed form, noise and lost samples by their statistics.
+/// Sensor stage: readings against closed forms, noise and lost samples against their statistics.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -79,10 +79,10 @@ TEST(SensorBacklash, IsFlatAfterAReversalForItsWidth) {
   };
   EXPECT_EQ(read(5), 5);    // at the start
   EXPECT_EQ(read(5.5), 5);  // within the play
-  EXPECT_EQ(read(10), 9);   // pulled along
+  EXPECT_EQ(read(10), 9);   // follows the upper bound
   EXPECT_EQ(read(8.5), 9);  // reversal: flat
-  EXPECT_EQ(read(8), 9);    // for the whole width
-  EXPECT_EQ(read(4), 5);    // and pulled along again
+  EXPECT_EQ(read(8), 9);    // flat over the whole width
+  EXPECT_EQ(read(4), 5);    // follows the lower bound
 }
 
 TEST(SensorBacklash, NeedsAWidthInTheSignalsUnit) {

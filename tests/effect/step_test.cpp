@@ -1,4 +1,4 @@
-/// Half the internal step changes what an effect does by little.
+/// Halving the internal step changes the result of an effect only a little.
 #include <map>
 
 #include "effect_runs.h"

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Disks that fail: full, read-only, and every single call to the system that writes. A run whose files could not be written must end with exit
-# status 5, say so, and leave nothing that looks complete. Usage: disk_check.sh [PROGRAM]
-# The full disk is a tmpfs in a private mount namespace (root); the failing calls need libfiu (fiu-utils). What cannot be tried is said;
-# exit status 77 then, if nothing else is wrong.
+# Failing disks: full, read-only, and a failure of every single system call that writes. A run whose files cannot be written must
+# end with exit status 5, report it, and leave no file that looks complete. Usage: disk_check.sh [PROGRAM]
+# The full disk is a tmpfs in a private mount namespace (root); the failing calls need libfiu (fiu-utils). Checks that cannot run are named;
+# the exit status is then 77 if all others pass.
 set -euo pipefail
 root=$(dirname "$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")")
 program=$(realpath "${1:-$root/build/release/musclesim}")
@@ -19,7 +19,7 @@ wrong() {
 }
 run=("$program" --simple --robot rig --controller hold --duration 3 --quiet)
 
-# never_complete FOLDER STATUS WHAT: what a run with a given end may leave.
+# never_complete FOLDER STATUS WHAT: checks the files that a run with this exit status left.
 check() {
   local folder=$1 status=$2 what=$3
   if ((status == 0)); then

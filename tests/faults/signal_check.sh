@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# SIGINT and SIGTERM at random instants of a run: it must end with 130 or 143 within a step and half a second, and leave files that can be read.
+# Sends SIGINT and SIGTERM at random times of a run. The run must end with 130 or 143 within a step and half a second and leave
+# readable files.
 # Usage: signal_check.sh [PROGRAM] [runs per signal = 20]       SEED=N chooses other instants
 set -euo pipefail
 root=$(dirname "$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")")
@@ -14,7 +15,7 @@ for signal in INT TERM; do
   expected=130
   [[ $signal == TERM ]] && expected=143
   for ((i = 0; i < count; ++i)); do
-    # Job control gives a background job its own answer to Ctrl-C.
+    # Without job control bash makes background jobs ignore SIGINT.
     set -m
     "$program" --simple --robot elbow --controller random --duration 1e6 --quiet --out "$signal$i" >/dev/null 2>&1 &
     set +m

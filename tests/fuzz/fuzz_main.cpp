@@ -1,4 +1,4 @@
-/// One libFuzzer program for all targets: FUZZ_TARGET=recording_csv fuzz CORPUS [libFuzzer's options].
+/// One libFuzzer program for all targets. Usage: FUZZ_TARGET=recording_csv fuzz CORPUS [options of libFuzzer]
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>

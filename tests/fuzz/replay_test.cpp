@@ -1,4 +1,4 @@
-/// The kept corpus through every target, without a fuzzer; and cut and altered variants of it.
+/// Feeds the stored corpus, and truncated and altered variants of it, to every target without a fuzzer.
 #include <gtest/gtest.h>
 
 #include <chrono>

@@ -27,7 +27,7 @@ const std::string plain_sidecar = R"({"format": "musclesim-recording-1", "robot"
   std::abort();
 }
 
-/// Runs a reader; a BadFile must name its file, and its line wherever one byte is at fault.
+/// Runs a reader. A BadFile must name the file, and the line if a single byte is at fault.
 void read(const std::function<void()>& reader) {
   try {
     reader();
@@ -39,7 +39,7 @@ void read(const std::function<void()>& reader) {
   }
 }
 
-/// What was read is written and read again: the same.
+/// Writes the parsed value and reads it again; both must be equal.
 void requireSame(const std::string& first, const std::string& again) {
   if (first != again) wrong("reading what was written gives something else:\n" + first + "\n" + again);
 }
@@ -56,7 +56,7 @@ void sidecarJson(const std::string& bytes) {
   });
 }
 
-/// A file without a name in a folder: the reader of configurations takes a path.
+/// An anonymous file, because the reader of configurations needs a path.
 class MemoryFile {
  public:
   explicit MemoryFile(const std::string& bytes) : descriptor_(memfd_create("fuzz", 0)) {
@@ -104,7 +104,7 @@ void sweepPlan(const std::string& bytes) {
   read([&] { parsePlan(bytes, "plan.toml"); });
 }
 
-/// Arguments separated by line ends.
+/// Splits the input into arguments at line ends.
 void commandLine(const std::string& bytes) {
   std::vector<std::string> arguments = {"musclesim"};
   for (std::size_t at = 0; at < bytes.size() && arguments.size() < 100;) {

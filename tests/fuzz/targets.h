@@ -1,5 +1,5 @@
-/// What is fuzzed: every reader of text from outside. Each target takes any bytes, and must return: an Error of this library is right, a
-/// crash, another exception or more than a second is not.
+/// Fuzz targets: one for every reader of external text. Each target takes any bytes. It may throw an Error of this library; a crash, any
+/// other exception or a run time above one second is a failure.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace musclesim {
 
 using FuzzTarget = void (*)(const std::string& bytes);
 
-/// By name; tests/fuzz/corpus/NAME holds inputs that once mattered.
+/// All targets by name; tests/fuzz/corpus/NAME holds inputs that found faults or cover special cases.
 const std::vector<std::pair<std::string, FuzzTarget>>& fuzzTargets();
 
 }  // namespace musclesim

@@ -1,4 +1,4 @@
-/// The project's own golden trajectories: rig and elbow in `si`, a step of the pressures every 0.1 s.
+/// The project's own golden trajectories: rig and elbow in `si`, with new pressures every 0.1 s.
 #pragma once
 
 #include <string>
@@ -28,7 +28,7 @@ inline Recording goldenCommands(const std::string& robot) {
   return recording;
 }
 
-/// How golden trajectories are simulated: internal steps of 2 ms, so that the test is short.
+/// Options of the golden trajectories. Internal steps of 2 ms keep the test short.
 inline ReplayOptions goldenOptions(StepperKind stepper) {
   ReplayOptions options;
   options.stepper = stepper;

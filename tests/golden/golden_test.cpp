@@ -1,4 +1,4 @@
-/// The project's own golden trajectories: a change of the model shows here first.
+/// Compares runs with the project's own golden trajectories, which detect any change of the model.
 #include "golden.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace musclesim {
 namespace {
 
-/// How far the signals may be off, in their units. `ode` is the stepper that the data were written with: only rounding may differ.
+/// Tolerances of the signals, in their units. The data were written with the stepper `ode`, so with it only rounding may differ.
 void expectGolden(const std::string& robot, StepperKind stepper, double tolerance) {
   const Recording golden = readRecording((std::filesystem::path(MUSCLESIM_GOLDEN_FOLDER) / (robot + ".csv")).string());
   ASSERT_EQ(golden.time_s.size(), goldenCommands(robot).time_s.size());

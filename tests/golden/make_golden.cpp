@@ -1,4 +1,4 @@
-/// Writes the golden trajectories of rig and elbow anew, with dWorldStep. Only after a change of the model that is meant:
+/// Writes new golden trajectories of rig and elbow, computed with dWorldStep. Use it only after an intended change of the model:
 ///     cmake --build build --target make_golden && build/tests/golden/make_golden tests/golden/data
 #include <cstdio>
 #include <exception>

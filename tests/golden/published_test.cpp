@@ -1,7 +1,8 @@
-/// Trajectories of the program published with the paper, and the same motion on the true time scale.
+/// Compares runs with trajectories of the program published with the paper, and with the same motion on the true time scale.
 ///
-/// They lie outside of this repository (support/support.h says where) and the tests are skipped without them. dWorldStep needs seconds per
-/// simulated second, so with it only the beginning is compared unless MUSCLESIM_LONG_TESTS=1; the chain stepper runs the whole.
+/// The trajectories are not part of this repository (support/support.h says where they are expected); the tests are skipped without them.
+/// dWorldStep needs seconds per simulated second, so it compares only the beginning unless MUSCLESIM_LONG_TESTS=1; the chain stepper
+/// compares all.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +35,7 @@ bool chainStepperExists() {
 
 class Published : public ::testing::TestWithParam<const char*> {
  protected:
-  /// Compares up to a time: 0.01 mm in the first 10 s, 0.5 mm in the first 18 s.
+  /// Compares up to a given time, with tolerances of 0.01 mm in the first 10 s and 0.5 mm in the first 18 s.
   void compare(StepperKind stepper, double duration_s) {
     const auto file = sharedFolder() / "reference" / "trajectories" / (std::string(GetParam()) + ".csv");
     if (!std::filesystem::exists(file)) GTEST_SKIP() << "no published trajectories at " << file << "; set MUSCLESIM_SHARED";
@@ -71,7 +72,8 @@ TEST_P(Published, TrajectoryIsReproducedWithTheAutomaticStepper) {
 INSTANTIATE_TEST_SUITE_P(All, Published, ::testing::Values("steps_every_6s", "vented"),
                          [](const auto& tested) { return std::string(tested.param); });
 
-/// `scaled` and `original` with the same numbers of steps, the step of `scaled` sqrt(1000) times shorter: largest distance of the hands.
+/// Largest distance of the hands between `scaled` and `original` after equal numbers of steps; the step of `scaled` is sqrt(1000) times
+/// shorter.
 double scalingDifferenceMm(StepperKind stepper, double scaled_duration_s) {
   constexpr double original_step_s = 0.01, decision_interval_s = 6;
   SimulationOptions slow, fast;

@@ -58,7 +58,7 @@ TEST(LawFit, IntervalsHoldThePlantedConstantsMostOfTheTime) {
       ++total;
     }
   }
-  // 95 % of 120; the three of one repeat are correlated. Five in eight hundred repeats would give fewer than 85 %.
+  // 95 % of 120 expected; the three of one repeat are correlated. Fewer than 85 % would occur in 5 of 800 repetitions.
   EXPECT_GE(inside, 0.85 * total);
   EXPECT_LT(inside, total) << "intervals that always hold are too wide";
 }

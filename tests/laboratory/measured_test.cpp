@@ -1,4 +1,4 @@
-/// Fits to measured muscles; skipped where the measurements are absent.
+/// Fits to measured muscles; skipped if the measurements are not available.
 #include <gtest/gtest.h>
 
 #include <filesystem>

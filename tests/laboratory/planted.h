@@ -8,7 +8,7 @@
 
 namespace musclesim {
 
-/// What noise of 1 % means: of the largest force (an instrument's error), or of each force (a gain that differs).
+/// Meaning of a noise of 1 %: of the largest force (an instrument's error), or of each force (a varying gain).
 enum class NoiseOf { largest, each };
 
 /// 9 pressures from 0 to 1 times 11 lengths from 120 to 300 mm.

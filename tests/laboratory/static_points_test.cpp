@@ -10,7 +10,7 @@
 namespace musclesim {
 namespace {
 
-/// A plausible table: 4 pressures times 4 lengths, F = 100 p (l - 200) / 100 + 5 N.
+/// A realistic table of 4 pressures by 4 lengths, F = 100 p (l - 200) / 100 + 5 N.
 std::string table(const std::string& header = "pressure,length_mm,force_N", double length_factor = 1) {
   std::string text = header + "\n";
   for (const double p : {0.25, 0.5, 0.75, 1.0})
@@ -97,7 +97,7 @@ TEST(StaticPoints, TooFewPointsPressuresOrLengthsAreExplained) {
 TEST(StaticPoints, SwappedColumnsAreFound) {
   EXPECT_TRUE(contains(refusal(table("length_mm,pressure,force_N")), "must lie in"));
   EXPECT_TRUE(contains(refusal(table("pressure,force_N,length_mm")), "columns"));
-  // Pressure in kPa and length in mm have like sizes, but no muscle gets ten times as long as at its shortest.
+  // Pressures in kPa and lengths in mm have similar sizes, but no muscle stretches to ten times its shortest length.
   std::string swapped = "length_mm,pressure_kPa,force_N\n", force_pressure = "force_N,length_mm,pressure_kPa\n";
   for (const double p : {50.0, 100.0, 300.0, 600.0})
     for (const double l : {220.0, 250.0, 280.0}) {
@@ -131,7 +131,7 @@ TEST(PointGroups, SweptPressuresAreBinned) {
   std::vector<StaticPoint> points(200);
   for (std::size_t i = 0; i < points.size(); ++i) {
     points[i].pressure_ratio = static_cast<double>(i) / 199;
-    points[i].length_mm = i % 2 == 0 ? 200 : 200.3;  // 0.15 % apart: one length
+    points[i].length_mm = i % 2 == 0 ? 200 : 200.3;  // 0.15 % apart: counts as one length
   }
   EXPECT_EQ(groupByPressure(points).size(), 10u);
   EXPECT_EQ(groupByLength(points).size(), 1u);

@@ -13,7 +13,7 @@ const std::vector<Color> arm_colors = {{0.75, 0.75, 0.75, "gray"}, {1.0, 0.73, 0
                                        {0.0, 1.0, 0.0, "green"},   {0.25, 1.0, 0.83, "aquamarine"}, {0.1, 0.0, 1.0, "blue"},
                                        {0.73, 0.0, 0.96, "purple"}};
 
-/// A made-up run like the paper's: ten pressures that wander and settle, the height that follows.
+/// A synthetic run like the paper's: ten pressures that vary and settle, and the height that follows them.
 Recording madeUpRun(int muscle_count, double duration_s) {
   Recording recording;
   recording.info.robot = "arm";
@@ -48,7 +48,7 @@ Recording madeUpRun(int muscle_count, double duration_s) {
   return recording;
 }
 
-/// For looking at it: MUSCLESIM_FIGURES=<folder> keeps the figures of these tests.
+/// Set MUSCLESIM_FIGURES=<folder> to keep the figures of these tests for inspection.
 std::string drawn(const Recording& recording, const std::string& name, const std::string& title = "") {
   const std::string svg = runFigureSvg(recording, arm_colors, title.empty() ? name : title);
   if (const char* folder = std::getenv("MUSCLESIM_FIGURES")) {

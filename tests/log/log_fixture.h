@@ -1,4 +1,4 @@
-/// What the tests of this folder share: a temporary folder, a valid recording, and a look at thrown errors.
+/// Helpers of the tests in this folder: a temporary folder, a valid recording, and checks of thrown errors.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@
 
 namespace musclesim {
 
-/// A folder that is gone after the test.
+/// A folder that is removed after the test.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -53,7 +53,7 @@ inline Recording parseCsv(const std::string& csv, const std::string& json = mini
   return parseRecording(csv, "run.csv", json, "run.json", options);
 }
 
-/// The message holds every one of the words.
+/// Whether the message contains all of the words.
 inline testing::AssertionResult hasWords(const std::string& message, const std::vector<std::string>& words) {
   for (const auto& word : words)
     if (message.find(word) == std::string::npos) return testing::AssertionFailure() << "\"" << message << "\" lacks \"" << word << "\"";

@@ -135,7 +135,7 @@ TEST(Recorder, AFolderThatCannotBeWrittenIsAnIoError) {
   std::filesystem::permissions(folder.file("."), std::filesystem::perms::owner_all);
 }
 
-/// In a child process: no file may grow beyond `bytes`.
+/// Call in a child process: limits the size of every file to `bytes`.
 void limitFileSize(rlim_t bytes) {
   std::signal(SIGXFSZ, SIG_IGN);
   const rlimit limit{bytes, bytes};
@@ -172,7 +172,7 @@ TEST(Recorder, ADiskThatFillsUpDuringTheRunLosesOnlyWhatDoesNotFit) {
   EXPECT_GT(recording.time_s.size(), 500u);
 }
 
-/// Records until it is killed; tells the number of appended rows through the pipe.
+/// Records until it is killed and reports the number of appended rows through the pipe.
 [[noreturn]] void recordForever(const std::string& file, int counter) {
   Recorder recorder(file, rigInfo(), columns);
   for (std::uint32_t i = 0;; ++i) {

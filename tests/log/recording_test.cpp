@@ -56,7 +56,7 @@ TEST(Recording, OwnQuantitiesOfARun) {
   EXPECT_EQ(recording.find("activity")->values[0], 4);
 }
 
-// Full scale 600 kPa and 10 V; every number worked out by hand.
+// Full scale 600 kPa and 10 V; all numbers computed by hand.
 TEST(Recording, ConvertsEveryUnit) {
   struct Case {
     const char* column;
@@ -229,7 +229,7 @@ Recording sample() {
     recording.signals[0].values.push_back(uniform(random));
     recording.signals[1].values.push_back(i % 7 ? uniform(random) : std::nan(""));
     recording.signals[2].values.push_back(200 + 10 * std::sin(0.1 * i));
-    // Any finite double, by its bits.
+    // Any finite double, from random bits.
     double any = std::bit_cast<double>(random());
     recording.signals[3].values.push_back(std::isfinite(any) ? any : -0.0);
   }
@@ -304,7 +304,7 @@ TEST(Recording, MissingFilesAreNamed) {
   EXPECT_TRUE(hasWords(messageOf<BadFile>([&] { readRecording(folder.file("run.json")); }), {"is a sidecar"}));
 }
 
-/// One seeded random change of a text: bytes flipped, cut, doubled, swapped, or an odd piece put in.
+/// One seeded random change of a text: bytes flipped, cut, doubled or swapped, or an unexpected piece inserted.
 std::string mutated(std::string text, std::mt19937_64& random) {
   static const std::vector<std::string> odd_pieces = {",",
                                                       "\n",

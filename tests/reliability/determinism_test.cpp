@@ -1,4 +1,4 @@
-/// The same binary and input give the same bits: hashes of the whole state every 100 steps.
+/// The same binary and input give the same bits; compared by hashes of the whole state every 100 steps.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -12,7 +12,7 @@
 namespace musclesim {
 namespace {
 
-/// Every body's place, orientation and velocities, bit for bit.
+/// Hash of the bits of all bodies' positions, orientations and velocities.
 void addState(Hash& hash, Simulation& simulation) {
   for (dBodyID body = nullptr; const auto& primitive : simulation.world().primitives()) {
     if (primitive->body().id == body || primitive->body().id == nullptr) continue;

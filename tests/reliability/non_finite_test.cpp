@@ -1,5 +1,5 @@
-/// Numbers that no machine has, at every place where a number comes in: refused, or the run ends in Diverged within a step of the first
-/// number that is not finite. Never a crash, never a value that is not finite in what is recorded.
+/// Feeds impossible numbers to every input of numbers. Each is refused, or the run ends in Diverged within one step of the first number
+/// that is not finite. There is never a crash and never a recorded value that is not finite.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@
 #include "musclesim/simulation/simulation.h"
 #include "support/support.h"
 
-/// An exception out of the middle of a step leaves ODE's list of jobs behind. Nothing else may leak.
+/// An exception thrown during a step leaks ODE's list of jobs. Nothing else may leak.
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:dxtemplateThreadingImplementation";
 }
@@ -33,7 +33,7 @@ const std::vector<double> odd_values = {std::numeric_limits<double>::quiet_NaN()
 
 enum class End { refused, diverged, done };
 
-/// How an action ends; anything else than the three is an error of the program.
+/// How an action ends; any other end is an error of the program.
 template <class Function>
 End endOf(const Function& action) {
   try {
@@ -90,7 +90,7 @@ TEST(NonFinite, PressuresOfEveryMuscle) {
   EXPECT_GE(place_count, 13);
 }
 
-/// A muscle whose force is whatever the test says, from some step on.
+/// A muscle with a force set by the test from a given step on.
 class OddMuscle : public Muscle {
  public:
   using Muscle::Muscle;

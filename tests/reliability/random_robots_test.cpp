@@ -1,4 +1,4 @@
-/// Robots that nobody would build, from random calls of the building API: each ends a run of 200 steps, diverges, or is refused.
+/// Absurd robots from random calls of the building API: each completes a run of 200 steps, diverges, or is refused.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -14,7 +14,7 @@
 namespace musclesim {
 namespace {
 
-/// A tree of primitives with random joints, and muscles between them. One call in the robot may be spoilt.
+/// A tree of primitives with random joints, and muscles between them. One call may get an impossible number.
 class RandomRobot : public Robot {
  public:
   RandomRobot(Simulation& simulation, std::uint64_t seed, bool spoil) : Robot(simulation), random_(seed, "random_robot"), spoil_(spoil) {
@@ -29,7 +29,7 @@ class RandomRobot : public Robot {
  private:
   int whole(int low, int high) { return low + static_cast<int>(random_.uniform() * (high - low + 1)); }
 
-  /// A number of the machine; one of a robot's may be impossible.
+  /// A plausible number; one number per robot may be impossible.
   double number(double low, double high) {
     static const double impossible[] = {std::nan(""), HUGE_VAL, -1, 0, 1e308};
     if (spoil_ && call_++ == spoilt_call_) return impossible[whole(0, 4)];

@@ -27,7 +27,7 @@ class Winch : public Actuator {
   double full_N = 30;
 };
 
-/// A user's actuator and a user's bone whose constructors find something wrong.
+/// A user's actuator and a user's bone whose constructors throw.
 class BrokenWinch : public Winch {
  public:
   explicit BrokenWinch(Simulation& simulation) : Winch(simulation, 100) { throw BadParameter("the winch is broken"); }
@@ -92,7 +92,7 @@ TEST(Actuator, AUsersForceReplacesTheForceLaw) {
   winch->setPressure(0.5);
   simulation.advance(0.1);
   EXPECT_EQ(winch->tensionN(), 15);
-  // 1010 g with 15 N upwards, 1 N of friction against it.
+  // 1010 g are pulled up with 15 N against 1 N of friction.
   const double acceleration = (14 / 1.01 - 9.81) * mm_per_m;
   EXPECT_NEAR(load->getPosition().y(), -200 + acceleration * 0.01 / 2, 0.3);
 }

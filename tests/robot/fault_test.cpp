@@ -1,5 +1,4 @@
-/// Whatever happens to the bodies, ODE does not abort the process: the run ends in Diverged, and the next simulation is as if nothing had
-/// been.
+/// Whatever happens to the bodies, ODE does not abort the process: the run ends in Diverged, and the next simulation is not affected.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -11,7 +10,7 @@
 #include "musclesim/simulation/simulation.h"
 #include "support/support.h"
 
-/// An exception out of the middle of a step leaves ODE's list of jobs behind. Nothing else may leak.
+/// An exception thrown during a step leaks ODE's list of jobs. Nothing else may leak.
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:dxtemplateThreadingImplementation";
 }
@@ -45,7 +44,7 @@ std::vector<double> healthyRun() {
 
 struct Fault {
   std::string name;
-  std::function<void(Simulation&)> afflict;  ///< before every step
+  std::function<void(Simulation&)> afflict;  ///< called before every step
 };
 
 std::ostream& operator<<(std::ostream& out, const Fault& fault) {

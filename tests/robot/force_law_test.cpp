@@ -17,7 +17,7 @@ struct Row {
   double pressure_ratio, length_mm, tension_N, stiffness_N_per_mm;
 };
 
-/// Eq. 1 and its derivative for l_min = 120 mm, l_max = 300 mm, worked out in decimal arithmetic with 40 digits.
+/// Eq. 1 and its derivative for l_min = 120 mm, l_max = 300 mm, computed in decimal arithmetic with 40 digits.
 constexpr Row table[] = {
     {0, 120, 0.007390503796, 0.00037789673279},
     {0, 165, 0.073786024944, 0.00377288186603},

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// A value worked out by hand for each law: every term counts.
+/// One value per law, computed by hand; every term contributes to it.
 TEST(ChouHannaford, AgreesWithTheFormulaWorkedOutByHand) {
   ChouHannafordConstants constants;
   constants.braid_N = 3000;
@@ -170,7 +170,7 @@ TEST(ForceLawChoice, RestLengthAndMinimumLengthScaleTheMeasuredMuscle) {
   EXPECT_NEAR(makeForceLaw(other, 120, 300)->tensionN(0.6, 230), SarosiForceLaw(250, {}).tensionN(0.6, 230), 1e-9);
 }
 
-/// The same law under another name moves the robot alike: Sarosi's defaults are Eq. 1 for the rig's 120 and 300 mm.
+/// The same law under another name gives the same motion: Sarosi's defaults equal Eq. 1 for the rig's 120 and 300 mm.
 TEST(ForceLawChoice, DrivesARobotsMuscles) {
   const auto settledLengthMm = [](const std::string& name) {
     SimulationOptions options;

@@ -36,7 +36,7 @@ struct Pair {
 
   Pair() { base->fix(); }
 
-  /// Turns the body by a torque about an axis of the world for half a second and gives the angle by which it turned about that axis.
+  /// Applies a torque about an axis of the world for half a second and returns the body's rotation about that axis.
   double pushDeg(const Vector& axis, double torque_Nmm) {
     const Vector torque = torque_Nmm * world_force_per_N * axis.normalized();
     double last_rad = 0, turned_rad = 0;
@@ -56,7 +56,7 @@ struct Pair {
 constexpr double push_Nmm = 2;
 constexpr double tolerance_deg = 0.3;
 
-/// One axis of one sort of joint: how to make the joint, and what should happen about the axis.
+/// A test case: how to make a joint, and what should happen about one of its axes.
 struct Case {
   std::string name;
   std::function<Joint*(Pair&)> attach;

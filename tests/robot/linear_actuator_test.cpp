@@ -44,7 +44,7 @@ TEST(LinearActuator, PullsALoadUpToItsForceLaw) {
   actuator->connectEndTo(load);
   actuator->setPressure(1);
   for (int i = 0; i < 200; ++i) simulation.step();
-  // 1000 g and the lower bead hang from the slider; 1 N of friction against 1.2 N/mm.
+  // 1000 g and the lower bead hang from the slider, whose friction of 1 N acts against a stiffness of 1.2 N/mm.
   const BraunForceLaw law(60, 140);
   const double l = actuator->lengthMm();
   EXPECT_NEAR(law.tensionN(1, l), 1.010 * 9.81, 1.001) << l << " mm";

@@ -172,7 +172,7 @@ TEST(Muscle, TheGivenMinimumCountsForTheStartNotTheShortenedOne) {
 
 TEST(Muscle, RefusesLinksShorterThanTheirBeads) {
   Simulation simulation;
-  // The curve's points crowd at its start: the whole is long enough, the first link is not.
+  // The curve's points are dense near its start: the chain is long enough, but the first link is not.
   const auto message = messageOf<BadParameter>([&] {
     new Muscle(simulation.world(), simulation.space(), {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, -200, 0}, 120, 300);
   });

@@ -1,4 +1,4 @@
-/// The calls of the paper's Sections 4.3 and 4.4, used as they are there: building a robot, and the loop that runs it.
+/// The calls of the paper's Sections 4.3 and 4.4, word for word: building a robot, and the loop that runs it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -74,7 +74,7 @@ class PaperRobot : public Robot {
   Joint* ball;
 };
 
-/// Section 4.4: a controller gives an action for a state.
+/// Section 4.4: a controller computes an action from a state.
 class PaperController : public Controller {
  public:
   Action output(const State& state) override {
@@ -112,7 +112,7 @@ TEST(PaperSamples, BuildAndRunAsPrinted) {
 }
 
 TEST(PaperSamples, TheSpringActuatorOfAUser) {
-  // Other actuators are made by deriving and replacing calculateForce.
+  // A derived class that overrides calculateForce makes another actuator.
   class Spring : public LinearActuator {
    public:
     using LinearActuator::LinearActuator;

@@ -81,7 +81,7 @@ TEST_F(PrimitiveTest, SphereHasTheInertiaOfASphere) {
 
 TEST_F(PrimitiveTest, CappedCylinderHasTheInertiaOfACylinderAndTwoHalfSpheres) {
   const auto* c = new CappedCylinder(simulation.world(), simulation.space(), {0, 0, 0}, 200, 0, 13, 300);
-  // Worked out by hand from the volumes pi r^2 L and 4/3 pi r^3.
+  // Computed by hand from the volumes pi r^2 L and 4/3 pi r^3.
   EXPECT_NEAR(inertiaOf(c)(0, 0), 1688568.91, 1.0);
   EXPECT_NEAR(inertiaOf(c)(2, 2), 16715.38, 0.01);
 }
@@ -254,7 +254,7 @@ TEST_F(Composite, ExactInertiaHasItsProductsInTheParentsAxes) {
   EXPECT_NEAR(inertiaOf(a)(1, 0), -7.5 * 1200, 1e-9);
   EXPECT_NEAR(inertiaOf(a)(0, 2), 0, 1e-9);
 
-  // Turned so that the parent's x axis points at the other sphere, the products vanish.
+  // With the parent's x axis pointing at the other sphere, the products of inertia vanish.
   auto* c = sphere({0, 0, 100}, 10);
   auto* d = sphere({30, 40, 100}, 30);
   c->rotate(std::atan2(40, 30) * deg_per_rad, {0, 0, 1});

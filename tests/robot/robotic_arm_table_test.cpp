@@ -151,7 +151,7 @@ TEST(RoboticArmTable, NoLinkIsShorterThanItsBeads) {
   }
 }
 
-/// In muscles 2 and 5 of the published program the longest link starts beyond its stop; the further muscles keep clear of it.
+/// In muscles 2 and 5 of the published program the longest link starts beyond its stop; in the added muscles no link does.
 TEST(RoboticArmTable, LinksOfFurtherMusclesStartWithinTheirStops) {
   for (const MuscleRow& row : muscles().subspan(10)) {
     const std::vector<Triple> ends = linkEnds(row);

@@ -40,8 +40,8 @@ struct Expected {
   Vector summed;
 };
 
-/// The four composites that move. Worked out from the arm's table by a separate program; the bodies' axes are those of the parent part, so
-/// the radius' z axis points along the bone while the others' axes are the world's.
+/// The four moving composites. A separate program computed the values from the arm's table. A body has the axes of its parent part, so the
+/// radius' z axis points along the bone, while the other bodies have the world's axes.
 const Expected composites[] = {
     {"medius", 60, {-205.833333, -241.166667, 0}, {188805, 50578, 229583}, {5833.333, 0, 0}, {122537, 6370, 119107}},
     {"ulna", 140, {-195.714286, -2.142857, -4.285714}, {872867, 39125, 866999}, {65714.286, -8571.429, 49285.714}, {483287, 483607, 2669}},
@@ -142,7 +142,7 @@ TEST(RoboticArm, TakesTheFirstMusclesOfTheTable) {
   }
 }
 
-/// Turns one hinge of the arm, the bone before it being held, and expects it at its stop.
+/// Turns one hinge of the arm while the bone before it is held, and expects the hinge to reach its stop.
 void expectStop(const std::string& held, const std::string& hinge, double torque_Nmm, double stop_deg) {
   SimulationOptions options = with("arm.muscle_count", 1.0);
   options.step_s = 3e-4;

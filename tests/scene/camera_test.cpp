@@ -7,7 +7,7 @@
 namespace musclesim {
 namespace {
 
-/// Where a point appears: x to the right and y up, -1 .. 1 inside the picture.
+/// Image coordinates of a point: x to the right and y up, -1 .. 1 inside the picture.
 Eigen::Vector2f seen(const Camera& camera, const Eigen::Vector3f& point) {
   const Eigen::Vector4f clip = camera.projection(1) * camera.view() * point.homogeneous();
   return clip.head<2>() / clip.w();

@@ -11,7 +11,7 @@ namespace {
 
 using V = Eigen::Vector3f;
 
-/// Six times the volume that a closed surface encloses, positive if all triangles are counter-clockwise seen from outside.
+/// Six times the volume inside a closed surface; positive if all triangles are counter-clockwise as seen from outside.
 float enclosed(const Mesh& mesh) {
   float sum = 0;
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {

@@ -29,8 +29,8 @@ Image readPng(const fs::path& file) {
 
 constexpr int background = 230;
 
-/// Of the pixels that show more than background in one picture, the share that differs by more than 24 of 255 in a colour: drivers round
-/// edges differently, but not whole surfaces.
+/// Share of pixels that differ by more than 24 of 255 in a colour, among the pixels that are not background in at least one picture.
+/// Drivers draw edges differently, but not whole surfaces.
 double differingShare(const Image& a, const Image& b) {
   constexpr int allowed = 24;
   if (a.width != b.width || a.height != b.height) return 1;
@@ -47,7 +47,7 @@ double differingShare(const Image& a, const Image& b) {
   return drawn > 0 ? static_cast<double>(differing) / static_cast<double>(drawn) : 0;
 }
 
-/// What drivers may differ in; a style changes twice that, at least.
+/// Largest difference between drivers; a style changes at least twice as much.
 constexpr double tolerance = 0.008;
 
 /// A robot under constant pressures for a while, and its pictures. Skipped without OSMesa.
@@ -78,14 +78,14 @@ class Pictures : public testing::Test {
     return offscreen_->draw(snapshot, program::initialCamera(robot, snapshot, {}), style);
   }
 
-  /// Compares with tests/scene/pictures/NAME.png; with MUSCLESIM_STORE_PICTURES=1 it is written anew.
+  /// Compares with tests/scene/pictures/NAME.png; with MUSCLESIM_STORE_PICTURES=1 it writes a new picture instead.
   void compareWithStored(const std::string& name, const Image& image) {
     const fs::path stored = fs::path(MUSCLESIM_STORED_PICTURES) / (name + ".png");
     if (std::getenv("MUSCLESIM_STORE_PICTURES")) writePng(image, stored.string());
     EXPECT_LT(differingShare(image, readPng(stored)), tolerance) << name;
   }
 
-  /// As stored, and so far from the picture without the style that the comparison would notice if it had no effect.
+  /// Expects the stored picture, and one that differs enough from the picture without the style to detect a style without effect.
   void compareStyle(const std::string& name, const Snapshot& snapshot, const SceneStyle& style, const std::vector<SceneStyle>& without) {
     const Image image = draw("arm", snapshot, style);
     compareWithStored(name, image);

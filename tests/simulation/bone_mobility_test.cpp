@@ -35,9 +35,9 @@ double speedOf(const Pushes& line) {
   return sum;
 }
 
-/// What dWorldStep makes of a force on one line: speeds of all lines per force and time, from rest, without weight.
+/// Response of dWorldStep to a force on one line: speeds of all lines per force and time, from rest, without gravity.
 std::vector<double> responses(const std::string& robot, std::size_t pushed) {
-  constexpr double force = 1e12, h_s = 1e-3;  // far above what closes the gaps left by rounding
+  constexpr double force = 1e12, h_s = 1e-3;  // far above the forces that correct rounding errors of the joints
   const auto simulation = buildWithLines(robot);
   dWorldSetGravity(simulation->world(), 0, 0, 0);
   for (const auto& push : simulation->world().actuators()[pushed]->line()->pushes()) {

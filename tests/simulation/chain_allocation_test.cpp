@@ -7,7 +7,7 @@
 namespace musclesim {
 namespace {
 
-/// Calls of operator new in ODE's search for pairs of geometries that are near each other, which allocates where it uses a hash table.
+/// Calls of operator new in ODE's broad phase, which allocates if it uses a hash table.
 long allocationsOfBroadPhase(dSpaceID space) {
   const long before = allocation_count;
   dSpaceCollide(space, nullptr, [](void*, dGeomID, dGeomID) {});

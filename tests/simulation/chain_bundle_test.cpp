@@ -9,8 +9,8 @@
 namespace musclesim::chain {
 namespace {
 
-/// A chain of random rows, sliders and hinges in turn, as ChainBundle sees it and as one dense system
-///     J u + cfm/h l = c/h,   u = a + S J^T l   with u of the bone and y of the border given.
+/// A chain of random sliders and hinges in turn, for ChainBundle and as one dense system
+///     J u + cfm/h l = c/h,   u = a + S J^T l   where u of the bone and y of the border are given.
 struct RandomChain {
   int beads;
   BeadInertia inertia{0.1, 0.02};
@@ -139,7 +139,7 @@ TEST(ChainBundle, LanesMatchTheDenseSystem) {
   for (const std::array<int, 2>& counts : {std::array{6, 6}, {2, 8}, {4, 0}}) expectLanesLikeTheDenseSystem<2>(random, counts);
 }
 
-/// The same chain takes the same operations in two lanes and in four.
+/// A bundle of two lanes does the same operations on a chain as one of four lanes.
 TEST(ChainBundle, WidthLeavesTheBits) {
   RandomStream random(4, "chains");
   const RandomChain chain(random, 8);

@@ -141,7 +141,7 @@ TEST(ChainStepper, TakesOtherSkeletonsContactsAndForcesLikeDWorldStep) {
   EXPECT_GT(most_contacts, 0);
 }
 
-/// A fixed body that rests to the last bit is not worked out again, until something happens to it.
+/// A fixed body that rests to the last bit is not computed again until something acts on it.
 TEST(ChainStepper, TakesWhatHappensToABodyAtRestLikeDWorldStep) {
   SimulationOptions options;
   options.stepper = StepperKind::ode;
@@ -169,7 +169,7 @@ TEST(ChainStepper, TakesWhatHappensToABodyAtRestLikeDWorldStep) {
   }
 }
 
-/// Joints without play, and motors that are given another speed on the way.
+/// Joints with equal stops, and motors whose speed changes during the run.
 TEST(ChainStepper, TakesEqualStopsAndChangedMotorsLikeDWorldStep) {
   SimulationOptions options;
   options.substeps = 1;
@@ -200,7 +200,7 @@ TEST(ChainStepper, TakesEqualStopsAndChangedMotorsLikeDWorldStep) {
   EXPECT_EQ(chain.stepper().name(), "chain");
 }
 
-/// As many bodies as before, but others.
+/// The same number of bodies as before, but different ones.
 TEST(ChainStepper, TakesBodiesPutTogetherLaterLikeDWorldStep) {
   SimulationOptions options;
   options.plane = true;

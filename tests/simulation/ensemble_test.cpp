@@ -12,7 +12,7 @@
 namespace musclesim {
 namespace {
 
-/// Where the hand of an arm is after 0.1 s of random pressures.
+/// Position of an arm's hand after 0.1 s of random pressures.
 Vector handAfter(std::uint64_t seed) {
   Simulation simulation;
   simulation.build("arm");

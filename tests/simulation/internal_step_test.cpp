@@ -63,7 +63,7 @@ TEST(InternalStep, StopsKeepTheirComplianceWhateverTheStep) {
   }
 }
 
-/// The bead's inertia only matters where the chain turns: a short step and a long one end at the same place.
+/// The beads' additional inertia matters only while the chain turns: a short and a long step end at the same place.
 TEST(InternalStep, AdditionalInertiaVanishesWithTheStep) {
   const auto rig = build("rig", {});
   const Actuator& muscle = *rig->world().actuators().front();
@@ -73,7 +73,7 @@ TEST(InternalStep, AdditionalInertiaVanishesWithTheStep) {
   EXPECT_NEAR(muscle.beadInertiaIncrease(1e-4), increase / 100, 1e-9 * increase);
 }
 
-/// Every step by both steppers from the same state.
+/// Both steppers do every step from the same state.
 double worstDifference(const std::string& robot, const std::vector<std::string>& parameters, PhysicsKind physics, int steps) {
   const auto ode = build(robot, parameters, physics, StepperKind::ode), chain = build(robot, parameters, physics, StepperKind::chain);
   RandomStream random(3, "test");
@@ -105,7 +105,7 @@ TEST(LineMuscles, BothSteppersAgree) {
 }
 
 TEST(ViscousFriction, HasNoStiction) {
-  // A load a little below what the muscle carries: dry friction of 1 N per slider holds it, viscous friction lets it creep.
+  // The load is a little below the muscle's tension: dry friction of 1 N per slider holds it, viscous friction lets it creep.
   double moved_mm[2];
   for (const bool viscous : {false, true}) {
     const auto rig = build("rig", {"rig.load_kg=2", viscous ? "muscle.joint_friction=viscous" : "muscle.joint_friction=coulomb"});

@@ -1,4 +1,4 @@
-/// It finds what dSpaceCollide finds of what touches, in its order.
+/// The broad phase finds the same touching pairs as dSpaceCollide, in the same order.
 #include "../../simulation/near_pairs.h"
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ class NearPairsTest : public testing::Test {
     dWorldDestroy(world);
   }
 
-  /// Every body by up to so much, and turned by up to so much.
+  /// Moves and rotates every body by up to these amounts.
   void stir(double shift_mm, double turn_rad) {
     for (const dBodyID body : bodies) {
       const dReal* x = dBodyGetPosition(body);

@@ -18,7 +18,7 @@ Eigen::MatrixXd randomMatrix(RandomStream& random, int rows, int columns) {
   return m;
 }
 
-/// Multiplies, adds the entries that are not 0, and solves.
+/// Sums the products of entries that are not 0, and solves.
 void expectSolved(TiledMatrix& matrix, const Eigen::MatrixXd& a, RandomStream& random) {
   const auto n = static_cast<int>(a.rows());
   matrix.reset(n);
@@ -42,7 +42,7 @@ TEST(TiledMatrix, SolvesAllSizes) {
   }
 }
 
-/// Positive rows that have nothing in common, negative ones that couple with all, positive ones that couple with these.
+/// Uncoupled positive rows, negative rows that couple to all of them, and positive rows that couple to the negative ones.
 TEST(TiledMatrix, LeavesOutWhatIsZero) {
   RandomStream random(3, "tiles");
   TiledMatrix matrix;
@@ -59,7 +59,7 @@ TEST(TiledMatrix, LeavesOutWhatIsZero) {
   }
 }
 
-/// Four chains that all touch a fifth: that one comes last, so that nothing is filled in.
+/// Four chains touch a fifth one, which comes last, so that there is no fill-in.
 TEST(CoreOrder, TakesChainsWithFewNeighboursFirst) {
   CoreOrder order;
   order.reset(5);
@@ -78,7 +78,7 @@ TEST(CoreOrder, TakesChainsWithFewNeighboursFirst) {
   EXPECT_EQ(std::count(taken.begin(), taken.end(), true), 19);
 }
 
-/// The whole system at once: [M, -J^T; J, D] (u, y) = (g, r). Some bones are kept, some rows stand before them.
+/// The whole system at once: [M, -J^T; J, D] (u, y) = (g, r). Some bones are kept, and some rows come before them.
 void expectSolved(const SkeletonCore::Layout& layout, RandomStream& random) {
   SkeletonCore core;
   for (int repeat = 0; repeat < 2; ++repeat) {

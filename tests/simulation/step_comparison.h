@@ -1,4 +1,4 @@
-/// Steps of the chain stepper beside dWorldStep's, from the same state.
+/// Compares steps of the chain stepper with steps of dWorldStep from the same state.
 #pragma once
 
 #include <algorithm>
@@ -24,8 +24,8 @@ inline std::vector<dBodyID> allBodies(const Simulation& simulation) {
   return bodies;
 }
 
-/// Brings the geometries into the order of their bodies. A space of ODE moves what is moved to the front, and of two bodies with several
-/// contacts the first one found counts: both worlds must look in the same order.
+/// Sorts the geometries by their bodies. ODE's space puts moved geometries in front, and of several contacts between two bodies only the
+/// first one found counts, so both worlds must search in the same order.
 inline void sortGeometries(const Simulation& simulation) {
   dSpaceCollide(simulation.space(), nullptr, [](void*, dGeomID first, dGeomID second) {
     if (dGeomIsSpace(first) || dGeomIsSpace(second)) dSpaceCollide2(first, second, nullptr, [](void*, dGeomID, dGeomID) {});
@@ -36,7 +36,7 @@ inline void sortGeometries(const Simulation& simulation) {
   }
 }
 
-/// Pose and velocities of all bodies from one simulation to another of the same robot.
+/// Copies poses and velocities of all bodies from one simulation to another of the same robot.
 inline void copyState(const Simulation& from, const Simulation& to) {
   const auto source = allBodies(from), target = allBodies(to);
   for (std::size_t i = 0; i < source.size(); ++i) {
@@ -48,8 +48,8 @@ inline void copyState(const Simulation& from, const Simulation& to) {
   }
 }
 
-/// Gives both simulations the state of `from`. That state itself passes through ODE's normalisation too: the point where two overlapping
-/// boxes touch may hang on the last bit.
+/// Gives both simulations the state of `from`. `from` gets its own state again too, because setting it applies ODE's normalisation, and the
+/// contact point of two overlapping boxes may depend on the last bit.
 inline void makeComparable(const Simulation& from, const Simulation& to) {
   sortGeometries(from);
   sortGeometries(to);
@@ -83,18 +83,18 @@ inline double fastestBody(const Simulation& simulation) {
 struct ComparisonCase {
   std::string robot = "arm";
   PhysicsKind physics = PhysicsKind::original;
-  int muscle_count = 0;  ///< of the arm; 0: as it is
+  int muscle_count = 0;  ///< number of the arm's muscles; 0: the default
   int steps = 1000;
-  double hold_s = 1.0;  ///< random pressures change this often; 0: they never do
+  double hold_s = 1.0;  ///< period of new random pressures; 0: constant pressures
   std::string initial_state = "built";
-  double rest_s = 0;  ///< the chain stepper holds the first pressures so long before
+  double rest_s = 0;  ///< the chain stepper holds the first pressures for this time beforehand
   std::uint64_t seed = 1;
 };
 
 struct Comparison {
-  double worst = 0;  ///< relative difference of velocities
+  double worst = 0;  ///< largest relative difference of velocities
   double mean_log10 = 0;
-  int contacts = 0;  ///< largest number in a step
+  int contacts = 0;  ///< largest number of contacts in a step
   double fastest_mm_per_s = 0;
   ChainStatistics chain;
 };
@@ -111,7 +111,7 @@ inline std::unique_ptr<Simulation> makeSimulation(const ComparisonCase& c, Stepp
   return simulation;
 }
 
-/// Along dWorldStep's own trajectory: every step is done by both from the same state.
+/// Follows dWorldStep's trajectory; both steppers do every step from the same state.
 inline Comparison compareSteps(const ComparisonCase& c) {
   const auto ode = makeSimulation(c, StepperKind::ode), chain = makeSimulation(c, StepperKind::chain);
   RandomStream random(c.seed, "comparison");

@@ -1,4 +1,4 @@
-// musclesim diagnose: what it refuses, and with which exit status.
+// musclesim diagnose: refusals and their exit statuses.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -19,7 +19,7 @@ class DiagnoseCommand : public testing::Test {
  protected:
   void SetUp() override { fs::create_directories(folder_); }
   void TearDown() override { fs::remove_all(folder_); }
-  /// A rig's recording of so many rows; lengths times `unit`.
+  /// Writes a recording of the rig with this number of rows; lengths are multiplied by `unit`.
   void write(const std::string& stem, int rows, double unit, const std::string& robot = "rig") const {
     std::ofstream(folder_ / (stem + ".json")) << fmt::format(R"({{"format": "musclesim-recording-1", "robot": "{}"}})", robot);
     std::ofstream file(folder_ / (stem + ".csv"));
@@ -82,7 +82,7 @@ TEST_F(DiagnoseCommand, WhatIsReadIsNotWrittenOver) {
   EXPECT_TRUE(fs::exists(folder_ / "out" / "next.csv") && fs::exists(folder_ / "out" / "nominal.toml"));
 }
 
-/// A payload that was seen at almost one pressure alone; the recordings themselves say nothing of it.
+/// A payload recorded at almost a single pressure. The recordings themselves do not name it.
 TEST_F(DiagnoseCommand, TheProposedScheduleCanBeReplayed) {
   const std::string sidecar = R"({"format": "musclesim-recording-1", "robot": "rig", "robot_parameters": {"load_kg": 1.5}})";
   std::ofstream(folder_ / "payload.json")

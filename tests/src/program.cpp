@@ -32,7 +32,7 @@ void redirect(const std::filesystem::path& file, int descriptor) {
 
 namespace {
 
-/// Until a file has that many bytes; a minute at most.
+/// Waits until a file has this number of bytes, for a minute at most.
 void waitForBytes(const std::filesystem::path& file, std::uintmax_t bytes) {
   for (int i = 0; i < 1200; ++i) {
     std::error_code absent;

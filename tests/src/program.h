@@ -1,4 +1,4 @@
-/// Runs the program `musclesim` as a user would and returns what it said.
+/// Runs the program `musclesim` as a user would and returns its output.
 #pragma once
 
 #include <filesystem>
@@ -16,8 +16,8 @@ struct ProgramResult {
 ProgramResult runProgram(const std::vector<std::string>& arguments,
                          const std::filesystem::path& folder = std::filesystem::temp_directory_path());
 
-/// Starts it in a process group of its own, sends a signal to the group, as a terminal does, when a file in the folder has that many bytes
-/// (after a minute at the latest), and waits.
+/// Starts the program in its own process group and waits until a file in the folder has this number of bytes (a minute at most). Then it
+/// sends a signal to the group, as a terminal does, and waits for the end.
 ProgramResult interruptProgram(const std::vector<std::string>& arguments, int signal, const std::string& file, std::uintmax_t bytes,
                                const std::filesystem::path& folder = std::filesystem::temp_directory_path());
 

@@ -57,7 +57,7 @@ TEST_F(ReplayCommand, ReproducesItsOwnRunsBitForBit) {
   EXPECT_EQ(again.time_s, readRecording((folder_ / "run.csv").string()).time_s);
 }
 
-/// What was simulated, not what was recorded: with the options of the replay, the ground plane and the seed.
+/// The sidecar describes the replayed model, not the recorded one: with the options of the replay, the ground plane and the seed.
 TEST_F(ReplayCommand, ASimulatedRecordingStatesItsOwnModel) {
   record({"--plane", "--seed", "7"});
   replay({"--out", "sim.csv", "--set", "elbow.forearm_kg=0.7", "--set", "force_law.b=1.5"});
@@ -98,7 +98,7 @@ TEST_F(ReplayCommand, WritesOverNothingThatWasNotSimulated) {
   EXPECT_NE(sidecar.err.find("machine.json exists"), std::string::npos) << sidecar.err;
 }
 
-/// Other muscles need other internal steps; a number that was asked for stays.
+/// Other muscles need another number of internal steps, but a number that the user set stays.
 TEST_F(ReplayCommand, AutomaticInternalStepsFollowTheModel) {
   record({"--muscle", "line"});
   const int of_lines = replay({}).at("substeps"), of_chains = replay({"--muscle", "chain"}).at("substeps");

@@ -34,7 +34,7 @@ class RunCommand : public testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
 
   ProgramResult run(std::vector<std::string> arguments) { return runProgram(arguments, folder_); }
-  /// A short cheap run: the rig under constant pressure.
+  /// A short run that costs little: the rig under constant pressure.
   ProgramResult runRig(std::vector<std::string> more) {
     std::vector<std::string> arguments = {"--simple", "--robot", "rig", "--controller", "hold", "--duration", "0.2"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -146,7 +146,7 @@ TEST_F(RunCommand, InterruptedRunsAreReadableAndNotComplete) {
   EXPECT_EQ(nlohmann::json::parse(contentOf(folder_ / "cut.json")).at("complete"), false);
 }
 
-/// Also what writes the video gets the signal.
+/// The process that writes the video gets the signal too.
 TEST_F(RunCommand, InterruptedVideosAreWhole) {
   if (std::system("command -v ffmpeg >/dev/null 2>&1") != 0) GTEST_SKIP() << "ffmpeg is not installed";
   const ProgramResult result = interruptProgram({"--robot", "elbow", "--controller", "hold", "--duration", "1000", "--record", "cut.csv",

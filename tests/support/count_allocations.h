@@ -6,14 +6,14 @@
 
 namespace musclesim {
 
-/// Of the calling thread.
+/// Number of calls in the calling thread.
 inline thread_local long allocation_count = 0;
 
-/// Not inline where it is called: compilers would see malloc and free where they expect new and delete.
+/// Must not be inlined: compilers would see malloc and free where they expect new and delete.
 [[gnu::noinline]] inline void freeAllocation(void* memory) noexcept {
   std::free(memory);
 }
-/// malloc, or aligned_alloc where `alignment` is not 0; throws std::bad_alloc.
+/// Calls malloc, or aligned_alloc if `alignment` is not 0. Throws std::bad_alloc.
 [[gnu::noinline]] inline void* countedAllocation(std::size_t size, std::size_t alignment = 0) {
   ++allocation_count;
   if (void* memory = alignment ? std::aligned_alloc(alignment, size) : std::malloc(size)) return memory;

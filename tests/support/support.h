@@ -1,4 +1,4 @@
-/// What tests of several folders share.
+/// Helpers for the tests of several folders.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 
 namespace musclesim {
 
-/// What an action threw: the message of an Exception; any other exception passes through and fails the test.
+/// The message of the Exception that an action throws. Any other exception passes through and fails the test.
 template <class Exception, class Function>
 std::string messageOf(const Function& action) {
   try {
@@ -27,7 +27,7 @@ inline ::testing::AssertionResult contains(const std::string& text, const std::s
 }
 
 /// Reference data that are not part of this repository: the folder named by MUSCLESIM_SHARED, or `shared` beside the repository.
-/// Tests that need them are skipped where they are absent.
+/// Tests that need them are skipped if they are missing.
 inline std::filesystem::path sharedFolder() {
   const char* given = std::getenv("MUSCLESIM_SHARED");
   return given ? given : MUSCLESIM_SHARED_FOLDER;

@@ -14,7 +14,7 @@
 namespace musclesim {
 namespace {
 
-/// Does something in a process of its own, which then vanishes without any cleaning up.
+/// Runs an action in a child process that then exits without any clean-up.
 void inAnotherProcess(const std::function<void()>& action) {
   const pid_t child = fork();
   if (child == 0) {

@@ -6,7 +6,7 @@ namespace {
 
 class Manifest : public SweepTest {
  protected:
-  /// The refusal of a manifest in which one piece of text is replaced.
+  /// The error for a manifest in which one piece of text is replaced.
   std::string refusalWith(const std::string& piece, const std::string& replacement) {
     if (text_.empty()) text_ = contentOf(sweepOf(2) + "/manifest.json");
     std::string text = text_;

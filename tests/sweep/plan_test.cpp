@@ -80,7 +80,7 @@ TEST(Plan, LatinHypercubeHasOneValueInEveryPart) {
   }
   EXPECT_EQ(parts_x.size(), 50u);
   EXPECT_EQ(parts_y.size(), 50u);
-  // The two are not in the same order.
+  // The two lists have different orders.
   EXPECT_FALSE(std::is_sorted(sweep.rows.begin(), sweep.rows.end(),
                               [](const auto& a, const auto& b) { return number(a, "a.x") < number(b, "a.x"); }));
 }

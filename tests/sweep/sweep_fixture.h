@@ -1,4 +1,4 @@
-/// What the tests of sweeps share: a folder, small sweeps, and programs that misbehave.
+/// Helpers of the tests of sweeps: a folder, small sweeps, and programs that misbehave.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -26,7 +26,7 @@ class Working : public SweepTest {
     return work(sweep, options);
   }
 
-  /// A worker in a process of its own.
+  /// Starts a worker in a child process.
   pid_t startWorker(const std::string& program, const std::string& sweep) {
     const pid_t child = fork();
     if (child == 0) {
@@ -57,7 +57,7 @@ TEST_F(Working, RunsEveryRowOnceAndKeepsItsOutput) {
 
 TEST_F(Working, RepeatsACrashOnceAndThenSaysSo) {
   const std::string sweep = sweepOf(3);
-  // Row 0 crashes the first time, row 1 always.
+  // Row 0 crashes on its first try, row 1 always.
   const std::string program = script("echo $1 >>" + path("runs") + "\n[ $1 = 1 ] && kill -SEGV $$\n[ $1 = 0 ] && [ ! -e " + path("once") +
                                      " ] && touch " + path("once") + " && kill -SEGV $$\n" + good_end);
   const WorkSummary summary = workWith(program, sweep);
@@ -156,7 +156,7 @@ TEST_F(Working, StopsBeforeTheTimeLimitAndGivesTheRowBack) {
 
 TEST_F(Working, TakesOverFromAWorkerThatIsKilledInTheMiddleOfARow) {
   const std::string sweep = sweepOf(6);
-  // Row 2 waits the first time, until its worker is dead.
+  // On its first try row 2 waits until its worker is dead.
   const std::string program =
       script("[ $1 = 2 ] && [ ! -e " + path("waiting") + " ] && echo $$ >" + path("waiting") + " && exec sleep 100\n" + good_end);
   const pid_t first = startWorker(program, sweep);
@@ -172,7 +172,7 @@ TEST_F(Working, TakesOverFromAWorkerThatIsKilledInTheMiddleOfARow) {
   EXPECT_EQ(status, 0);
   EXPECT_TRUE(collect(sweep).complete());
   EXPECT_EQ(readResult(sweep, 2).attempt_count, 2);
-  // The run went with its worker.
+  // The run ended together with its worker.
   std::string pid;
   std::istringstream(contentOf(path("waiting"))) >> pid;
   ASSERT_FALSE(pid.empty());

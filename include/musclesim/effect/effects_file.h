@@ -8,15 +8,16 @@
 
 namespace musclesim {
 
-/// Reads an effects file strictly: ids, names of parameters and values are checked against the catalogue.
-/// Throws BadFile with file, line and what is allowed; IoError if it cannot be read.
+/// Reads an effects file and checks ids, parameter names and values against the catalogue. Throws BadFile with the file, the line and what
+/// is allowed, or IoError if the file cannot be read.
 std::vector<ActiveEffect> readEffects(const std::string& file);
-/// The same from text in memory; `file` is used in messages only.
+/// Like readEffects, for text in memory; `file` appears only in messages.
 std::vector<ActiveEffect> parseEffects(const std::string& text, const std::string& file);
 
-/// The text of an effects file; reading it gives the same bits. Throws BadParameter for effects that reading would refuse.
+/// The text of an effects file; reading it back gives the same values to the bit. Throws BadParameter for effects that readEffects would
+/// refuse.
 std::string effectsText(const std::vector<ActiveEffect>& effects);
-/// Writes the file, to a temporary name first. Throws as effectsText; IoError.
+/// Writes an effects file, first under a temporary name. Throws like effectsText, or IoError.
 void writeEffects(const std::vector<ActiveEffect>& effects, const std::string& file);
 
 }  // namespace musclesim

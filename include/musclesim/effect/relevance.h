@@ -1,4 +1,4 @@
-/// Which parameters of an effect play a role on a component.
+/// Finds the parameters of an effect that matter on a component.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace musclesim {
 
-/// Indices into info.parameters of those that change anything on a component. Effects on components of two kinds, angles and lengths, have
-/// parameters for both (contact, sensor_backlash); all other parameters always count. What a fit on that component may leave out is not
-/// in the list.
+/// Indices in info.parameters of the parameters that have an influence on `component`. Effects that act on angles and on lengths have
+/// parameters for each (contact, sensor_backlash); all other parameters always count. A fit on that component may leave out parameters that
+/// are not listed.
 std::vector<std::size_t> relevantParameters(const EffectInfo& info, const std::string& component);
 
 }  // namespace musclesim

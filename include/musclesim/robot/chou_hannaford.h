@@ -13,16 +13,16 @@ struct ChouHannafordConstants {
   double braid_N = 63.531;          ///< A = 3 P l_0^2 / (4 pi n^2), P full-scale pressure, n turns of a strand
   double bore_N = -5.939;           ///< B = P b^2 / (4 pi n^2), b length of a strand
   double elastic_N = 0;             ///< C: elastic force per relative stretch
-  double threshold_N = 4.913;       ///< D: force lost before the hose follows the braid
+  double threshold_N = 4.913;       ///< D: force lost before the hose presses on the braid
   double stretch_N = 49.392;        ///< E: force of the stretched hose at rest length
-  double stretch_exponent = 5.934;  ///< beta: how fast it fades with contraction
+  double stretch_exponent = 5.934;  ///< beta: rate at which the stretch force decays with contraction
 };
 
-/// The virtual work of a braid of inextensible strands, and three corrections:
+/// The force of a braid of inextensible strands, from virtual work, with three corrections:
 ///     F(p, l) = max(0, p (A s^2 - B) + C (s - 1) - D + E exp(beta (s - 1))),    s = l / l_0
-/// p pressure (fraction of full scale), l length, l_0 rest length. Beyond l_0 the exponential goes on as its tangent, 1 + beta (s - 1).
-/// A slack muscle does not push. Source: Chou and Hannaford 1996 for A and B (Eq. 10: F = P b^2 (3 cos^2 - 1) / (4 pi n^2)); the
-/// corrections are the elastic, threshold and stretch forces that measured maps show, see docs/laboratory.md.
+/// p pressure (fraction of full scale), l length, l_0 rest length. Beyond l_0 the exponential continues as its tangent, 1 + beta (s - 1). A
+/// slack muscle does not push. Source: Chou and Hannaford 1996 for A and B (Eq. 10: F = P b^2 (3 cos^2 - 1) / (4 pi n^2)); the corrections
+/// are the elastic, threshold and stretch forces seen in measured maps, see docs/laboratory.md.
 class ChouHannafordForceLaw final : public ForceLaw {
  public:
   /// Throws BadParameter unless the rest length is positive, all constants are finite and beta is not negative.

@@ -10,20 +10,21 @@
 
 namespace musclesim {
 
-/// Where a joint's two bodies were when it was made, [0] seen from the first and [1] from the second (the environment: the world's frame).
+/// Poses of a joint's two bodies when it was made: [0] as seen from the first body, [1] from the second (for the environment: in the world
+/// frame).
 struct JointReference {
-  Vector anchor[2];          ///< balls and hinges: from the centre of mass, in the body's frame, mm
+  Vector anchor[2];          ///< ball joints and hinges: anchor from the centre of mass, in the body's frame, mm
   Vector axis[2];            ///< sliders and hinges: unit vector in the body's frame
-  Vector offset;             ///< sliders and fixed joints: first body seen from the second, in the second's frame, mm
-  Eigen::Vector4d rotation;  ///< orientation (w, x, y, z) of the second body seen from the first
+  Vector offset;             ///< sliders and fixed joints: position of the first body relative to the second, in the second's frame, mm
+  Eigen::Vector4d rotation;  ///< orientation (w, x, y, z) of the second body relative to the first
 };
 
-/// A joint with what is needed to report on it: a name, its angle and how far it is torn.
+/// A joint of ODE with its name, its angle and its constraint error.
 class Joint {
  public:
   enum class Kind { ball, hinge, hinge2, universal, slider, fixed };
 
-  /// Takes a joint that is attached and has its anchor and axes set; the present pose is the reference for gapMm().
+  /// Wraps a joint that is already attached and has its anchor and axes. The present pose becomes the reference for gapMm().
   Joint(Kind kind, dJointID id, std::string name);
 
   Kind kind() const { return kind_; }
@@ -31,17 +32,18 @@ class Joint {
   const std::string& name() const { return name_; }
   void setName(const std::string& name) { name_ = name; }
 
-  /// Angle about axis 0 or 1 in degrees, 0 in the pose as built, right-handed about the axis for a positive turn of the first body
-  /// against the second. Throws BadParameter for joints without that axis.
+  /// Angle about axis 0 or 1 in degrees, 0 in the pose as built, positive if the first body turns right-handed about the axis relative to
+  /// the second. Throws BadParameter for joints without that axis.
   double angleDeg(int axis = 0) const;
-  /// Least and greatest angle about axis 0 or 1 that stops of the joint allow, in degrees; infinite where it has none, and about the second
-  /// axis of a two-axis hinge, whose stops are not the joint's own. Throws as angleDeg.
+  /// Least and greatest angle about axis 0 or 1 that the joint's stops allow, in degrees. They are infinite if there are no stops, and for
+  /// the second axis of a two-axis hinge, whose stops belong to another joint. Throws like angleDeg.
   std::pair<double, double> stopsDeg(int axis = 0) const;
-  /// Distance in mm by which the joint is torn: between the anchor on one body and on the other; for sliders across the axis.
+  /// Constraint error in mm: the distance between the anchor on one body and the anchor on the other; for sliders the part perpendicular to
+  /// the axis.
   double gapMm() const;
-  /// Makes the present pose the reference, after a body's centre of mass has been moved.
+  /// Makes the present pose the reference. Call it after a body's centre of mass has moved.
   void takeReference();
-  /// The pose of the two bodies against each other at construction; for joints of the kinds ball, hinge, slider and fixed.
+  /// Relative pose of the two bodies at construction; for joints of kind ball, hinge, slider and fixed.
   const JointReference& reference() const { return reference_pose_; }
 
  private:
@@ -51,7 +53,8 @@ class Joint {
   dJointID id_;
   std::string name_;
   JointReference reference_pose_;
-  Vector reference_;  ///< sliders and fixed joints: second body (or environment) seen from the first, in its frame, mm
+  Vector reference_;  ///< sliders and fixed joints: position of the second body (or environment) relative to the first, in the first's
+                      ///< frame, mm
 };
 
 }  // namespace musclesim

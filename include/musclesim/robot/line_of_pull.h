@@ -1,4 +1,4 @@
-/// The straight path of a massless muscle, through via points if it has any.
+/// The path of a massless muscle: straight lines from its start over its via points to its end.
 #pragma once
 
 #include <ode/ode.h>
@@ -14,7 +14,7 @@ class Primitive;
 struct MuscleSettings;
 struct PhysicsSettings;
 
-/// A taut thread from a start over via points to an end; every point is fixed to a body or to the environment.
+/// A taut thread from a start over via points to an end. Every point is fixed to a body or to the environment.
 ///
 ///     l = sum |x_i+1 - x_i|,   force on point i: f (d_i - d_i-1),   d_i = (x_i+1 - x_i) / |x_i+1 - x_i|
 /// x points in mm, d directions, f the force of the thread. The forces on all points sum to zero.
@@ -29,43 +29,44 @@ class LineOfPull {
   void addViaPoint(Primitive* primitive, const Vector& point_mm);
 
   double lengthMm() const;
-  /// Start, via points, end in the world's frame.
+  /// Start, via points and end in the world frame.
   std::vector<Vector> pointsMm() const;
 
-  /// Adds the forces of the thread to the bodies, which have not moved since lengthMm() was asked for. It pulls with tension and what
-  /// resists beside it, in N:
+  /// Adds the forces of the thread to the bodies, which must not have moved since the last lengthMm(). The thread's force in N is the
+  /// tension plus friction and a stop:
   ///     F + F_f tanh(v / v_0) + k max(0, l - l_max),   dry friction; F_f v / v_1 in place of the second term, viscous friction
-  /// v = dl/dt, F_f a slider's friction (in a chain all sliders are in series and carry the same force), v_0 = 100 mm/s, v_1 the speed at
-  /// which both are equal, k = 10 N/mm. A thread with a loose end carries nothing.
+  /// v = dl/dt, F_f the friction of a slider (in a chain all sliders are in series and carry the same force), v_0 = 100 mm/s, v_1 the speed
+  /// at which dry and viscous friction are equal, k = 10 N/mm. A thread with a loose end carries no force.
   void pull(double tension_N, double maximum_length_mm, const MuscleSettings& settings, const PhysicsSettings& physics) const;
 
-  /// What a force of 1 does to a body: dl/dx of all points on it, as force and torque about its centre of mass in the world's frame.
+  /// Effect of a unit force on a body: dl/dx summed over all points on it, as force and torque about its centre of mass in the world frame.
   struct Push {
     dBodyID body;
     Vector force, torque;
   };
-  /// One per point that is fixed to a body.
+  /// One entry per point that is fixed to a body.
   std::vector<Push> pushes() const;
-  /// d(force)/dl at the longest length in N/mm, the stop's spring included, and d(force)/d(speed) at rest in N s/mm of true time.
+  /// stiffnessNPerMm: d(force)/dl at the longest length in N/mm, including the stop's spring. dampingNsPerMm: d(force)/d(speed) at rest, in
+  /// N s/mm of true time.
   static double stiffnessNPerMm(double of_tension_N_per_mm);
   static double dampingNsPerMm(const MuscleSettings& settings);
 
  private:
   struct Point {
     dBodyID body = nullptr;  ///< null: the environment
-    Vector place;            ///< in the body's frame, from its centre of mass, or in the world, mm
+    Vector place;            ///< position in the body's frame, from its centre of mass, or in the world frame, mm
     bool connected = false;
   };
-  /// A point in the world's frame.
+  /// A point in the world frame.
   struct Located {
     Vector arm;  ///< from its body's centre of mass, mm
     Vector position;
     Vector gradient;  ///< d l / d x
   };
   static Point pointOn(Primitive* primitive, const Vector& point_mm);
-  /// Works out what follows from the bodies' present poses; what is below uses it.
+  /// Updates located_ and length_mm_ from the bodies' present poses; speed() and pull() use them.
   void locate() const;
-  /// dl/dt in world units, positive when it gets longer.
+  /// dl/dt in world units; positive while the thread gets longer.
   double speed() const;
   double totalForceN(double tension_N, double maximum_length_mm, const MuscleSettings& settings, const PhysicsSettings& physics) const;
 

@@ -5,7 +5,7 @@
 
 namespace musclesim {
 
-/// One link from start to end; keeps the minimum length it is given. Its slider stops where the two beads touch, below that length.
+/// One link from start to end. It keeps the given minimum length; its slider stops only below that length, where the two beads touch.
 class LinearActuator : public Actuator {
  public:
   /// Points in mm, world frame; lengths in mm. Throws like Muscle.

@@ -8,8 +8,8 @@ namespace musclesim {
 /// Point on the cubic Bezier curve with the four control points at t in 0..1, by de Casteljau's construction.
 Vector bezierPoint(const Vector& start, const Vector& start_control, const Vector& end_control, const Vector& end, double t);
 
-/// Braun 2007, Section 3.1. The number of links is round(minimum_length / 2 bead radii), at least 2; the shortest length becomes that
-/// number of beads' diameters. Links run between the curve's points at t = i / number of links.
+/// The number of links is round(minimum_length / (2 bead radii)), at least 2. The minimum length becomes the number of links times a bead's
+/// diameter. Link i runs between the curve's points at t = i / n and (i + 1) / n, n the number of links. Source: Braun 2007, Section 3.1.
 class Muscle : public Actuator {
  public:
   /// Points in mm, world frame; lengths in mm. Throws BadParameter if the curve's chain is shorter than `minimum_length` or longer than

@@ -1,4 +1,4 @@
-/// The load frame of the paper's experiment: one hanging muscle that carries a load.
+/// The load frame of the paper's experiment: one hanging muscle carries a load.
 #pragma once
 
 #include "musclesim/robot/robot.h"
@@ -10,7 +10,7 @@ namespace musclesim {
 class Rig : public Robot {
  public:
   explicit Rig(World& world);
-  /// Frictionless equilibrium F(p, l) = (load + chain/2) g with l between the stops; with all effects.
+  /// Places the load at the frictionless equilibrium F(p, l) = (load + chain/2) g with l between the stops, including all effects.
   void settle() override;
   std::string initialState() const override { return "settled"; }
 

@@ -1,12 +1,12 @@
-/// A test bench: one muscle pulls a carriage against a spring and a constant load.
+/// A spring test stand: one muscle pulls a carriage against a spring and a constant load.
 #pragma once
 
 #include "musclesim/robot/robot.h"
 
 namespace musclesim {
 
-/// The muscle lies along +x from the origin to a carriage on a frictionless slider; at its other side the carriage is pulled with
-///     R = max(0, load_N + spring_N_per_mm (reference_length_mm - l)),   l length of the muscle.
+/// The muscle lies along +x from the origin to a carriage on a frictionless slider; on the other side the carriage is pulled with the force
+///     R = max(0, load_N + spring_N_per_mm (reference_length_mm - l)),   l the length of the muscle.
 /// The force law's rest length is rest_length_mm.
 /// Parameters: spring_bench.load_N 20, spring_bench.spring_N_per_mm 5, spring_bench.reference_length_mm 250,
 /// spring_bench.rest_length_mm 250, spring_bench.minimum_length_mm 150, spring_bench.maximum_length_mm 300,
@@ -14,7 +14,7 @@ namespace musclesim {
 class SpringBench : public Robot {
  public:
   explicit SpringBench(World& world);
-  /// Frictionless equilibrium F(p, l) = R(l) between the muscle's stops; with all effects.
+  /// Places the carriage at the frictionless equilibrium F(p, l) = R(l) between the muscle's stops, including all effects.
   void settle() override;
   std::string initialState() const override { return "settled"; }
 

@@ -5,9 +5,9 @@
 
 namespace musclesim {
 
-/// Calls work(0) .. work(count - 1), each once, on so many threads (0: one per processor). Every call builds and runs simulations of its
-/// own and writes to places of its own; simulations share nothing, so each gets the bits that it gets alone, whatever the number of
-/// threads. If calls throw, the others still run, and then the exception of the lowest number is thrown.
+/// Calls work(0) .. work(count - 1) once each on `thread_count` threads (0: one per processor). Every call must build and run its own
+/// simulations and write to its own memory. Simulations share nothing, so results do not depend on the number of threads, to the bit. If
+/// calls throw, the other calls still run, and then the exception of the call with the lowest number is rethrown.
 void runEnsemble(int count, int thread_count, const std::function<void(int)>& work);
 
 }  // namespace musclesim

@@ -1,4 +1,4 @@
-/// Plays a recording's commands through the model and compares what the model measures with what was recorded.
+/// Replays a recording's commands through the model and compares the simulated readings with the recorded ones.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@
 
 namespace musclesim {
 
-/// What replaces the sidecar's word where it is given.
+/// Options of a replay. Where one is given, it replaces the sidecar's entry.
 struct ReplayOptions {
   std::optional<std::string> robot, initial_state;
   std::optional<PhysicsKind> physics;
@@ -20,15 +20,15 @@ struct ReplayOptions {
   int substeps = 0;
   bool plane = false;
   std::optional<std::uint64_t> seed;
-  Parameters parameters;              ///< wins over the sidecar's robot_parameters
-  std::vector<ActiveEffect> effects;  ///< besides the sidecar's active_effects; held_effect as replayRecording says
-  /// Called before the first row with the simulation; what it returns is shown the readings of every row.
+  Parameters parameters;              ///< replace entries of the sidecar's robot_parameters
+  std::vector<ActiveEffect> effects;  ///< added to the sidecar's active_effects; for held_effect see replayRecording
+  /// Called with the simulation before the first row. The function it returns is called with the readings of every row.
   using Watcher = std::function<void(const State&)>;
   std::function<Watcher(Simulation&)> watch;
-  std::function<bool()> interrupted;  ///< true ends the replay soon
+  std::function<bool()> interrupted;  ///< polled during the replay; returning true ends it soon
 };
 
-/// Difference of one signal, simulated minus recorded, over the samples where both are numbers.
+/// Error of one signal, simulated minus recorded, over the samples where both are numbers.
 struct SignalError {
   std::string name;
   double rmse = 0, largest = 0;
@@ -36,41 +36,41 @@ struct SignalError {
 };
 
 struct ReplayResult {
-  Recording simulated;              ///< at the recording's times; shorter, and not complete, if it diverged or was interrupted
-  std::vector<SignalError> errors;  ///< of every signal that both have, commands excepted
+  Recording simulated;              ///< at the recording's times; shorter and marked incomplete if the replay diverged or was interrupted
+  std::vector<SignalError> errors;  ///< one per signal that both recordings have, except commands
   JointGap worst_gap;
   int substeps = 1;
   std::string stepper;
-  std::optional<std::string> divergence;  ///< the message, if it diverged
+  std::optional<std::string> divergence;  ///< the error message, if the replay diverged
   bool interrupted = false;
 };
 
-/// What a sidecar states of a model, so that simulationOptionsFor builds it again: robot, physics, initial state, parameters that differ
-/// from their defaults (the robot's own: all), ground plane, effects, noise, seed and step; as further members the stepper, its internal
-/// steps and all named parameters.
+/// Describes a model for a sidecar, so that simulationOptionsFor can build it again: robot, physics, initial state, all parameters of the
+/// robot, other parameters that differ from their defaults, ground plane, effects, noise, seed and step. Further members hold the stepper,
+/// its internal steps and all named parameters.
 RecordingInfo describeModel(Simulation& simulation, const std::string& initial_state);
 
-/// Signals of a recording that a robot with these does not report: nothing is compared with them.
+/// Signals of a recording that are not among the robot's signals `of_robot`; a replay does not compare them.
 std::vector<std::string> unknownSignals(const Recording& recording, const std::vector<std::string>& of_robot);
 
-/// Another robot in place of the recording's, if one is given: parameters of the recording's own robot are left out.
+/// Replaces the recording's robot by `robot`, if given, and removes the parameters of the recording's robot.
 void replaceRobot(RecordingInfo& info, const std::optional<std::string>& robot);
 
-/// Options for a simulation of the recording's plant: physics, step, parameters of the robot. Throws BadFile if the recording names a robot
-/// that is not registered and the options none.
+/// Options for a simulation of the recording's plant: physics, step, parameters of the robot. Throws BadFile if the recording's robot is
+/// not registered and `options` names no robot.
 SimulationOptions simulationOptionsFor(const RecordingInfo& info, const std::string& source, const ReplayOptions& options = {});
 
-/// Which samples were lost is chance that no model predicts, but the recording shows it.
+/// The effect that loses samples. A model cannot predict which samples are lost, but the recording shows it.
 inline constexpr const char* held_effect = "sensor_dropout";
 
-/// Where a measured value is the one of the row before, so becomes the predicted one. predicted, measured: [rows]
+/// Repeats the previous predicted value in every row in which the measured value repeats the previous one. predicted, measured: [rows]
 void holdWhereMeasured(std::vector<double>& predicted, const std::vector<double>& measured);
 
-/// Simulates the plant of a recording under its commands, each held until the next row, with its active effects and those of the options.
-/// The simulated recording names both as its active effects. Samples that a held_effect of the options loses in a signal that the recording
-/// has are those that the recording lost; otherwise they are drawn. Each call builds a simulation of its own, so that any number can run in
-/// as many threads. Throws BadFile if the robot is not registered or has another number of muscles than the recording has commands,
-/// BadParameter for parameters unknown to the model.
+/// Simulates the plant of a recording under its commands, each held until the next row, with the recording's active effects and those of
+/// the options; the simulated recording names both. If the options contain held_effect, it loses the samples that the recording lost; in
+/// signals that the recording does not have, lost samples are drawn at random. Each call builds its own simulation, so calls may run in
+/// parallel threads. Throws BadFile if the robot is not registered or its number of muscles differs from the recording's number of
+/// commands, BadParameter for parameters that the model does not know.
 ReplayResult replayRecording(const Recording& recording, const ReplayOptions& options = {});
 
 /// Error of every signal of `simulated` that `measured` also has, row by row; commands are not compared.
