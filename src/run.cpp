@@ -10,6 +10,7 @@
 #include "musclesim/base/color.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/units.h"
+#include "musclesim/controller/controller_registry.h"
 #include "musclesim/log/figure.h"
 #include "musclesim/log/recorder.h"
 #include "output_folder.h"
@@ -119,7 +120,7 @@ class Run {
  private:
   /// A window puts the user's hands before the controller.
   void addController() {
-    auto controller = Controller::make(options_.controller, controllerRequest(simulation_, options_));
+    auto controller = makeController(options_.controller, controllerRequest(simulation_, options_));
     if (hasWindow(options_)) {
       auto hands = std::make_unique<ManualController>(std::move(controller), robot().actuatorCount());
       hands_ = hands.get();
@@ -329,7 +330,7 @@ void addOptions(CLI::App& command, RunOptions& options) {
   const std::string group = "Run";
   command.add_flag("--simple", options.simple, "Batch run without display or interaction; without it a window opens")->group(group);
   command.add_flag("--verbose", options.verbose, "List all primitives and actuators on standard output")->group(group);
-  command.add_option("--controller", options.controller, "Controller: " + fmt::format("{}", fmt::join(Controller::names(), ", ")))
+  command.add_option("--controller", options.controller, "Controller: " + fmt::format("{}", fmt::join(registeredControllers(), ", ")))
       ->group(group)
       ->capture_default_str();
   command.add_option("--task", options.task, "height: bring the hand to a height; reach: to a point")->group(group)->capture_default_str();

@@ -14,6 +14,7 @@
 #include "musclesim/controller/asm.h"
 #include "musclesim/controller/attractors.h"
 #include "musclesim/controller/controller.h"
+#include "musclesim/controller/controller_registry.h"
 #include "musclesim/controller/hold.h"
 #include "musclesim/controller/manual.h"
 #include "musclesim/controller/random_pressures.h"
