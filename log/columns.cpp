@@ -216,12 +216,4 @@ double fullScale(const Column& column, const RecordingInfo& info) {
                                  column.muscle, column.unit, column.unit, member));
 }
 
-std::string signalUnit(const std::string& signal_name) {
-  try {
-    return parseColumnName(signal_name).unit;
-  } catch (const BadParameter&) {
-    return "";
-  }
-}
-
 }  // namespace musclesim

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "musclesim/log/recording.h"
+#include "musclesim/log/recording_info.h"
 
 namespace musclesim {
 

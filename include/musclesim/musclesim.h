@@ -33,6 +33,8 @@
 #include "musclesim/log/import.h"
 #include "musclesim/log/recorder.h"
 #include "musclesim/log/recording.h"
+#include "musclesim/log/recording_info.h"
+#include "musclesim/log/signal_unit.h"
 #include "musclesim/robot/actuator.h"
 #include "musclesim/robot/chou_hannaford.h"
 #include "musclesim/robot/elbow.h"

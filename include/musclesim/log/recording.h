@@ -3,14 +3,11 @@
 /// Two files with one stem: NAME.csv (one row per sample) and NAME.json (the sidecar). Format `musclesim-recording-1`.
 #pragma once
 
-#include <cstdint>
-#include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "musclesim/base/parameters.h"
-#include "musclesim/log/active_effect.h"
+#include "musclesim/log/recording_info.h"
+#include "musclesim/log/signal_unit.h"
 
 namespace musclesim {
 
@@ -18,23 +15,6 @@ namespace musclesim {
 struct Signal {
   std::string name;  ///< canonical column name, for example "length_0_mm", "command_3", "angle_elbow_deg", "hand_y_mm", "activity"
   std::vector<double> values;
-};
-
-/// The sidecar. Only `format` and `robot` are required in the file.
-struct RecordingInfo {
-  std::string robot;
-  std::optional<std::string> physics;                        ///< "si", "original" or "scaled"
-  std::optional<std::string> initial_state;                  ///< "settled" or "built"
-  std::map<std::string, Parameter::Value> robot_parameters;  ///< nested objects are flattened with a dot
-  std::string description, trial, repeat_of, program;
-  std::optional<double> pressure_full_scale_kPa, command_full_scale_V;
-  std::map<std::string, double> noise_std;
-  std::vector<ActiveEffect> active_effects;  ///< what the simulator must include when it replays the recording: model, not gap
-  std::optional<std::uint64_t> seed;
-  std::optional<double> step_s;
-  std::optional<bool> complete;  ///< false while a run is being recorded and after one that stopped early; absent: not known
-  /// Further members of the sidecar as JSON text, one object; kept when the recording is written again.
-  std::string extra_json = "{}";
 };
 
 /// A recording is a value; simulated and measured runs are the same type.
@@ -67,12 +47,6 @@ Recording parseRecording(const std::string& csv_text, const std::string& csv_nam
 /// Writes both files, each to a temporary name first, then renamed; reading them again gives the same bits.
 /// Throws IoError; BadParameter, before anything is written, for a recording that readRecording would refuse.
 void writeRecording(const Recording& recording, const std::string& csv_file);
-
-/// The sidecar as indented JSON text. Throws BadParameter if its contents would be refused when read.
-std::string sidecarText(const RecordingInfo& info);
-
-/// The canonical unit of a signal: "s", "N", "mm", "deg"; empty for fractions, pure numbers and unknown names.
-std::string signalUnit(const std::string& signal_name);
 
 /// The sidecar's path for a recording's CSV path ("a/b.csv" -> "a/b.json").
 std::string sidecarPath(const std::string& csv_file);
