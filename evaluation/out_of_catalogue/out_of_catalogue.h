@@ -1,18 +1,11 @@
 /// Laws that the catalogue does not contain. They test the diagnosis on data that its own hypotheses cannot have made.
 #pragma once
 
-#include <string>
 #include <vector>
 
-#include "musclesim/effect/effect_info.h"
+#include "law.h"
 
 namespace musclesim {
-
-/// An effect whose id begins with "foreign.".
-struct OutOfCatalogueLaw {
-  EffectInfo info;
-  std::string stands_for;  ///< the catalogue's id of the same cause; empty: no effect of the catalogue has this cause
-};
 
 /// For every effect of the library a physically different law of the same cause, then laws whose cause the catalogue does not have.
 const std::vector<OutOfCatalogueLaw>& outOfCatalogueLaws();
