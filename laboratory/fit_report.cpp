@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "law_families.h"
 #include "musclesim/base/error.h"
 
 namespace musclesim {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "intervals.h"
+#include "law_families.h"
 #include "least_squares.h"
 #include "musclesim/base/error.h"
 #include "point_checks.h"

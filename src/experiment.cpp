@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "interrupt.h"
 #include "laboratory/frame_report.h"
+#include "laboratory/point_reader.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
 #include "output_folder.h"

@@ -8,6 +8,8 @@
 #include "interrupt.h"
 #include "laboratory/fit_figure.h"
 #include "laboratory/fit_report.h"
+#include "laboratory/law_families.h"
+#include "laboratory/point_reader.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
 #include "output_folder.h"

@@ -9,6 +9,7 @@
 #include "laboratory/cross_validation.h"
 #include "laboratory/fit_report.h"
 #include "laboratory/intervals.h"
+#include "laboratory/law_families.h"
 #include "laboratory/planted.h"
 #include "musclesim/base/error.h"
 #include "musclesim/robot/chou_hannaford.h"

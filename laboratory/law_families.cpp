@@ -1,4 +1,4 @@
-#include "law_model.h"
+#include "law_families.h"
 
 #include <fmt/format.h>
 

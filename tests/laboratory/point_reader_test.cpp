@@ -1,4 +1,4 @@
-#include "laboratory/static_points.h"
+#include "laboratory/point_reader.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
