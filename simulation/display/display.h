@@ -7,21 +7,13 @@
 #include <string>
 #include <thread>
 
+#include "display_options.h"
 #include "musclesim/controller/manual.h"
-#include "pace.h"
-#include "simulation/scene/camera.h"
 #include "simulation/scene/snapshot.h"
 
 namespace musclesim {
 
-struct DisplayOptions {
-  std::string title = "musclesim";
-  int width_px = 1024, height_px = 768;
-  double speed_ratio = 1;  ///< simulated time over wall time
-  Camera camera;
-  std::string picture_folder;  ///< where the keys s and v put pictures and videos
-  std::string log_file;        ///< one line of JSON per key or click with the state after it; empty: none
-};
+struct DisplayShared;  // shared.h
 
 /// A window with a thread of its own, so that the picture keeps its rate whatever a step costs. At most one in a process at a time. After
 /// a loss() that thread never ends and holds the display: a program must leave by _Exit then.
@@ -48,10 +40,8 @@ class Display {
   /// Pictures drawn so far over the time since the window was opened.
   double framesPerS() const;
 
-  struct Shared;
-
  private:
-  std::unique_ptr<Shared> shared_;
+  std::unique_ptr<DisplayShared> shared_;
   std::jthread thread_;
 };
 

@@ -9,12 +9,15 @@
 #include <optional>
 #include <string>
 
-#include "display.h"
+#include "display_options.h"
+#include "musclesim/controller/manual.h"
+#include "pace.h"
+#include "simulation/scene/snapshot.h"
 
 namespace musclesim {
 
-struct Display::Shared {
-  Shared(DisplayOptions given, ManualController& controller, Snapshot first)
+struct DisplayShared {
+  DisplayShared(DisplayOptions given, ManualController& controller, Snapshot first)
       : options(std::move(given)),
         hands(controller),
         pace(options.speed_ratio),

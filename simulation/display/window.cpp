@@ -28,7 +28,7 @@ constexpr int wheel_up = 3, wheel_down = 4, drag_threshold_px = 3;
 constexpr float wheel_zoom = 1.1F;
 
 /// Xlib's handlers get no pointer of ours.
-Display::Shared* shared_of_handlers = nullptr;
+DisplayShared* shared_of_handlers = nullptr;
 
 /// Where going on is not possible, the window's thread stops here and the run's thread writes the files.
 [[noreturn]] void stopHere(const std::string& reason) {
@@ -105,7 +105,7 @@ std::string nameOfKey(int code) {
 
 }  // namespace
 
-Window::Window(Display::Shared& shared)
+Window::Window(DisplayShared& shared)
     : shared_(shared),
       console_(shared.hands, shared.pace, shared.options.camera),
       width_(shared.options.width_px),

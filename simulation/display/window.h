@@ -19,7 +19,7 @@ namespace musclesim {
 class Window {
  public:
   /// Throws SceneError where there is no display, or OpenGL is too old.
-  explicit Window(Display::Shared& shared);
+  explicit Window(DisplayShared& shared);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
@@ -46,7 +46,7 @@ class Window {
   std::string fileFor(const char* extension) const;
   void log(const std::string& event);
 
-  Display::Shared& shared_;
+  DisplayShared& shared_;
   Console console_;
   History history_;
   Gl gl_;
