@@ -185,10 +185,9 @@ void Parameters::requireAllKnown() const {
   for (const auto& given : overrides_) {
     if (find(given.name)) continue;
     const std::string nearest = nearestName(given.name, names);
-    refuse(
-        given,
-        fmt::format("there is no parameter \"{}\" in this run{} (musclesim --print-config lists all, with --robot those of another robot)",
-                    given.name, nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?"));
+    refuse(given,
+           fmt::format("there is no parameter \"{}\" in this run{} (musclesim --print-config lists all; add --robot for another robot)",
+                       given.name, nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?"));
   }
 }
 

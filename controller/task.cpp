@@ -29,13 +29,12 @@ BadParameter unknownTask(const std::string& task) {
 Vector reportedHand(const State& state) {
   if (!state.hand_mm)
     throw BadParameter(
-        "the task needs a robot that reports its hand; this robot reports none: take a controller without a task, for example --controller "
-        "hold or random");
+        "the task needs a robot that reports the position of its hand; this robot does not: use a controller without a task, for "
+        "example --controller hold or random");
   const Vector& hand = *state.hand_mm;
   // Written so that NaN fails too.
   if (!(hand.cwiseAbs().array() <= largest_hand_mm).all())
-    throw Diverged(state.time_s, "hand",
-                   fmt::format("position ({}, {}, {}) mm is out of every robot's reach", hand.x(), hand.y(), hand.z()));
+    throw Diverged(state.time_s, "hand", fmt::format("position ({}, {}, {}) mm is beyond any robot's reach", hand.x(), hand.y(), hand.z()));
   return hand;
 }
 

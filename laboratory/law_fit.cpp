@@ -146,8 +146,9 @@ class Judgement {
     for (const auto& constant : fit_.constants)
       if (!constant.low) names.push_back(constant.name);
     if (!names.empty())
-      fit_.warnings.push_back(fmt::format(
-          "the points cannot tell {} apart: many values of them together give the same forces; hold one of them", fmt::join(names, ", ")));
+      fit_.warnings.push_back(
+          fmt::format("the points do not determine {} separately: many combinations of their values give the same forces; fix one of them",
+                      fmt::join(names, ", ")));
   }
 
   void warnOfCorrelations() {
@@ -171,7 +172,7 @@ class Judgement {
       const double x = fit_.parameters(static_cast<Eigen::Index>(i));
       for (const double bound : {parameters[i].lowest, parameters[i].highest})
         if (std::abs(x - bound) <= 1e-6 * std::abs(bound))
-          fit_.warnings.push_back(fmt::format("{} rests at its bound {:g}: intervals do not hold", parameters[i].name, bound));
+          fit_.warnings.push_back(fmt::format("{} is at its bound {:g}: the intervals are not valid", parameters[i].name, bound));
     }
   }
 
@@ -255,8 +256,8 @@ void markOutliers(StaticPoints& points, const Specimen& specimen) {
     if (point.outlier) lines.push_back(fmt::format("{} ({:g} N, {:+.3g} N)", point.line, point.force_N, off_N));
   }
   if (!lines.empty())
-    points.notes.push_back(fmt::format("{} points are further than {:.3g} N from their neighbours and are left out; lines {}", lines.size(),
-                                       limit_N, fmt::join(lines, ", ")));
+    points.notes.push_back(fmt::format("{} points differ by more than {:.3g} N from their neighbours and are left out: lines {}",
+                                       lines.size(), limit_N, fmt::join(lines, ", ")));
 }
 
 }  // namespace musclesim

@@ -94,7 +94,7 @@ LeastSquaresResult minimise(const LeastSquaresProblem& problem, const std::vecto
     if (!isUsable(summary) || 2 * summary.final_cost >= best.sum_of_squares) continue;
     best = {x, 2 * summary.final_cost, summary.termination_type == ceres::CONVERGENCE};
   }
-  if (best.x.size() == 0) throw Error("least squares: none of the starts leads to a solution");
+  if (best.x.size() == 0) throw Error("least squares: no start leads to a solution");
   return best;
 }
 

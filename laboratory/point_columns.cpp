@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "musclesim/base/error.h"
-#include "musclesim/base/text.h"
 #include "musclesim/base/parameters.h"
+#include "musclesim/base/text.h"
 #include "musclesim/base/units.h"
 
 namespace musclesim {
@@ -132,16 +132,17 @@ PointColumn PointColumns::find(const std::string& quantity, const StaticPointsOp
       if (unit.quantity == quantity && reader_.header()[i].text == withUnit(quantity, unit.unit)) found.push_back(columnOf(i, unit));
   if (found.size() == 1) return found[0];
   if (found.size() > 1)
-    throw BadFile(
-        file_, reader_.headerLine(), 0,
-        fmt::format("columns {} and {} both hold the {}; --columns {}=NAME chooses one", found[0].name, found[1].name, quantity, quantity));
+    throw BadFile(file_, reader_.headerLine(), 0,
+                  fmt::format("columns {} and {} both hold the {}; choose one with --columns {}=NAME", found[0].name, found[1].name,
+                              quantity, quantity));
   for (const auto& cell : reader_.header())
     if (cell.text == quantity) reader_.refuse(cell, fmt::format("column {} has no unit; allowed: {}", quantity, allowedNames(quantity)));
   std::vector<std::string> names;
   for (const auto& cell : reader_.header()) names.emplace_back(cell.text);
-  throw BadFile(file_, reader_.headerLine(), 0,
-                fmt::format("no column holds the {}; allowed: {}; the file has {}; --columns {}=NAME maps another", quantity,
-                            allowedNames(quantity), fmt::join(names, ", "), quantity));
+  throw BadFile(
+      file_, reader_.headerLine(), 0,
+      fmt::format("no column holds the {}; allowed: {}; the file has {}; if one of these holds it, name it with --columns {}=NAME",
+                  quantity, allowedNames(quantity), fmt::join(names, ", "), quantity));
 }
 
 bool PointColumns::selects(const std::vector<CsvCell>& cells) const {

@@ -49,7 +49,7 @@ void scalePressures(StaticPoints& points, const PointColumns& columns, const Sta
   for (auto& point : points.points) point.pressure_ratio /= *points.full_scale_kPa;
   if (!options.full_scale_kPa)
     points.notes.push_back(
-        fmt::format("pressure 1 is the largest of the file, {:g} kPa; --full-scale-kPa sets another", *points.full_scale_kPa));
+        fmt::format("pressure 1 is the largest in the file, {:g} kPa; set another with --full-scale-kPa", *points.full_scale_kPa));
 }
 
 /// A sensor that cannot read below its floor gives the floor again and again.
@@ -68,9 +68,10 @@ void markCensored(StaticPoints& points, const StaticPointsOptions& options) {
   points.floor_N = *floor_N;
   for (auto& point : points.points) point.censored = point.force_N <= *floor_N;
   if (points.censoredCount() > 0)
-    points.notes.push_back(fmt::format("{} of {} points are at or below {:g} N and count as \"not above {:g} N\"{}", points.censoredCount(),
-                                       points.points.size(), *floor_N, *floor_N,
-                                       options.censored_below_N ? "" : " (the lowest force, repeated; --censored-below sets another)"));
+    points.notes.push_back(
+        fmt::format("{} of {} points are at or below {:g} N and count as \"not above {:g} N\"{}", points.censoredCount(),
+                    points.points.size(), *floor_N, *floor_N,
+                    options.censored_below_N ? "" : " (the lowest force occurs repeatedly; set another limit with --censored-below)"));
 }
 
 }  // namespace
@@ -85,7 +86,7 @@ StaticPoints parseStaticPoints(const std::string& text, const std::string& file,
   CsvReader reader(text, file);
   const PointColumns columns(reader, file, options);
   if (const auto& assumed = columns.assumed(); !assumed.empty())
-    result.notes.push_back(fmt::format("no unit is given; taken to be: {}", fmt::join(assumed, ", ")));
+    result.notes.push_back(fmt::format("no unit is given; assumed: {}", fmt::join(assumed, ", ")));
   if (const auto& ignored = columns.ignored(); !ignored.empty())
     result.notes.push_back(fmt::format("columns not used: {}", fmt::join(ignored, ", ")));
   result.points = readRows(reader, columns, result);

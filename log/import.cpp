@@ -76,8 +76,10 @@ class Import {
       else
         columns_.push_back(&column);
     if (time_ == nullptr && !mapping.settle_s)
-      throw BadFile(mapping.file, "columns: time_s is missing; where rows are settled steps, rows.settle_s says how long each was held");
-    if (time_ != nullptr && mapping.settle_s) throw BadFile(mapping.file, "either columns.time_s or rows.settle_s, not both");
+      throw BadFile(mapping.file,
+                    "columns: time_s is missing; if each row is the reading at the end of a held command, give rows.settle_s, the time "
+                    "each command was held");
+    if (time_ != nullptr && mapping.settle_s) throw BadFile(mapping.file, "columns.time_s and rows.settle_s cannot both be given");
     if (time_ != nullptr && (time_->from.empty() || !time_->table.empty()))
       throw BadFile(mapping.file, "columns.time_s: must come from a column of the first table");
   }
@@ -106,7 +108,7 @@ class Import {
     if (time_ != nullptr) names.push_back(time_->from);
     for (const ImportColumn* column : columns_)
       if (!column->from.empty() && column->table.empty()) names.push_back(column->from);
-    if (names.empty()) throw BadFile(mapping_.file, "columns: none comes from the table");
+    if (names.empty()) throw BadFile(mapping_.file, "columns: at least one must come from the table");
     const Table first(csv_file_, names);
     for (std::size_t row = 0; row < first.rowCount(); ++row)
       clock_.push_back(time_ != nullptr ? first[time_->from][row] * time_->factor + time_->offset : static_cast<double>(row));
@@ -158,8 +160,9 @@ class Import {
       addRow(number * *mapping_.settle_s, step, false);
       addRow((number + read_at) * *mapping_.settle_s, step, true);
     }
-    notes_.push_back(fmt::format("no clock: each of {} rows is taken for what was read {:g} s after its command began, {:g} s long",
-                                 clock_.size(), read_at * *mapping_.settle_s, *mapping_.settle_s));
+    notes_.push_back(
+        fmt::format("the table has no time: each of {} rows is taken as the reading {:g} s after its command began, {:g} s long",
+                    clock_.size(), read_at * *mapping_.settle_s, *mapping_.settle_s));
   }
 
   void evenRows() {
@@ -170,7 +173,7 @@ class Import {
       const double time_s = start_s + static_cast<double>(i) * *mapping_.step_s;
       addRow(time_s, time_s, true);
     }
-    notes_.push_back(fmt::format("rows every {:g} s, straight lines between the table's {} rows", *mapping_.step_s, clock_.size()));
+    notes_.push_back(fmt::format("rows every {:g} s, interpolated linearly between the table's {} rows", *mapping_.step_s, clock_.size()));
   }
 
   void ownRows() {
@@ -181,7 +184,7 @@ class Import {
       else if ((row - repeated_count) % static_cast<std::size_t>(mapping_.every) == 0)
         addRow(clock_[row], clock_[row], true);
     }
-    if (repeated_count > 0) notes_.push_back(fmt::format("{} rows have the time of the row before; they are left out", repeated_count));
+    if (repeated_count > 0) notes_.push_back(fmt::format("{} rows have the same time as the row before and are left out", repeated_count));
   }
 
   void cut() {

@@ -71,7 +71,7 @@ void TableReader::readHeader() {
     if (!isIgnored(cell.text)) addColumn(cell, i);
     if (isIgnored(cell.text)) ignored += (ignored.empty() ? "" : ", ") + std::string(cell.text);
   }
-  if (!ignored.empty()) recording_.notes.push_back("columns ignored as asked: " + ignored);
+  if (!ignored.empty()) recording_.notes.push_back("columns ignored on request: " + ignored);
   for (const std::string& name : options_.ignore_columns)
     if (std::ranges::none_of(csv_.header(), [&](const CsvCell& cell) { return cell.text == name; }))
       recording_.notes.push_back("there is no column " + name + " to ignore");
@@ -161,11 +161,11 @@ void TableReader::addNotes() {
   }
   for (const auto& [conversion, names] : converted) recording_.notes.push_back(conversion + names);
   for (const auto& [name, deviation] : recording_.info.noise_std)
-    if (!recording_.find(name)) recording_.notes.push_back("noise_std of " + name + ", which is no column of this recording");
+    if (!recording_.find(name)) recording_.notes.push_back("noise_std names " + name + ", which is not a column of this recording");
   noteSlowRows();
   for (const auto& signal : recording_.signals) {
     const bool is_empty = std::all_of(signal.values.begin(), signal.values.end(), [](double value) { return std::isnan(value); });
-    if (is_empty) recording_.notes.push_back(signal.name + " holds no value in any row");
+    if (is_empty) recording_.notes.push_back(signal.name + " has no value in any row");
     if (!signal.name.starts_with("pressure_")) continue;
     const auto odd = std::find_if(signal.values.begin(), signal.values.end(),
                                   [](double value) { return value < plausible_pressure_minimum || value > plausible_pressure_maximum; });
@@ -183,7 +183,7 @@ void TableReader::noteSlowRows() {
   std::adjacent_difference(time_s.begin(), time_s.end(), steps_s.begin());
   const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
   std::nth_element(steps_s.begin() + 1, middle, steps_s.end());
-  if (*middle > slow_s) recording_.notes.push_back(fmt::format("rows are {:g} s apart: is time_s in seconds?", *middle));
+  if (*middle > slow_s) recording_.notes.push_back(fmt::format("typical rows are {:g} s apart: is time_s in seconds?", *middle));
 }
 
 /// The text without a last line that lacks its line end, if the sidecar says that the writer did not finish.

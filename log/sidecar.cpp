@@ -202,7 +202,7 @@ void SidecarReader::keepFurtherMembers(RecordingInfo& info, std::vector<std::str
     names += (names.empty() ? "" : ", ") + inQuotes(member);
   }
   info.extra_json = further.dump();
-  if (!names.empty()) notes.push_back("further members of the sidecar, kept as they are: " + names);
+  if (!names.empty()) notes.push_back("unknown members of the sidecar, kept unchanged: " + names);
 }
 
 }  // namespace

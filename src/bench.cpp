@@ -145,8 +145,10 @@ int bench(const ModelOptions& model, const BenchArguments& arguments) {
 Action addBench(CLI::App& command, ModelOptions& model) {
   auto arguments = std::make_shared<BenchArguments>();
   command.add_option("--duration", arguments->duration_s, "Simulated time per run, in true s")->capture_default_str();
-  command.add_option("--time-limit", arguments->time_limit_s, "CPU time in s after which a run is cut short")->capture_default_str();
-  command.add_option("--repeats", arguments->repeat_count, "Runs of which the median counts")->capture_default_str();
+  command.add_option("--time-limit", arguments->time_limit_s, "A run that has used this much CPU time, in s, is cut short")
+      ->capture_default_str();
+  command.add_option("--repeats", arguments->repeat_count, "Number of runs per point; the report gives their median")
+      ->capture_default_str();
   command.add_option("--muscles", arguments->muscle_counts, "Numbers of muscles, separated by commas")
       ->delimiter(',')
       ->capture_default_str();

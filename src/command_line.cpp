@@ -26,12 +26,12 @@ void refuseEmptyValues(CLI::App& command) {
 CommandLine::CommandLine()
     : app_(
           "Simulator of robots driven by pneumatic artificial muscles.\n"
-          "Without a sub-command it is `run`: the RoboticArm finds its height under attractor selection.") {
+          "Without a sub-command it does `run`: attractor selection lifts the RoboticArm's hand to a height.") {
   app_.name("musclesim");
   app_.set_version_flag("--version", "musclesim " MUSCLESIM_VERSION);
   app_.footer(
       "Exit status: 0 done, 1 internal error, 2 usage, 3 bad input file, 4 simulation diverged,\n"
-      "5 input/output error, 6 incomplete sweep, 130/143 interrupted (files complete up to then).");
+      "5 input/output error, 6 incomplete sweep, 130/143 interrupted (the files hold everything up to then).");
   app_.require_subcommand(0, 1);
 
   run_ = addRun(app_, model_);
@@ -39,20 +39,19 @@ CommandLine::CommandLine()
     CLI::App* command = app_.add_subcommand(name, description);
     commands_.emplace_back(command, addTo(*command));
   };
-  add("replay", "Plays a recording's commands through the model and compares",
+  add("replay", "Simulates a recording's commands and compares the result with its measurements",
       [&](CLI::App& command) { return addReplay(command, model_); });
   add("import", "Turns a table of measurements into a recording", addImport);
-  add("effects", "Lists the effects that a clean model leaves out, or describes one", addEffects);
+  add("effects", "Lists the effects that can be added to the model, or describes one", addEffects);
   add("fit", "Fits force laws to measured static points", addFit);
-  add("experiment", "The paper's load-frame experiment in the simulator",
-      [&](CLI::App& command) { return addExperiment(command, model_); });
-  add("bench", "Measures r(n), CPU time over simulated time, for all steppers and muscle models",
+  add("experiment", "Simulates the paper's load-frame experiment", [&](CLI::App& command) { return addExperiment(command, model_); });
+  add("bench", "Measures CPU time over simulated time, r(n), for n muscles, all steppers and muscle models",
       [&](CLI::App& command) { return addBench(command, model_); });
-  add("diagnose", "Says where recordings differ from the model, why, and how far that can be closed",
+  add("diagnose", "Finds where recordings differ from the model, which effect explains it, and how much of the gap that closes",
       [&](CLI::App& command) { return addDiagnose(command, model_); });
   add("blind", "Checks the diagnosis on recordings whose cause is withheld", addBlind);
-  add("plan", "Writes down the runs of a parameter sweep", addPlan);
-  add("work", "Runs rows of a sweep that no other worker has taken, until none is left", addWork);
+  add("plan", "Prepares the runs of a parameter sweep", addPlan);
+  add("work", "Runs those rows of a sweep that no other worker has taken, until none is left", addWork);
   add("collect", "Puts the results of a sweep into one table", addCollect);
   refuseEmptyValues(app_);
   registerOutOfCatalogueLaws();  // recordings that a check of the diagnosis has made can be replayed

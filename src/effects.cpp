@@ -101,7 +101,7 @@ int effects(const EffectsArguments& arguments) {
 
 Action addEffects(CLI::App& command) {
   auto arguments = std::make_shared<EffectsArguments>();
-  command.add_option("id", arguments->id, "One effect, with its equation, parameters, units, ranges and source");
+  command.add_option("id", arguments->id, "Describe this effect: equation, parameters, units, ranges and source");
   command.add_flag("--json", arguments->json, "Print one JSON object");
   return [arguments] { return effects(*arguments); };
 }

@@ -42,7 +42,8 @@ std::optional<double> lengthMm(const std::string& option, const std::string& wri
 BraunLengths braunLengths(const FitArguments& arguments, const Specimen& specimen) {
   const bool given = arguments.minimum_length != FitArguments().minimum_length || arguments.maximum_length != FitArguments().maximum_length;
   if (given && arguments.law != "all" && arguments.law != "braun")
-    throw BadParameter("--law", arguments.law, "be braun or all where --minimum-length or --maximum-length is given: they are of Eq. 1");
+    throw BadParameter("--law", arguments.law,
+                       "be braun or all where --minimum-length or --maximum-length is given: only Eq. 1 has these lengths");
   BraunLengths lengths;
   lengths.minimum_mm = lengthMm("--minimum-length", arguments.minimum_length);
   lengths.maximum_mm =

@@ -51,7 +51,7 @@ bool hasWindow(const RunOptions& options) {
 void requireUsedOptions(const RunOptions& options) {
   if (hasWindow(options)) return;
   const char* without_window = options.simple ? "--simple opens no window" : "--screenshot and --video open no window";
-  if (options.window_log) throw BadParameter(fmt::format("--window-log logs what is done in a window, but {}", without_window));
+  if (options.window_log) throw BadParameter(fmt::format("--window-log logs the user's actions in a window, but {}", without_window));
   options.pictures.requireUsed(without_window);
 }
 
@@ -235,8 +235,8 @@ class Run {
   void warnOfLateCommands(double interval_s) {
     if (std::exchange(late_commands_warned_, true)) return;
     say(model_,
-        fmt::format("warning: commands change between the recorded rows, {:g} s apart: a replay of this recording changes them at the "
-                    "next row; a shorter --record-interval would keep it exact",
+        fmt::format("warning: the rows are recorded {:g} s apart and commands change between them: a replay of this recording would change "
+                    "them late, at the next row; a shorter --record-interval avoids this",
                     interval_s));
   }
 
@@ -245,8 +245,9 @@ class Run {
     const JointGap& gap = simulation_.worstGap();
     if (gap_warned_ || gap.gap_mm <= warning_mm) return;
     gap_warned_ = true;
-    say(model_, fmt::format("warning: {} is torn by {:.2g} mm at {:.4g} s; a smaller --step or more --substeps would be more accurate",
-                            gap.joint, gap.gap_mm, simulation_.time_s()));
+    say(model_,
+        fmt::format("warning: {} has come apart by {:.2g} mm at {:.4g} s; a smaller --step or more --substeps would be more accurate",
+                    gap.joint, gap.gap_mm, simulation_.time_s()));
   }
 
   bool hasEndedEarly() const { return simulation_.time_s() < duration_s_ - simulation_.stepS(); }
@@ -276,7 +277,7 @@ class Run {
 
   void sayEnding(const Ending& ending) const {
     if (!ending.error.empty()) std::fprintf(stderr, "musclesim: error: %s\n", ending.error.c_str());
-    if (ending.exit_status > interrupted_base) say(model_, "interrupted; the files are complete up to then");
+    if (ending.exit_status > interrupted_base) say(model_, "interrupted; the files hold everything up to then");
     if (ending.exit_status == done && options_.duration_s && hasEndedEarly())
       say(model_, fmt::format("the window was closed: {:.4g} s of {:g} s are recorded", simulation_.time_s(), duration_s_));
   }
@@ -328,12 +329,14 @@ int run(const ModelOptions& model, const RunOptions& options) {
 
 void addOptions(CLI::App& command, RunOptions& options) {
   const std::string group = "Run";
-  command.add_flag("--simple", options.simple, "Batch run without display or interaction; without it a window opens")->group(group);
+  command.add_flag("--simple", options.simple, "Batch run without window or interaction (default: a window opens)")->group(group);
   command.add_flag("--verbose", options.verbose, "List all primitives and actuators on standard output")->group(group);
   command.add_option("--controller", options.controller, "Controller: " + fmt::format("{}", fmt::join(registeredControllers(), ", ")))
       ->group(group)
       ->capture_default_str();
-  command.add_option("--task", options.task, "height: bring the hand to a height; reach: to a point")->group(group)->capture_default_str();
+  command.add_option("--task", options.task, "height: bring the hand to a height; reach: bring it to a point")
+      ->group(group)
+      ->capture_default_str();
   command.add_option("--target", options.target_mm, "X,Y,Z of the target in mm (for the height task only Y counts)")
       ->group(group)
       ->delimiter(',')
@@ -353,7 +356,9 @@ void addOptions(CLI::App& command, RunOptions& options) {
       ->group(group);
   command.add_option("--out", options.out, "Folder of the run (default: log/runs/<date-time>-<task>-<seed>)")->group(group);
   command.add_flag("--print-config", options.print_config, "Print all parameters as TOML and exit")->group(group);
-  command.add_option("--window-log", options.window_log, "One line of JSON per key or click in the window, with the state after it, FILE")
+  command
+      .add_option("--window-log", options.window_log,
+                  "Log the user's actions in the window to FILE: one line of JSON per key or click, with the state after it")
       ->group("Pictures");
   addPictureOptions(command, options.pictures, "Pictures");
 }
@@ -362,7 +367,7 @@ void addOptions(CLI::App& command, RunOptions& options) {
 
 Action addRun(CLI::App& app, ModelOptions& model) {
   auto options = std::make_shared<RunOptions>();
-  CLI::App* named = app.add_subcommand("run", "Runs a robot under a controller, with a log and a figure (the default)");
+  CLI::App* named = app.add_subcommand("run", "Runs a robot under a controller and writes a log and a figure (the default)");
   for (CLI::App* command : {&app, named}) {
     addOptions(*command, *options);
     addModelOptions(*command, model);

@@ -5,7 +5,7 @@
 namespace musclesim::program {
 
 void requireWindow() {
-  throw BadParameter("this build has no window: use --simple for a batch run, --screenshot or --video for pictures");
+  throw BadParameter("this build has no window: use --simple to run without one, --screenshot or --video for pictures");
 }
 
 std::unique_ptr<Spectator> openWindow(const PictureOptions&, Simulation&, ManualController&, const State&, const std::string&,

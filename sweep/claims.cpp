@@ -143,7 +143,7 @@ RowHistory Claims::history(std::size_t row) const {
     history.free = !is_last || isGone(path(row, attempt));
     if (!history.free) return history;
     ++history.kill_count;
-    history.message = readClaim(path(row, attempt)) ? "its worker vanished" : path(row, attempt) + ": is not a claim; its worker vanished";
+    history.message = readClaim(path(row, attempt)) ? "its worker vanished" : path(row, attempt) + ": is unreadable; its worker vanished";
   }
   return history;
 }

@@ -40,7 +40,7 @@ enum Status { done = 0, bad_usage = 2, bad_input = 3, diverged = 4 };
 void requireSameModel(const Sweep& sweep, const std::string& folder) {
   const std::string file = folder + "/manifest.json", program = "musclesim " MUSCLESIM_VERSION;
   if (sweep.program != program) throw BadFile(file, fmt::format("was planned by {}; this is {}", sweep.program, program));
-  if (sweep.robots_hash != robotsHash()) throw BadFile(file, "was planned for robots that differ from those of this program");
+  if (sweep.robots_hash != robotsHash()) throw BadFile(file, "was planned with other robots than this program has");
   for (const auto& [path, expected] : sweep.inputs) {
     Hash hash;
     hash.add(readTextFile(folder + "/" + path, std::size_t{512} << 20));

@@ -119,7 +119,8 @@ std::vector<std::string> wrapped(const Painter& painter, const std::string& text
 
 void drawBanner(Painter& painter, const std::string& divergence, float width, float y) {
   std::vector<std::string> lines;
-  for (const std::string& text : {divergence, std::string("The run stands still; its recording is complete up to here. q ends it.")})
+  for (const std::string& text :
+       {divergence, std::string("The run has stopped; its recording holds everything up to here. Press q to close.")})
     for (const std::string& line : wrapped(painter, text, width - 6 * margin)) lines.push_back(line);
   drawBox(painter, 2 * margin, y, lines, paper, alarm, 0.92F);
 }

@@ -163,7 +163,7 @@ class ImGuiPanel final : public Panel {
     if (ImGui::RadioButton("automatic", !by_hand) && by_hand) console.toggleManual();
     ImGui::SameLine();
     if (ImGui::RadioButton("by hand", by_hand) && !by_hand) console.toggleManual();
-    if (ImGui::Button(console.pace().isPaused() ? "Go on" : "Pause", {68, 0})) console.press('p');
+    if (ImGui::Button(console.pace().isPaused() ? "Continue" : "Pause", {68, 0})) console.press('p');
     ImGui::SameLine();
     if (ImGui::Button("Step")) console.press(key::right);
     ImGui::SameLine();
@@ -256,7 +256,7 @@ class ImGuiPanel final : public Panel {
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("transparent bones (t)");
     ImGui::SameLine();
     ImGui::Checkbox("tension", &console.style.color_tension);
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("muscles in the colour of their tension (m)");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("colour muscles by tension (m)");
     ImGui::SameLine();
     ImGui::Checkbox("labels", &console.style.frames);
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("frames and labels (f)");

@@ -57,7 +57,7 @@ class DisplayProbe {
  public:
   DisplayProbe() : display_(XOpenDisplay(nullptr)) {
     if (!display_)
-      throw SceneError("there is no display for a window: use --simple for a batch run, --screenshot or --video for pictures without one");
+      throw SceneError("there is no display for a window: use --simple to run without one, --screenshot or --video for pictures");
   }
   ~DisplayProbe() { XCloseDisplay(display_); }
   DisplayProbe(const DisplayProbe&) = delete;
@@ -327,7 +327,7 @@ void Window::updateVideo() {
   if (console_.wants_video && !video_) {
     video_ = std::make_unique<VideoWriter>(fileFor(".mp4"), target_->width(), target_->height(), video_frames_per_s);
     video_start_ = Clock::now();
-    console_.say("video started; v ends it");
+    console_.say("video started; press v to stop");
   }
   if (!video_) return;
   if (!console_.wants_video) {

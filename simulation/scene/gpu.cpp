@@ -34,7 +34,7 @@ GpuProgram::GpuProgram(const Gl& gl, const char* vertex_source, const char* frag
   gl.LinkProgram(id_);
   GLint fine = 0;
   gl.GetProgramiv(id_, GL_LINK_STATUS, &fine);
-  if (!fine) throw SceneError("this OpenGL cannot link a program of shaders");
+  if (!fine) throw SceneError("this OpenGL cannot link a shader program");
 }
 
 GpuProgram::~GpuProgram() {

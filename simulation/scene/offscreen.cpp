@@ -24,7 +24,7 @@ void requireSize(const char* name, int size) {
 void* library() {
   for (const char* name : {"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"})
     if (void* found = dlopen(name, RTLD_NOW | RTLD_LOCAL)) return found;
-  throw SceneError("pictures without a display need OSMesa, which is not here; Debian: apt-get install libosmesa6");
+  throw SceneError("pictures without a display need OSMesa, which is not installed; Debian: apt-get install libosmesa6");
 }
 
 template <class Function>
