@@ -11,9 +11,9 @@
 
 namespace musclesim {
 
-/// What a controller is built from. The controller keeps no reference to it.
+/// The arguments from which a controller is built. The controller keeps no reference to them.
 struct ControllerRequest {
-  Parameters& parameters;            ///< named numbers of the controller are declared here
+  Parameters& parameters;            ///< the controller declares its parameters here
   int muscle_count = 0;              ///< dimension of the action
   double step_s = 0.01;              ///< time between two calls of output()
   double decision_interval_s = 6.0;  ///< time between two decisions, rounded to whole steps, at least one

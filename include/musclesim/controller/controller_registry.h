@@ -24,7 +24,7 @@ void registerController(const std::string& name, const std::string& description)
 }
 
 /// Builds a registered controller. Throws BadParameter if no controller has this name (the message gives the nearest name), if the request
-/// has no muscles, names an unknown task or has a target that is not finite; and whatever the controller's constructor throws.
+/// has no muscles, names an unknown task or has a target that is not finite; and passes on what the controller's constructor throws.
 std::unique_ptr<Controller> makeController(const std::string& name, const ControllerRequest& request);
 
 /// Names of all registered controllers, in alphabetical order.

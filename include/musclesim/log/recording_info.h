@@ -12,7 +12,7 @@
 
 namespace musclesim {
 
-/// The sidecar. Only `format` and `robot` are required in the file.
+/// The contents of the sidecar. Only `format` and `robot` are required in the file.
 struct RecordingInfo {
   std::string robot;
   std::optional<std::string> physics;                        ///< "si", "original" or "scaled"
@@ -21,15 +21,15 @@ struct RecordingInfo {
   std::string description, trial, repeat_of, program;
   std::optional<double> pressure_full_scale_kPa, command_full_scale_V;
   std::map<std::string, double> noise_std;
-  std::vector<ActiveEffect> active_effects;  ///< what the simulator must include when it replays the recording: model, not gap
+  std::vector<ActiveEffect> active_effects;  ///< effects that belong to the model: a replay includes them
   std::optional<std::uint64_t> seed;
   std::optional<double> step_s;
-  std::optional<bool> complete;  ///< false while a run is being recorded and after one that stopped early; absent: not known
-  /// Further members of the sidecar as JSON text, one object; kept when the recording is written again.
+  std::optional<bool> complete;  ///< false during a run and after a run that stopped early; absent: not known
+  /// All other members of the sidecar, as the JSON text of one object. They are kept when the recording is written again.
   std::string extra_json = "{}";
 };
 
-/// The sidecar as indented JSON text. Throws BadParameter if its contents would be refused when read.
+/// The sidecar as indented JSON text. Throws BadParameter if readRecording would refuse its contents.
 std::string sidecarText(const RecordingInfo& info);
 
 }  // namespace musclesim

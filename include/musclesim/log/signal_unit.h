@@ -1,4 +1,4 @@
-/// The unit of a signal, by its name.
+/// The unit of a signal, from its name.
 #pragma once
 
 #include <string>
