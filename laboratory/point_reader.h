@@ -8,10 +8,10 @@
 namespace musclesim {
 
 /// Reads a CSV file with one column each of pressure (fraction), pressure_kPa, _bar or _MPa; length_mm, _cm or _m; force_N.
-/// Throws BadFile, with line, value and allowed range, for what no static test of a muscle can have given: missing units, values out of
+/// Throws BadFile, with line, value and allowed range, if no static test of a muscle can have given the table: missing units, values out of
 /// range, lengths that differ too much, forces that fall with pressure or length (columns swapped), fewer than two pressures or lengths.
 StaticPoints readStaticPoints(const std::string& file, const StaticPointsOptions& options = {});
-/// The same from text; `file` is used in messages.
+/// Like readStaticPoints, from text; `file` is used in messages.
 StaticPoints parseStaticPoints(const std::string& text, const std::string& file, const StaticPointsOptions& options = {});
 
 }  // namespace musclesim
