@@ -1,4 +1,4 @@
-/// How a window is opened.
+/// Options of a window.
 #pragma once
 
 #include <string>
@@ -12,8 +12,8 @@ struct DisplayOptions {
   int width_px = 1024, height_px = 768;
   double speed_ratio = 1;  ///< simulated time over wall time
   Camera camera;
-  std::string picture_folder;  ///< where the keys s and v put pictures and videos
-  std::string log_file;        ///< one line of JSON per key or click with the state after it; empty: none
+  std::string picture_folder;  ///< folder for the pictures and videos of the keys s and v
+  std::string log_file;        ///< gets one line of JSON per key or click, with the state after it; empty: no log
 };
 
 }  // namespace musclesim
