@@ -13,7 +13,7 @@ namespace {
 constexpr double largest_target_mm = 1e5;
 constexpr double largest_hand_mm = 1e9;
 
-/// Declares one coordinate of a target; a value given in the request counts as an override of it.
+/// Declares one coordinate of a target. A target in the request overrides it.
 double coordinate(const ControllerRequest& request, const std::string& name, double default_mm, int axis, const std::string& meaning) {
   if (request.target_mm) request.parameters.set(name, (*request.target_mm)[axis], "target");
   return request.parameters.number(name, default_mm, "mm", -largest_target_mm, largest_target_mm, meaning);

@@ -7,7 +7,7 @@ namespace musclesim {
 
 namespace {
 
-/// Error of a fit without a group at the group's points.
+/// Fits all points but one group and returns the error at the points of the group.
 FitError errorWithout(const PointGroup& group, const LawModel& model, const StaticPoints& points, const LawFit& fit) {
   std::vector<bool> is_left_out(points.points.size(), false);
   for (const std::size_t i : group.of) is_left_out[i] = true;
@@ -18,7 +18,7 @@ FitError errorWithout(const PointGroup& group, const LawModel& model, const Stat
   return errorOf(*model.build(fitParameters(model, rest, {fit.parameters})), left_out);
 }
 
-/// Whether a group has anything to predict.
+/// Whether a group has points to predict.
 bool hasMeasured(const PointGroup& group, const StaticPoints& points) {
   for (const std::size_t i : group.of)
     if (!points.points[i].censored && !points.points[i].outlier) return true;

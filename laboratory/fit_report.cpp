@@ -12,7 +12,7 @@ namespace musclesim {
 
 namespace {
 
-/// A number with three digits, or a dash where there is none.
+/// A relative squared error with three digits, or a dash if there is none.
 std::string share(const FitError& error) {
   return error.count > 0 && error.measured_squares_N2 > 0 ? fmt::format("{:.2e}", error.relativeSquaredError()) : "-";
 }
@@ -105,7 +105,7 @@ nlohmann::json toJson(const LawReport& report) {
 
 std::string configurationToml(const LawReport& report, const StaticPoints& points) {
   const std::string name = report.model->name();
-  // File names may hold anything, comments end at a line's end.
+  // A file name may contain line ends, which would end the comment.
   std::string file = std::filesystem::path(points.file).filename().string();
   std::replace_if(
       file.begin(), file.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }, '?');

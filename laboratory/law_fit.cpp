@@ -15,9 +15,9 @@ namespace musclesim {
 
 namespace {
 
-/// How far a law is from a point, in N. Small forces are compared with the tension: where a law would push, a muscle hangs slack, and its
-/// sensor shows about 0. Larger ones are compared with the formula, so that a search that begins with a slack muscle finds its way. Of a
-/// censored point only an excess over the floor counts.
+/// Law minus measurement at a point, in N. A small measured force is compared with the tension, which is 0 where the law's formula would
+/// push: there the muscle is slack. A larger force is compared with the formula, so that a search that starts with a slack muscle has a
+/// gradient. For a censored point only an excess over the floor counts.
 double offN(const ForceLaw& law, const StaticPoint& point, double floor_N, double force_scale_N) {
   constexpr double small_share = 0.05;
   if (point.censored) return std::max(0.0, law.formulaN(point.pressure_ratio, point.length_mm) - floor_N);
@@ -54,7 +54,7 @@ LeastSquaresProblem problemOf(const LawModel& model, const StaticPoints& points,
   return problem;
 }
 
-/// 1.4826 times the median of the measured points' distances from a law: the standard deviation, were they normal.
+/// Robust standard deviation of the measured points from a law: 1.4826 times the median distance (exact for normal errors).
 double robustDeviationN(const ForceLaw& law, const StaticPoints& points) {
   std::vector<double> off_N;
   for (const auto& point : points.measured()) off_N.push_back(std::abs(offN(law, point, points.floor_N, points.largestForceN())));
@@ -122,7 +122,7 @@ class Judgement {
                                                                            std::max(fit_.parameters.cwiseAbs().maxCoeff(), 1e-12);
   }
 
-  /// Of the 95 % interval.
+  /// Half width of the 95 % interval.
   double halfWidth(Eigen::Index row) const {
     const double degrees = std::min(degreesOfFreedom(influence_.row(row).transpose(), variances_),
                                     static_cast<double>(std::max<Eigen::Index>(1, influence_.cols() - influence_.rows())));
@@ -210,7 +210,7 @@ Specimen specimenOf(const StaticPoints& points, std::optional<double> rest_lengt
 
 Eigen::VectorXd fitParameters(const LawModel& model, const StaticPoints& points, const std::vector<Eigen::VectorXd>& starts,
                               bool* converged) {
-  // The penalties of a table stand for points.
+  // A table needs no minimum number of points, since penalties determine what the points do not.
   const std::size_t needed = model.isTable() ? fewest_points : 2 * model.parameters().size();
   if (points.measured().size() < needed)
     throw BadFile(points.file, fmt::format("{} points above the floor are too few for the law {} with {} constants; at least {} are needed",
@@ -233,13 +233,13 @@ LawFit fitLaw(const LawModel& model, const StaticPoints& points) {
 void markOutliers(StaticPoints& points, const Specimen& specimen) {
   constexpr double deviations = 6, force_share = 0.1;
   const double force_limit_N = force_share * specimen.force_scale_N;
-  // Where a law of six constants comes near to all points, none is far from its neighbours, and the costlier map need not be asked.
+  // If a law of six constants is near to all points, none is an outlier; then the costlier map need not be fitted.
   const auto law = makeLawModel("sarosi", specimen, {});
   const auto law_x = minimise(problemOf(*law, points, 0), law->starts()).x;
   if (largestOffN(*law->build(law_x), points) < force_limit_N / 2) return;
   const auto model = makeLawModel("map", specimen, {});
   Eigen::VectorXd x = minimise(problemOf(*model, points, 0), model->starts()).x;
-  constexpr double cauchy_per_deviation = 2.385;  // 95 % as good as least squares where errors are normal
+  constexpr double cauchy_per_deviation = 2.385;  // 95 % efficiency for normal errors
   constexpr double least_share = 1e-6;
   double deviation_N = 0;
   for (int round = 0; round < 3; ++round) {

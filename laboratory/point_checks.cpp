@@ -12,10 +12,10 @@ namespace musclesim {
 
 namespace {
 
-/// No muscle gets this many times as long as it is at its shortest; the longest of the paper's rigs gets 5.8 times as long.
+/// Largest plausible ratio of the longest to the shortest length of a muscle; in the paper's rigs it is at most 5.8.
 constexpr double largest_length_quotient = 8;
 
-/// A value at its place, for messages.
+/// A pressure as text for messages.
 std::string pressureText(const StaticPoints& points, double ratio) {
   return points.full_scale_kPa ? fmt::format("{:g} kPa", ratio * *points.full_scale_kPa) : fmt::format("{:g}", ratio);
 }
@@ -45,7 +45,7 @@ void requireOneMusclesLengths(const StaticPoints& points) {
                                 shortest_mm, longest_mm, largest_length_quotient));
 }
 
-/// The plane F = g + g_p p + g_l l nearest to the measured points must rise both ways.
+/// Fits the plane F = g + g_p p + g_l l to the measured points; it must rise with both p and l.
 void requireRisingForce(const StaticPoints& points) {
   const auto measured = points.measured();
   Eigen::MatrixXd columns(measured.size(), 3);

@@ -14,7 +14,7 @@ namespace musclesim {
 
 namespace {
 
-/// What a quantity can be given in, and what a muscle's can be.
+/// A unit that a quantity can have in a file, and the plausible range of its values for a muscle.
 struct Unit {
   std::string quantity, unit;
   double factor, lowest, highest;  ///< range in the unit itself
@@ -54,7 +54,7 @@ const Unit* unitOf(const std::string& quantity, const std::string& unit) {
   return nullptr;
 }
 
-/// A column's name, its unit, and whether it is written: behind a colon, or as the name's ending.
+/// A column's name and unit. The unit may follow a colon or end the name; `has_unit` is false if neither is the case.
 struct MappedColumn {
   std::string name, unit;
   bool has_unit;
@@ -72,7 +72,7 @@ MappedColumn splitUnit(const std::string& written) {
   return {written, is_unit ? ending : "", is_unit};
 }
 
-/// What a name without a unit is taken for: fraction, mm, N.
+/// The unit assumed for a name without a unit: fraction, mm, N.
 const Unit& plainUnit(const std::string& quantity) {
   return *std::find_if(units().begin(), units().end(), [&](const Unit& unit) { return unit.quantity == quantity; });
 }

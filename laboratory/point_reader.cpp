@@ -15,7 +15,7 @@ namespace musclesim {
 
 namespace {
 
-/// Rows of the file that pass the filters, in kPa or fractions as the file has them, mm and N.
+/// Rows of the file that pass the filters. Pressures are in kPa or fractions, as in the file; lengths in mm, forces in N.
 std::vector<StaticPoint> readRows(CsvReader& reader, const PointColumns& columns, StaticPoints& result) {
   std::vector<StaticPoint> points;
   std::vector<CsvCell> cells;
@@ -52,7 +52,7 @@ void scalePressures(StaticPoints& points, const PointColumns& columns, const Sta
         fmt::format("pressure 1 is the largest in the file, {:g} kPa; set another with --full-scale-kPa", *points.full_scale_kPa));
 }
 
-/// A sensor that cannot read below its floor gives the floor again and again.
+/// The sensor's floor: a sensor that cannot read lower values gives its floor repeatedly.
 std::optional<double> repeatedFloorN(const std::vector<StaticPoint>& points) {
   const auto lowest = std::min_element(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.force_N < b.force_N; });
   if (lowest == points.end() || lowest->force_N > 0) return std::nullopt;

@@ -16,7 +16,7 @@ namespace musclesim {
 
 namespace {
 
-/// What stands between the quantity and the unit.
+/// The part of a name between the quantity and the unit.
 enum class Component { none, muscle, joint, axis };
 
 struct Unit {
@@ -25,7 +25,7 @@ struct Unit {
   FullScale full_scale = FullScale::none;
 };
 
-/// The first unit is the canonical one. A fraction has no name.
+/// The first unit is the canonical unit. The unit of a fraction has no name.
 struct Quantity {
   std::string_view name;
   Component component;
@@ -80,7 +80,7 @@ std::string allPatterns() {
   return out;
 }
 
-/// Names like the unknown one that would be accepted, for "did you mean".
+/// "did you mean" with the valid name that is nearest to an unknown name.
 std::string suggestion(const std::string& name) {
   constexpr std::size_t longest = 60;
   if (name.size() > longest) return "";
@@ -101,7 +101,7 @@ std::string suggestion(const std::string& name) {
   return nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest);
 }
 
-/// A whole number as a name writes it: no sign, no leading zero.
+/// A muscle index in a name: a whole number without sign or leading zero.
 std::optional<int> muscleIndex(std::string_view text) {
   constexpr std::size_t longest = 3;
   if (text.empty() || text.size() > longest || (text.size() > 1 && text[0] == '0')) return std::nullopt;

@@ -19,12 +19,12 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_rows = 10'000'000;
 
-/// Values over time (or over the row number), of one column or of the whole table.
+/// Values over time or over the row number.
 struct Series {
   std::vector<double> time_s, values;
 };
 
-/// The columns of a CSV file that are asked for.
+/// The requested columns of a CSV file.
 class Table {
  public:
   Table(const std::string& file, const std::vector<std::string>& names)
@@ -56,7 +56,7 @@ class Table {
   std::vector<std::vector<double>> values_;
 };
 
-/// The series at a time: a straight line between its points, or the last value. Before the first and after the last the nearest one.
+/// The value of the series at a time: interpolated linearly, or the last value; outside its range the nearest value.
 double valueAt(const Series& series, double time_s, bool linear) {
   const auto next = std::upper_bound(series.time_s.begin(), series.time_s.end(), time_s);
   const auto k = static_cast<std::size_t>(next - series.time_s.begin());
@@ -66,7 +66,7 @@ double valueAt(const Series& series, double time_s, bool linear) {
   return share == 0 ? series.values[k - 1] : (1 - share) * series.values[k - 1] + share * series.values[k];
 }
 
-/// The recording that is being made: names[i], values[i][row].
+/// Builds the recording.
 class Import {
  public:
   Import(const std::string& csv_file, const ImportMapping& mapping) : csv_file_(csv_file), mapping_(mapping) {
@@ -127,7 +127,7 @@ class Import {
     }
   }
 
-  /// In the recording's unit, with times that increase: of rows with one time the first stays.
+  /// The series in the recording's unit, with increasing times: of several rows with the same time the first is kept.
   static Series scaled(const ImportColumn& column, const Series& raw, const std::string& file) {
     Series result;
     for (std::size_t row = 0; row < raw.values.size(); ++row) {
@@ -151,7 +151,7 @@ class Import {
     rows_.push_back(std::move(row));
   }
 
-  /// Each step becomes two rows: where its command begins, and shortly before it ends, with the readings.
+  /// Makes two rows of each step: one where its command begins, and one with the readings shortly before it ends.
   void settledRows() {
     constexpr double read_at = 0.95;
     const auto every = static_cast<std::size_t>(mapping_.every);
@@ -231,7 +231,7 @@ class Import {
   const std::string& csv_file_;
   const ImportMapping& mapping_;
   const ImportColumn* time_ = nullptr;
-  std::vector<const ImportColumn*> columns_;  ///< without the time
+  std::vector<const ImportColumn*> columns_;  ///< all columns but the time
   std::vector<double> clock_;                 ///< time of the first table's rows, or their numbers
   std::vector<Series> series_;                ///< per column
   std::vector<double> time_s_;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Reads the members of one table and refuses those that nobody asked for.
+/// Reads the members of one table and refuses unknown members.
 class Members {
  public:
   Members(const toml::table& table, std::string file, std::string place)
@@ -108,7 +108,7 @@ void readRows(const toml::table& table, ImportMapping& mapping) {
     }
 }
 
-/// Everything but columns and rows is the sidecar's.
+/// All members except columns and rows belong to the sidecar.
 std::string sidecarJson(toml::table table) {
   table.erase("columns");
   table.erase("rows");

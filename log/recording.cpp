@@ -21,7 +21,7 @@ namespace musclesim {
 namespace {
 
 constexpr std::size_t largest_sidecar_bytes = std::size_t{16} << 20;
-/// A measured pressure outside these fractions of full scale is more likely a wrong unit than a sensor's error.
+/// A measured pressure outside these fractions of full scale more likely has a wrong unit than a sensor error.
 constexpr double plausible_pressure_minimum = -0.5, plausible_pressure_maximum = 1.5;
 
 /// A column of the file that becomes a signal (or the time).
@@ -174,7 +174,7 @@ void TableReader::addNotes() {
   }
 }
 
-/// Milliseconds in place of seconds would be simulated, for hours.
+/// Warns of long steps: if time_s were in milliseconds, a replay would take hours.
 void TableReader::noteSlowRows() {
   constexpr double slow_s = 2;
   const std::vector<double>& time_s = recording_.time_s;
@@ -186,7 +186,7 @@ void TableReader::noteSlowRows() {
   if (*middle > slow_s) recording_.notes.push_back(fmt::format("typical rows are {:g} s apart: is time_s in seconds?", *middle));
 }
 
-/// The text without a last line that lacks its line end, if the sidecar says that the writer did not finish.
+/// Drops a last line without line end if the sidecar says that the writer did not finish.
 std::string_view withoutTornLine(std::string_view text, Recording& recording) {
   if (recording.info.complete.value_or(true)) return text;
   recording.notes.push_back("the sidecar says \"complete\": false: the run stopped early or is still being recorded");

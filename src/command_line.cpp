@@ -14,7 +14,7 @@ namespace musclesim::program {
 
 namespace {
 
-/// An empty value (--step "") would count as "not given". Sub-commands included.
+/// Refuses empty values (--step ""), which would count as not given; also in sub-commands.
 void refuseEmptyValues(CLI::App& command) {
   for (CLI::App* below : command.get_subcommands({})) refuseEmptyValues(*below);
   for (CLI::Option* option : command.get_options())
@@ -54,7 +54,7 @@ CommandLine::CommandLine()
   add("work", "Runs those rows of a sweep that no other worker has taken, until none is left", addWork);
   add("collect", "Puts the results of a sweep into one table", addCollect);
   refuseEmptyValues(app_);
-  registerOutOfCatalogueLaws();  // recordings that a check of the diagnosis has made can be replayed
+  registerOutOfCatalogueLaws();  // so that recordings made by the check of the diagnosis can be replayed
 }
 
 std::vector<std::string> CommandLine::commandNames() const {
@@ -63,7 +63,7 @@ std::vector<std::string> CommandLine::commandNames() const {
   return names;
 }
 
-/// The sub-command goes first, wherever it stands: what is before it is meant for it.
+/// Moves the sub-command to the front, since options before it are meant for it.
 std::vector<std::string> CommandLine::ordered(std::vector<std::string> arguments) const {
   const std::vector<std::string> names = commandNames();
   for (std::size_t i = 0; i < arguments.size(); ++i) {
@@ -77,7 +77,7 @@ std::vector<std::string> CommandLine::ordered(std::vector<std::string> arguments
   return arguments;
 }
 
-/// What a usage error says; words that fit nowhere in the order in which they were given, with the command that may have been meant.
+/// The message of a usage error. Unexpected words are listed in the order given, with the command that was probably meant.
 std::string CommandLine::messageFor(const CLI::ParseError& error) const {
   if (!dynamic_cast<const CLI::ExtrasError*>(&error)) return error.what();
   const std::vector<std::string> words = app_.remaining(true);

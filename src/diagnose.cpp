@@ -1,4 +1,4 @@
-/// `musclesim diagnose`: from recordings to where the gap lies, which effect causes it and how far it shrinks.
+/// `musclesim diagnose`: finds from recordings where the gap lies, which effect causes it, and how far the effect reduces it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -44,13 +44,13 @@ std::string scheduleText(const Experiment& experiment) {
   return text;
 }
 
-/// With the effects that the model already had by --effects, so that the file can take that file's place.
+/// Includes the effects that --effects gave to the model, so that the file can replace the file of --effects.
 void writeWith(const std::vector<ActiveEffect>& found, std::vector<ActiveEffect> effects, const std::filesystem::path& file) {
   effects.insert(effects.end(), found.begin(), found.end());
   writeEffects(effects, file.string());
 }
 
-/// What a sidecar says of the model that is diagnosed, but for the effects of --effects: those are no part of what is recorded.
+/// The sidecar members that describe the diagnosed model, without the effects of --effects, which are not part of the recording.
 RecordingInfo modelOf(const Recording& recording, const ReplayOptions& options) {
   RecordingInfo given = recording.info;
   replaceRobot(given, options.robot);
@@ -61,7 +61,7 @@ RecordingInfo modelOf(const Recording& recording, const ReplayOptions& options) 
   return model;
 }
 
-/// The proposed commands as a recording of the plant that has no readings yet.
+/// The proposed commands as a recording of the plant, without readings.
 void writeSchedule(const Diagnosis& diagnosis, const RecordingInfo& model, const std::filesystem::path& folder) {
   RecordingInfo info;
   info.robot = model.robot;
@@ -87,7 +87,7 @@ void writeAll(const Diagnosis& diagnosis, const std::filesystem::path& folder, c
   if (arguments.json) replaceFile(*arguments.json, json);
 }
 
-/// Before minutes of work: what is written has a place, and it is none of the files that are read.
+/// Checks before minutes of work that all outputs can be written and that none would overwrite an input.
 void requirePlaces(const std::filesystem::path& folder, const ModelOptions& model, const DiagnoseArguments& arguments) {
   std::vector<std::string> inputs = arguments.recordings;
   for (const std::string& recording : arguments.recordings) inputs.push_back(sidecarPath(recording));

@@ -1,4 +1,4 @@
-/// `musclesim effects`: the catalogue of effects, or one of them in full.
+/// `musclesim effects`: lists the catalogue of effects, or describes one of them.
 #include <fmt/format.h>
 
 #include <cmath>

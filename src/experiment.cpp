@@ -1,4 +1,4 @@
-/// `musclesim experiment`: the paper's load-frame experiment in the simulator.
+/// `musclesim experiment`: simulates the paper's load-frame experiment.
 #include <fmt/format.h>
 
 #include <charconv>
@@ -25,7 +25,7 @@ struct ExperimentArguments {
   PointsOptions points;
 };
 
-/// "all", a name, or MIN/MAX in mm.
+/// Reads "all", the name of a specimen, or MIN/MAX in mm.
 std::vector<FrameSpecimen> specimensOf(const std::string& written) {
   if (written == "all") return frameSpecimens();
   for (const auto& specimen : frameSpecimens())

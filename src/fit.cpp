@@ -29,7 +29,7 @@ struct FitArguments {
   bool quiet = false, json = false;
 };
 
-/// A length of Eq. 1 in mm, or nothing where it shall be fitted.
+/// A fixed length of Eq. 1 in mm, or nothing if the length is to be fitted.
 std::optional<double> lengthMm(const std::string& option, const std::string& written) {
   if (written == "free") return std::nullopt;
   char* end = nullptr;

@@ -1,4 +1,4 @@
-/// `musclesim import`: a foreign table becomes a recording.
+/// `musclesim import`: turns a measured table into a recording.
 #include "musclesim/log/import.h"
 
 #include <fmt/format.h>

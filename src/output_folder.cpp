@@ -47,7 +47,7 @@ void prepareRecording(const fs::path& csv) {
   if (csv.has_parent_path()) makeFolder(csv.parent_path());
 }
 
-/// The sidecar tells: the table of a run that was killed may be torn.
+/// Looks at the sidecar, because the table of a killed run may be incomplete.
 void requireReplaceable(const fs::path& csv) {
   const fs::path sidecar = sidecarPath(csv.string());
   if (!fs::exists(csv) && !fs::exists(sidecar)) return;

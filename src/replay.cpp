@@ -1,4 +1,4 @@
-/// `musclesim replay`: a recording's commands through the model, and how far the model is off.
+/// `musclesim replay`: simulates a recording's commands and compares the result with its measurements.
 #include "musclesim/simulation/replay.h"
 
 #include <fmt/format.h>

@@ -24,7 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// In the original's units the paper's 6 s; in true seconds the time the arm takes to settle (docs/parameters.md).
+/// Default decision interval: the paper's 6 s in original physics; in true seconds the time that the arm takes to settle
+/// (docs/parameters.md).
 double defaultDecisionIntervalS(const PhysicsSettings& physics) {
   constexpr double original_s = 6.0, si_s = 3.0;
   if (physics.kind == PhysicsKind::si) return si_s;
@@ -47,7 +48,7 @@ bool hasWindow(const RunOptions& options) {
   return !options.simple && !options.pictures.wanted();
 }
 
-/// Options of what this run does not have would be without effect.
+/// Refuses options that would have no effect in this run.
 void requireUsedOptions(const RunOptions& options) {
   if (hasWindow(options)) return;
   const char* without_window = options.simple ? "--simple opens no window" : "--screenshot and --video open no window";
@@ -55,15 +56,15 @@ void requireUsedOptions(const RunOptions& options) {
   options.pictures.requireUsed(without_window);
 }
 
-/// Without --duration: the published 300 s; as much as makes a video worth looking at; with a window until it is closed.
+/// The duration without --duration: 300 s as published; shorter for a picture or video; with a window until it is closed.
 double defaultDurationS(const RunOptions& options) {
   constexpr double batch_s = 300, pictures_s = 20;
   return options.simple ? batch_s : hasWindow(options) ? longest_s : pictures_s;
 }
 
-/// Why a run is over.
+/// How a run ended.
 struct Ending {
-  std::string status;  ///< of the verdict
+  std::string status;  ///< status in the verdict
   std::string error;   ///< empty: none
   int exit_status;
 };
@@ -83,7 +84,7 @@ class Run {
 
   int execute() {
     const std::string initial_state = model_.initial_state.value_or(simulation_.robot().initialState());
-    // The first decision comes before the files: what the controller reports by then decides the columns.
+    // The first decision comes before the files are opened, because the columns depend on what the controller reports.
     const State first_state = robot().getState();
     const musclesim::Action first_action = controller_->output(first_state);
     const fs::path csv = recordingPath(options_, simulation_.seed());
@@ -105,7 +106,7 @@ class Run {
     } catch (const Diverged& error) {
       divergence = error;
     } catch (const Interrupted&) {
-      // endingOf() tells of the signal.
+      // endingOf() reports the signal.
     }
     const Ending ending = endingOf(divergence);
     const nlohmann::json verdict = conclude(ending, progress.wallS());
@@ -118,7 +119,7 @@ class Run {
   }
 
  private:
-  /// A window puts the user's hands before the controller.
+  /// With a window, the user can take over from the controller.
   void addController() {
     auto controller = makeController(options_.controller, controllerRequest(simulation_, options_));
     if (hasWindow(options_)) {
@@ -163,7 +164,7 @@ class Run {
     return options;
   }
 
-  /// The figure beside the recording; an empty path for a run that ended before its first row.
+  /// Writes the figure beside the recording. Returns an empty path if the run ended before its first row.
   fs::path drawFigure(const fs::path& csv, long row_count) const {
     if (row_count == 0) return {};
     fs::path svg = fs::path(csv).replace_extension(".svg");
@@ -205,7 +206,7 @@ class Run {
     return values;
   }
 
-  /// The paper's run loop: state, output, step; with a row of the log before the world moves.
+  /// The paper's run loop: state, output, step. A row is logged before the world moves.
   void loop(Recorder& recorder, Progress& progress, musclesim::Action action) {
     const long step_count = std::lround(duration_s_ / simulation_.stepS());
     const long record_every = std::max(1L, std::lround(options_.record_interval_s.value_or(simulation_.stepS()) / simulation_.stepS()));
@@ -220,7 +221,7 @@ class Run {
       simulation_.step();
       warnOfGap();
     }
-    robot().step(action);  // the last row, too, shows the forces at its own time
+    robot().step(action);  // so that the last row, too, has the forces at its own time
     record(recorder, progress, true);
   }
 

@@ -14,7 +14,7 @@ class Spectator {
   virtual ~Spectator() = default;
   /// Gets the readings of each control step, in order of time, including the first and the last. Returns false to end the run.
   virtual bool see(const State& state) = 0;
-  /// The reason if it ended the run because of a failure of its own.
+  /// The reason if a failure of its own made it end the run.
   virtual std::optional<std::string> failure() const { return std::nullopt; }
   /// Called if the run diverged, before finish().
   virtual void diverge(const std::string& message) { static_cast<void>(message); }

@@ -1,4 +1,4 @@
-/// Stands for window.cpp in a build without libraries for a window.
+/// Replaces window.cpp in a build without the libraries for a window.
 #include "musclesim/base/error.h"
 #include "window.h"
 

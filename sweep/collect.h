@@ -13,7 +13,7 @@ struct Collected {
   std::vector<std::string> unmet_columns;  ///< columns of the plan that no row has; empty while no row is done
   std::string csv_file, json_file;
 
-  /// True if every row ended with done, diverged or failed.
+  /// True if every row is done or diverged.
   bool complete() const { return missing.empty() && failed.empty() && crashed.empty(); }
 };
 

@@ -112,7 +112,7 @@ class Plan {
                                         parameter_count, most_sweep_rows, most_sweep_values));
   }
 
-  /// Multiplies the rows so far by those of a section.
+  /// Combines every row so far with every row of a section.
   void combine(const toml::node& place, const std::vector<RowParameters>& section) {
     static const std::set<std::string> reserved = {"out", "row", "repeat", "status", "message"};
     requireSize(place, rows_.size() * section.size(), rows_.front().size() + section.front().size());
@@ -182,8 +182,8 @@ class Plan {
     return std::ranges::any_of(sweep_.command, [&](const auto& argument) { return argument.find("{" + name + "}") != std::string::npos; });
   }
 
-  /// Rows that differ in their parameters but not in the repeat have the same seed: their differences are not chance. A seed that the
-  /// command does not use is not listed, for it would not be that of the run.
+  /// Rows of the same repeat have the same seed, so that their differences come from their parameters and not from chance. A seed that the
+  /// command does not use is not listed, since the run would not have it.
   void addRepeats() {
     std::size_t count = 1;
     if (const auto found = sections_.find("repeats"); found != sections_.end()) {

@@ -87,7 +87,7 @@ void Console::select(int muscle) {
   style.selected = muscle;
 }
 
-/// In hundredths, so that fifty steps from 0 are exactly 0.5.
+/// Counts in hundredths, so that fifty steps from 0 give exactly 0.5.
 void Console::raise(double by_ratio) {
   if (selected() < 0) return say("select a muscle first: 0 - 9 or a click on it");
   const double pressure = hands_.pressures()[static_cast<std::size_t>(selected())] + by_ratio;

@@ -10,7 +10,7 @@ namespace musclesim {
 
 namespace {
 
-/// What goes wrong is noted before the window is destroyed, which closes it.
+/// Runs the window and records a failure before the window is destroyed, since destroying it closes the pace.
 void loop(Window& window, DisplayShared& shared) {
   try {
     window.loop();
@@ -36,7 +36,7 @@ void runWindow(DisplayShared& shared) {
   shared.has_ended = true;
 }
 
-/// Leaves a thread that cannot end alone with what it uses.
+/// Detaches a thread that cannot end and leaves it the data that it uses.
 void abandon(std::jthread& thread, std::unique_ptr<DisplayShared>& shared) {
   thread.detach();
   static_cast<void>(shared.release());

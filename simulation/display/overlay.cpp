@@ -20,7 +20,7 @@ const Color ink{0.13, 0.14, 0.16, ""}, paper{1, 1, 1, ""}, night{0.10, 0.11, 0.1
     alarm{0.72, 0.08, 0.06, ""};
 constexpr float margin = 12;
 
-/// Lines of text in a box.
+/// Draws lines of text in a box.
 void drawBox(Painter& painter, float x, float y, const std::vector<std::string>& lines, const Color& text, const Color& box, float alpha) {
   float width = 0;
   for (const std::string& line : lines) width = std::max(width, painter.widthOf(line));
@@ -43,7 +43,7 @@ std::vector<std::string> statusLines(const Console& console, const Snapshot& sna
   return lines;
 }
 
-/// Names beside points; a name that would cover another moves down.
+/// Draws names beside points; a name that would cover another one moves down.
 class Labels {
  public:
   Labels(Painter& painter, const Camera& camera, float width, float height)
