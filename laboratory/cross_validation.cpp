@@ -25,7 +25,7 @@ bool hasMeasured(const PointGroup& group, const StaticPoints& points) {
   return false;
 }
 
-/// Number of inner groups.
+/// Adds the errors of all groups to `inner` and `outer`. Returns the number of inner groups.
 int validate(const std::vector<PointGroup>& groups, const LawModel& model, const StaticPoints& points, const LawFit& fit, FitError& inner,
              FitError& outer) {
   int inner_count = 0;

@@ -12,7 +12,7 @@ namespace musclesim {
 
 namespace {
 
-/// A relative squared error with three digits, or a dash if there is none.
+/// A relative squared error with three digits, or a dash if it is not defined.
 std::string share(const FitError& error) {
   return error.count > 0 && error.measured_squares_N2 > 0 ? fmt::format("{:.2e}", error.relativeSquaredError()) : "-";
 }

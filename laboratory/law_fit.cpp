@@ -210,7 +210,7 @@ Specimen specimenOf(const StaticPoints& points, std::optional<double> rest_lengt
 
 Eigen::VectorXd fitParameters(const LawModel& model, const StaticPoints& points, const std::vector<Eigen::VectorXd>& starts,
                               bool* converged) {
-  // A table needs no minimum number of points, since penalties determine what the points do not.
+  // For a table few points suffice, since penalties determine what the points do not.
   const std::size_t needed = model.isTable() ? fewest_points : 2 * model.parameters().size();
   if (points.measured().size() < needed)
     throw BadFile(points.file, fmt::format("{} points above the floor are too few for the law {} with {} constants; at least {} are needed",
