@@ -81,9 +81,8 @@ double HeightTask::activity(const State& state) {
 ReachTask::ReachTask(const ControllerRequest& request)
     : Task(Target::make(request)),
       d_scale_mm_(request.parameters.number("reach_task.distance_scale_mm", 100, "mm", 1e-3, 1e5,
-                                            "how much nearer than its mean distance the hand must be for an activity of 1")),
-      mean_d_(request.parameters.number("reach_task.discount", 0.98, "", 1e-3, 1,
-                                        "weight of a distance relative to that of the decision after it")) {}
+                                            "the activity is 1 if the hand is this much nearer than its mean distance")),
+      mean_d_(request.parameters.number("reach_task.discount", 0.98, "", 1e-3, 1, "discount factor of past distances per decision")) {}
 
 double ReachTask::activity(const State& state) {
   const double d = target().distanceMm(state);                 // Eq. 8

@@ -9,8 +9,7 @@ namespace musclesim {
 namespace {
 
 using V = Eigen::Vector3f;
-constexpr std::uint32_t round_count = 16, tube_round_count = 12,
-                        pieces_per_point = 2;  // small numbers, since software rendering must draw them, too
+constexpr std::uint32_t round_count = 16, tube_round_count = 12, pieces_per_point = 2;  // few, for software rendering
 
 float angle(std::uint32_t part, std::uint32_t of) {
   return 2 * std::numbers::pi_v<float> * static_cast<float>(part) / static_cast<float>(of);

@@ -18,8 +18,7 @@ struct ImportColumn {
   std::string time = "time_s";  ///< time column of that other table, s
   double factor = 1, offset = 0, value = 0;
   double minimum, maximum;
-  bool linear =
-      true;  ///< interpolate linearly between rows; false: hold the last value. Commands are held unless the mapping says otherwise
+  bool linear = true;  ///< false: hold the last value between rows (default for commands)
 };
 
 /// A mapping file, TOML:
