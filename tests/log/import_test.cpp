@@ -109,7 +109,7 @@ TEST_F(ImportTest, RowsWithTheTimeOfTheRowBeforeAreLeftOutAndSaid) {
 TEST_F(ImportTest, RefusesWhatIsNoMapping) {
   const std::string table = "t,u\n0,0\n1,1\n";
   auto refused = [&](const std::string& mapping) { return messageOf<BadFile>([&] { import(table, head + mapping); }); };
-  EXPECT_TRUE(contains(refused(""), "no table [columns]"));
+  EXPECT_TRUE(contains(refused(""), "no section [columns]"));
   EXPECT_TRUE(contains(refused("[columns]\ncommand_0 = \"u\"\n"), "time_s is missing"));
   EXPECT_TRUE(contains(refused("[columns]\ntime_s = \"time\"\ncommand_0 = \"u\"\n"), "has no column \"time\""));
   EXPECT_TRUE(contains(refused("[columns]\ntime_s = \"t\"\ncommand_0 = { form = \"u\" }\n"), "did you mean \"from\""));
