@@ -36,7 +36,7 @@ std::vector<int> digits() {
 const std::vector<Console::Binding>& Console::bindings() {
   static const std::vector<Binding> all = {
       {"i", "muscles automatic or by hand", {'i'}, [](Console& c, int) { c.toggleManual(); }},
-      {"p  Space", "pause, continue", {'p', ' '}, [](Console& c, int) { c.pace().setPaused(!c.pace().isPaused()); }},
+      {"p  Space", "pause, resume", {'p', ' '}, [](Console& c, int) { c.pace().setPaused(!c.pace().isPaused()); }},
       {"Right", "do one step, then pause", {key::right}, [](Console& c, int) { c.pace().stepOnce(); }},
       {"[  ]", "slower, faster", {'[', ']'}, [](Console& c, int code) { changeSpeed(c, code == '[' ? 1 / speed_step : speed_step); }},
       {"0 - 9", "select a muscle", digits(), [](Console& c, int code) { c.select(code - '0'); }},

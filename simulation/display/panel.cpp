@@ -164,7 +164,7 @@ class ImGuiPanel final : public Panel {
     if (ImGui::RadioButton("automatic", !by_hand) && by_hand) console.toggleManual();
     ImGui::SameLine();
     if (ImGui::RadioButton("by hand", by_hand) && !by_hand) console.toggleManual();
-    if (ImGui::Button(console.pace().isPaused() ? "Continue" : "Pause", {68, 0})) console.press('p');
+    if (ImGui::Button(console.pace().isPaused() ? "Resume" : "Pause", {76, 0})) console.press('p');
     ImGui::SameLine();
     if (ImGui::Button("Step")) console.press(key::right);
     ImGui::SameLine();
