@@ -20,7 +20,7 @@ namespace {
   throw IoError(fmt::format("{}: cannot be {}: {}", file, what, std::strerror(reason)));
 }
 
-/// Creates FILE.xxxx.tmp with a name that nobody else has, also not on another machine; returns its descriptor.
+/// Creates FILE.xxxx.tmp with a name that is unique, also across machines; returns its descriptor.
 int createTemporary(const std::string& file, std::string& temporary_file) {
   constexpr int most_tries = 10;
   int descriptor = -1;
@@ -87,7 +87,7 @@ bool FileReplacement::commitIfAbsent() {
   const int linked = link(temporary_file_.c_str(), file_.c_str());
   const int reason = errno;
   struct stat status {};
-  // A network file system may lose the answer to a link that it made: the number of names tells.
+  // A network file system may make the link but lose the answer; then the file has two names.
   const bool absent = linked == 0 || (stat(temporary_file_.c_str(), &status) == 0 && status.st_nlink == 2);
   if (!absent && reason != EEXIST) failed(file_, "created", reason);
   return absent;
@@ -95,11 +95,11 @@ bool FileReplacement::commitIfAbsent() {
 
 void syncFolder(const std::string& folder) {
   const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0 && errno == EACCES) return;  // may be written but not listed
+  if (descriptor < 0 && errno == EACCES) return;  // the folder may be writable but not readable
   if (descriptor < 0) failed(folder, "opened", errno);
   const int synced = fsync(descriptor), reason = errno;
   close(descriptor);
-  if (synced != 0 && reason != EINVAL) failed(folder, "written to the disk", reason);  // EINVAL: this file system needs none
+  if (synced != 0 && reason != EINVAL) failed(folder, "written to the disk", reason);  // EINVAL: this file system needs no sync
 }
 
 void replaceFile(const std::string& file, std::string_view text) {

@@ -16,7 +16,7 @@ using nlohmann::json;
 
 constexpr int deepest_nesting = 64;
 
-/// Where the string begins whose closing quote is the last byte before `end`.
+/// The offset of the opening quote of the string whose closing quote is the last byte before `end`.
 std::size_t stringBegin(std::string_view text, std::size_t end) {
   const auto isEscaped = [&](std::size_t offset) {
     std::size_t backslash_count = 0;

@@ -15,7 +15,7 @@ namespace {
 struct Batch {
   const std::function<void(int)>& work;
   int count;
-  int next = 0;      ///< the first piece that nobody has taken
+  int next = 0;      ///< the first piece that no thread has taken
   int open = count;  ///< pieces that have not ended
   std::vector<std::exception_ptr> failures = std::vector<std::exception_ptr>(static_cast<std::size_t>(count));
 
@@ -25,7 +25,7 @@ struct Batch {
   }
 };
 
-/// Threads that take the pieces of all batches, of the oldest first. Who brings a batch works on it, too.
+/// Threads that work on the pieces of all batches, oldest batch first. The thread that adds a batch works on it, too.
 class Crew {
  public:
   explicit Crew(int thread_count) : before_(current_) {
@@ -83,7 +83,7 @@ class Crew {
   Crew* before_;
   std::mutex mutex_;
   std::condition_variable wake_, ended_;
-  std::list<Batch*> batches_;  ///< with pieces that nobody has taken
+  std::list<Batch*> batches_;  ///< batches with pieces that no thread has taken
   bool stopping_ = false;
   std::vector<std::thread> threads_;
 };

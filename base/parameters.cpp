@@ -61,7 +61,7 @@ std::string nearestName(const std::string& name, const std::vector<std::string>&
   std::string nearest;
   std::size_t smallest = name.size() / 2 + 1;
   for (const auto& candidate : names) {
-    // A name given without its group ("load_kg") is as near as can be.
+    // A name given without its group ("load_kg") is the nearest possible match.
     const bool is_tail = candidate.size() > name.size() && candidate.ends_with("." + name);
     const std::size_t distance = is_tail ? 0 : editDistance(name, candidate);
     if (distance < smallest) {
@@ -185,10 +185,9 @@ void Parameters::requireAllKnown() const {
   for (const auto& given : overrides_) {
     if (find(given.name)) continue;
     const std::string nearest = nearestName(given.name, names);
-    refuse(
-        given,
-        fmt::format("there is no parameter \"{}\" in this run{} (musclesim --print-config lists all, with --robot those of another robot)",
-                    given.name, nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?"));
+    refuse(given,
+           fmt::format("there is no parameter \"{}\" in this run{} (musclesim --print-config lists all; add --robot for another robot)",
+                       given.name, nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?"));
   }
 }
 

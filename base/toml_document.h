@@ -1,4 +1,4 @@
-/// TOML from a file, for parameters and sweeps.
+/// Reads TOML files, for parameters and sweeps.
 #pragma once
 
 #include <toml++/toml.h>

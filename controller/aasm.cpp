@@ -17,10 +17,11 @@ AdaptiveAttractors drawAttractors(const ControllerRequest& request) {
   auto& parameters = request.parameters;
   const int count = parameters.integer("aasm.attractor_count", 500, 1, 100000, "number of attractors");
   const double width = parameters.number("aasm.width", 0.25, "", 1e-3, 1e3, "standard deviation of the Gaussian about each attractor");
-  const double exponent = parameters.number("aasm.attractor_exponent", 0.25, "", 1e-3, 100,
-                                            "exponent of the entries' distribution: 1 uniform in -1 .. 1, towards 0 at the ends only");
-  const double rate =
-      parameters.number("aasm.learning_rate", 0.01, "", 0, 1, "share of the way to the state that an attractor learns per control step");
+  const double exponent =
+      parameters.number("aasm.attractor_exponent", 0.25, "", 1e-3, 100,
+                        "exponent of the entries' distribution: 1 uniform in -1 .. 1; smaller ones gather them near -1 and 1");
+  const double rate = parameters.number("aasm.learning_rate", 0.01, "", 0, 1,
+                                        "share of its distance to the state that an attractor moves per control step");
   const int period = parameters.integer("aasm.update_period", 100, 1, 1000000, "control steps between replacements of the attractors");
   RandomStream stream(request.seed, "aasm.attractors");
   return {AttractorMixture::random(request.muscle_count, count, width, exponent, stream), rate, period};
@@ -31,7 +32,7 @@ AdaptiveAttractors drawAttractors(const ControllerRequest& request) {
 AasmActivity::AasmActivity(Parameters& parameters)
     : length_mm_(parameters.number("aasm.length_mm", 100, "mm", 1e-3, 1e5, "distance from the target that counts as an error of 1")),
       e_min_(parameters.number("aasm.error_floor", 0.1, "", 1e-6, 1e6, "added to the squared error, so that its inverse is finite")),
-      mean_a_(parameters.number("aasm.discount", 0.9999, "", 1e-3, 1, "weight of the past relative to that of one control step later")) {}
+      mean_a_(parameters.number("aasm.discount", 0.9999, "", 1e-3, 1, "discount factor of the past per control step")) {}
 
 double AasmActivity::update(double d_mm) {
   const double e = std::pow(d_mm / length_mm_, 2);

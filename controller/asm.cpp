@@ -8,8 +8,9 @@ AttractorMixture drawMixture(const ControllerRequest& request) {
   auto& parameters = request.parameters;
   const int count = parameters.integer("asm.attractor_count", 400, 1, 100000, "number of random attractors");
   const double width = parameters.number("asm.width", 0.25, "", 1e-3, 1e3, "standard deviation of the Gaussian about each attractor");
-  const double exponent = parameters.number("asm.attractor_exponent", 0.25, "", 1e-3, 100,
-                                            "exponent of the entries' distribution: 1 uniform in -1 .. 1, towards 0 at the ends only");
+  const double exponent =
+      parameters.number("asm.attractor_exponent", 0.25, "", 1e-3, 100,
+                        "exponent of the entries' distribution: 1 uniform in -1 .. 1; smaller ones gather them near -1 and 1");
   RandomStream stream(request.seed, "asm.attractors");
   return AttractorMixture::random(request.muscle_count, count, width, exponent, stream);
 }

@@ -8,7 +8,7 @@
 namespace musclesim {
 
 ManualController::ManualController(std::unique_ptr<Controller> automatic, int muscle_count) : automatic_(std::move(automatic)) {
-  if (!automatic_) throw BadParameter("manual control: there is no controller to take over from");
+  if (!automatic_) throw BadParameter("manual control: needs a controller to take over from");
   if (muscle_count < 1) throw BadParameter("muscles of manual control", std::to_string(muscle_count), "be at least 1");
   pressures_.assign(static_cast<std::size_t>(muscle_count), 0.0);
 }

@@ -13,7 +13,7 @@ namespace {
 constexpr double largest_target_mm = 1e5;
 constexpr double largest_hand_mm = 1e9;
 
-/// Declares one coordinate of a target; a value given in the request counts as an override of it.
+/// Declares one coordinate of a target. A target in the request overrides it.
 double coordinate(const ControllerRequest& request, const std::string& name, double default_mm, int axis, const std::string& meaning) {
   if (request.target_mm) request.parameters.set(name, (*request.target_mm)[axis], "target");
   return request.parameters.number(name, default_mm, "mm", -largest_target_mm, largest_target_mm, meaning);
@@ -29,13 +29,12 @@ BadParameter unknownTask(const std::string& task) {
 Vector reportedHand(const State& state) {
   if (!state.hand_mm)
     throw BadParameter(
-        "the task needs a robot that reports its hand; this robot reports none: take a controller without a task, for example --controller "
-        "hold or random");
+        "the task needs a robot that reports the position of its hand; this robot does not: use a controller without a task, for "
+        "example --controller hold or random");
   const Vector& hand = *state.hand_mm;
   // Written so that NaN fails too.
   if (!(hand.cwiseAbs().array() <= largest_hand_mm).all())
-    throw Diverged(state.time_s, "hand",
-                   fmt::format("position ({}, {}, {}) mm is out of every robot's reach", hand.x(), hand.y(), hand.z()));
+    throw Diverged(state.time_s, "hand", fmt::format("position ({}, {}, {}) mm is beyond any robot's reach", hand.x(), hand.y(), hand.z()));
   return hand;
 }
 
@@ -82,9 +81,8 @@ double HeightTask::activity(const State& state) {
 ReachTask::ReachTask(const ControllerRequest& request)
     : Task(Target::make(request)),
       d_scale_mm_(request.parameters.number("reach_task.distance_scale_mm", 100, "mm", 1e-3, 1e5,
-                                            "how much nearer than its mean distance the hand must be for an activity of 1")),
-      mean_d_(request.parameters.number("reach_task.discount", 0.98, "", 1e-3, 1,
-                                        "weight of a distance relative to that of the decision after it")) {}
+                                            "the activity is 1 if the hand is this much nearer than its mean distance")),
+      mean_d_(request.parameters.number("reach_task.discount", 0.98, "", 1e-3, 1, "discount factor of past distances per decision")) {}
 
 double ReachTask::activity(const State& state) {
   const double d = target().distanceMm(state);                 // Eq. 8

@@ -7,7 +7,7 @@ namespace musclesim {
 
 namespace {
 
-/// Error of a fit without a group at the group's points.
+/// Fits all points but one group and returns the error at the points of the group.
 FitError errorWithout(const PointGroup& group, const LawModel& model, const StaticPoints& points, const LawFit& fit) {
   std::vector<bool> is_left_out(points.points.size(), false);
   for (const std::size_t i : group.of) is_left_out[i] = true;
@@ -18,14 +18,14 @@ FitError errorWithout(const PointGroup& group, const LawModel& model, const Stat
   return errorOf(*model.build(fitParameters(model, rest, {fit.parameters})), left_out);
 }
 
-/// Whether a group has anything to predict.
+/// Whether a group has points to predict.
 bool hasMeasured(const PointGroup& group, const StaticPoints& points) {
   for (const std::size_t i : group.of)
     if (!points.points[i].censored && !points.points[i].outlier) return true;
   return false;
 }
 
-/// Number of inner groups.
+/// Adds the errors of all groups to `inner` and `outer`. Returns the number of inner groups.
 int validate(const std::vector<PointGroup>& groups, const LawModel& model, const StaticPoints& points, const LawFit& fit, FitError& inner,
              FitError& outer) {
   int inner_count = 0;

@@ -5,10 +5,10 @@
 
 namespace musclesim {
 
-/// Errors at points of whole lengths and whole pressures, each predicted by a fit to all other points. The outermost lengths and pressures
-/// are apart: there a law has to extrapolate, which no map of the others can tell it.
+/// Cross-validated errors. Each group, all points of one length or of one pressure, is predicted by a fit to all other points. The
+/// outermost lengths and pressures are counted separately, because there the fit must extrapolate.
 struct CrossValidation {
-  FitError lengths, pressures;              ///< the inner ones
+  FitError lengths, pressures;              ///< inner groups
   FitError outer_lengths, outer_pressures;  ///< the shortest and the longest, the lowest and the highest
   int length_count = 0, pressure_count = 0;
 
@@ -16,7 +16,7 @@ struct CrossValidation {
   FitError both() const;
 };
 
-/// Fits start from the fit to all points.
+/// All fits start from the fit to all points.
 CrossValidation crossValidate(const LawModel& model, const StaticPoints& points, const LawFit& fit);
 
 }  // namespace musclesim

@@ -19,7 +19,7 @@ std::string pressureLabel(double pressure_ratio, const StaticPoints& points) {
   return fmt::format("p = {:.3g}", pressure_ratio);
 }
 
-/// At most `most_curves` groups, evenly chosen, the lowest and the highest among them.
+/// At most `most_curves` groups, evenly spaced, including the lowest and the highest.
 std::vector<PointGroup> shownGroups(const StaticPoints& points) {
   const auto all = groupByPressure(points.points);
   if (all.size() <= most_curves) return all;
@@ -45,7 +45,7 @@ void addPoint(DiagramSeries& series, double x, double y) {
   series.y.push_back(y);
 }
 
-/// The points of one pressure, apart by how they count; labels only where the mouse rests.
+/// The points of one pressure as three series: measured, censored, outliers. Labels appear as tooltips only.
 void addPoints(Diagram& forces, Diagram& residuals, const PointGroup& group, const ForceLaw& law, const StaticPoints& points,
                const Color& color) {
   DiagramSeries measured{"", color, {}, {}, SvgMark::disc}, censored{"", color, {}, {}, SvgMark::ring};

@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "law_families.h"
 #include "musclesim/base/error.h"
 
 namespace musclesim {
 
 namespace {
 
-/// A number with three digits, or a dash where there is none.
+/// A relative squared error with three digits, or a dash if it is not defined.
 std::string share(const FitError& error) {
   return error.count > 0 && error.measured_squares_N2 > 0 ? fmt::format("{:.2e}", error.relativeSquaredError()) : "-";
 }
@@ -23,7 +24,7 @@ nlohmann::json shareJson(const FitError& error) {
 
 std::string pressureText(const StaticPoints& points) {
   return points.full_scale_kPa ? fmt::format("pressure 1 is {:g} kPa", *points.full_scale_kPa)
-                               : std::string("pressures are the fractions of the file");
+                               : std::string("pressures are fractions, as in the file");
 }
 
 }  // namespace
@@ -43,7 +44,7 @@ std::vector<LawReport> fitLaws(const std::vector<std::string>& names, const Stat
     reports.push_back(std::move(report));
   }
   if (std::all_of(reports.begin(), reports.end(), [](const auto& report) { return !report.failure.empty(); }))
-    throw BadFile(points.file, "no law can be fitted: " + reports.front().failure);
+    throw BadFile(points.file, "no law could be fitted: " + reports.front().failure);
   return reports;
 }
 
@@ -68,7 +69,7 @@ std::string errorTable(const std::vector<LawReport>& reports) {
 std::string constantsText(const LawReport& report) {
   if (!report.failure.empty()) return fmt::format("{}: {}\n", report.model->name(), report.failure);
   if (report.model->isTable())
-    return fmt::format("{}: {} node forces, in the configuration file\n", report.model->name(), report.fit.constants.size());
+    return fmt::format("{}: {} forces at nodes, listed in the configuration file\n", report.model->name(), report.fit.constants.size());
   std::string out = fmt::format("{}:\n", report.model->name());
   for (const auto& constant : report.fit.constants)
     out += fmt::format(
@@ -104,7 +105,7 @@ nlohmann::json toJson(const LawReport& report) {
 
 std::string configurationToml(const LawReport& report, const StaticPoints& points) {
   const std::string name = report.model->name();
-  // File names may hold anything, comments end at a line's end.
+  // A file name may contain line ends, which would end the comment.
   std::string file = std::filesystem::path(points.file).filename().string();
   std::replace_if(
       file.begin(), file.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }, '?');

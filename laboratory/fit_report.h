@@ -1,4 +1,4 @@
-/// What a fit tells: tables, JSON, and the configuration file that drives any robot with the fitted muscle.
+/// Reports of a fit: tables, JSON, and a configuration file that gives any robot the fitted muscle.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@
 
 namespace musclesim {
 
-/// One law fitted to one muscle, or why it could not be.
+/// One law fitted to one muscle, or the reason why it could not be fitted.
 struct LawReport {
   std::shared_ptr<const LawModel> model;
   LawFit fit;
@@ -19,13 +19,13 @@ struct LawReport {
   std::unique_ptr<ForceLaw> law() const { return model->build(fit.parameters); }
 };
 
-/// Fits and validates each of the laws named. A law with too many constants for the points gets a failure; throws BadFile if all do.
+/// Fits and validates each of the named laws. A law with too many constants for the points gets a `failure`; throws BadFile if all do.
 std::vector<LawReport> fitLaws(const std::vector<std::string>& names, const StaticPoints& points, const Specimen& specimen,
                                const BraunLengths& lengths);
 
 /// One line per law, as Markdown: constants, relative squared errors in-sample and cross-validated, largest error.
 std::string errorTable(const std::vector<LawReport>& reports);
-/// One line per constant with its 95 % interval, then the warnings. Maps have no constants worth listing: one line says so.
+/// One line per constant with its 95 % interval, then the warnings. A map gets one line instead, since its constants are forces at nodes.
 std::string constantsText(const LawReport& report);
 nlohmann::json toJson(const LawReport& report);
 /// A TOML file that --config accepts.

@@ -99,7 +99,7 @@ Diagram overLoad(const std::string& title, const std::string& y_title, const std
   return diagram;
 }
 
-/// Force above the law at a length, of the points of one pressure; empty far outside of them.
+/// Force minus law at a length, interpolated from the points of one pressure; empty far outside of them.
 std::optional<double> excessAt(std::vector<FramePoint> points, double length_mm) {
   std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.length_mm < b.length_mm; });
   constexpr double margin_ratio = 0.03;
@@ -114,7 +114,7 @@ std::optional<double> excessAt(std::vector<FramePoint> points, double length_mm)
   return (1 - share) * (a.force_N - a.law_N) + share * (b.force_N - b.law_N);
 }
 
-/// The same at any pressure between those of the points.
+/// Force minus law at a length and a pressure, interpolated between the pressures of the points.
 std::optional<double> excessAt(const std::map<double, std::vector<FramePoint>>& points, double pressure_ratio, double length_mm) {
   const auto above = points.lower_bound(pressure_ratio);
   if (above == points.end()) return std::nullopt;
@@ -179,7 +179,7 @@ std::string frameCsv(const FrameReport& report) {
 
 std::unique_ptr<ForceLaw> frameLaw(const FrameSpecimen& specimen, const Parameters& parameters) {
   Parameters declared = parameters;
-  // A muscle of links: its shortest length is theirs.
+  // The shortest length of the muscle is that of its links.
   const double link_mm = 2 * MuscleSettings(declared).bead_radius_mm;
   return makeForceLaw(declared, std::max(2.0, std::round(specimen.minimum_mm / link_mm)) * link_mm, specimen.maximum_mm);
 }
@@ -204,7 +204,7 @@ DataComparison compareWithData(const std::vector<FramePoint>& lengths, const For
       ++comparison.outside_count;
       continue;
     }
-    // The longest length is the turning point: it has one way only.
+    // The longest length is the turning point and has one direction only.
     const double other_N = excessAt(unloading, point.pressure_ratio, point.length_mm).value_or(*one_N);
     ++comparison.compared_count;
     off += std::pow(law.tensionN(point.pressure_ratio, point.length_mm) + (*one_N + other_N) / 2 - point.force_N, 2);

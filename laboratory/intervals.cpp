@@ -7,11 +7,11 @@
 namespace musclesim {
 
 Scatter scatterOf(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& residuals) {
-  // Columns scaled to length 1, so that units do not decide about rank.
+  // Scale the columns to length 1, so that units do not influence the rank.
   const Eigen::VectorXd scale = jacobian.colwise().norm().transpose().cwiseMax(1e-300);
   const Eigen::MatrixXd scaled = jacobian * scale.cwiseInverse().asDiagonal();
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  constexpr double least_singular_ratio = 1e-6;  // difference quotients are good to about 1e-9
+  constexpr double least_singular_ratio = 1e-6;  // difference quotients are accurate to about 1e-9
   const auto rank = static_cast<Eigen::Index>((svd.singularValues().array() > least_singular_ratio * svd.singularValues()(0)).count());
   const Eigen::MatrixXd u = svd.matrixU().leftCols(rank);
   const Eigen::MatrixXd inverse =

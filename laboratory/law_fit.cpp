@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "intervals.h"
+#include "law_families.h"
 #include "least_squares.h"
 #include "musclesim/base/error.h"
 #include "point_checks.h"
@@ -14,9 +15,9 @@ namespace musclesim {
 
 namespace {
 
-/// How far a law is from a point, in N. Small forces are compared with the tension: where a law would push, a muscle hangs slack, and its
-/// sensor shows about 0. Larger ones are compared with the formula, so that a search that begins with a slack muscle finds its way. Of a
-/// censored point only an excess over the floor counts.
+/// Law minus measurement at a point, in N. A small measured force is compared with the tension, which is 0 where the law's formula would
+/// push: there the muscle is slack. A larger force is compared with the formula, so that a search that starts with a slack muscle has a
+/// gradient. For a censored point only an excess over the floor counts.
 double offN(const ForceLaw& law, const StaticPoint& point, double floor_N, double force_scale_N) {
   constexpr double small_share = 0.05;
   if (point.censored) return std::max(0.0, law.formulaN(point.pressure_ratio, point.length_mm) - floor_N);
@@ -53,7 +54,7 @@ LeastSquaresProblem problemOf(const LawModel& model, const StaticPoints& points,
   return problem;
 }
 
-/// 1.4826 times the median of the measured points' distances from a law: the standard deviation, were they normal.
+/// Robust standard deviation of the measured points from a law: 1.4826 times the median distance (exact for normal errors).
 double robustDeviationN(const ForceLaw& law, const StaticPoints& points) {
   std::vector<double> off_N;
   for (const auto& point : points.measured()) off_N.push_back(std::abs(offN(law, point, points.floor_N, points.largestForceN())));
@@ -121,7 +122,7 @@ class Judgement {
                                                                            std::max(fit_.parameters.cwiseAbs().maxCoeff(), 1e-12);
   }
 
-  /// Of the 95 % interval.
+  /// Half width of the 95 % interval.
   double halfWidth(Eigen::Index row) const {
     const double degrees = std::min(degreesOfFreedom(influence_.row(row).transpose(), variances_),
                                     static_cast<double>(std::max<Eigen::Index>(1, influence_.cols() - influence_.rows())));
@@ -145,8 +146,9 @@ class Judgement {
     for (const auto& constant : fit_.constants)
       if (!constant.low) names.push_back(constant.name);
     if (!names.empty())
-      fit_.warnings.push_back(fmt::format(
-          "the points cannot tell {} apart: many values of them together give the same forces; hold one of them", fmt::join(names, ", ")));
+      fit_.warnings.push_back(
+          fmt::format("the points do not determine {} separately: many combinations of their values give the same forces; fix one of them",
+                      fmt::join(names, ", ")));
   }
 
   void warnOfCorrelations() {
@@ -170,7 +172,7 @@ class Judgement {
       const double x = fit_.parameters(static_cast<Eigen::Index>(i));
       for (const double bound : {parameters[i].lowest, parameters[i].highest})
         if (std::abs(x - bound) <= 1e-6 * std::abs(bound))
-          fit_.warnings.push_back(fmt::format("{} rests at its bound {:g}: intervals do not hold", parameters[i].name, bound));
+          fit_.warnings.push_back(fmt::format("{} is at its bound {:g}: the intervals are not valid", parameters[i].name, bound));
     }
   }
 
@@ -208,7 +210,7 @@ Specimen specimenOf(const StaticPoints& points, std::optional<double> rest_lengt
 
 Eigen::VectorXd fitParameters(const LawModel& model, const StaticPoints& points, const std::vector<Eigen::VectorXd>& starts,
                               bool* converged) {
-  // The penalties of a table stand for points.
+  // For a table few points suffice, since penalties determine what the points do not.
   const std::size_t needed = model.isTable() ? fewest_points : 2 * model.parameters().size();
   if (points.measured().size() < needed)
     throw BadFile(points.file, fmt::format("{} points above the floor are too few for the law {} with {} constants; at least {} are needed",
@@ -231,13 +233,13 @@ LawFit fitLaw(const LawModel& model, const StaticPoints& points) {
 void markOutliers(StaticPoints& points, const Specimen& specimen) {
   constexpr double deviations = 6, force_share = 0.1;
   const double force_limit_N = force_share * specimen.force_scale_N;
-  // Where a law of six constants comes near to all points, none is far from its neighbours, and the costlier map need not be asked.
+  // If a law of six constants is near to all points, none is an outlier; then the costlier map need not be fitted.
   const auto law = makeLawModel("sarosi", specimen, {});
   const auto law_x = minimise(problemOf(*law, points, 0), law->starts()).x;
   if (largestOffN(*law->build(law_x), points) < force_limit_N / 2) return;
   const auto model = makeLawModel("map", specimen, {});
   Eigen::VectorXd x = minimise(problemOf(*model, points, 0), model->starts()).x;
-  constexpr double cauchy_per_deviation = 2.385;  // 95 % as good as least squares where errors are normal
+  constexpr double cauchy_per_deviation = 2.385;  // 95 % efficiency for normal errors
   constexpr double least_share = 1e-6;
   double deviation_N = 0;
   for (int round = 0; round < 3; ++round) {
@@ -254,8 +256,8 @@ void markOutliers(StaticPoints& points, const Specimen& specimen) {
     if (point.outlier) lines.push_back(fmt::format("{} ({:g} N, {:+.3g} N)", point.line, point.force_N, off_N));
   }
   if (!lines.empty())
-    points.notes.push_back(fmt::format("{} points are further than {:.3g} N from their neighbours and are left out; lines {}", lines.size(),
-                                       limit_N, fmt::join(lines, ", ")));
+    points.notes.push_back(fmt::format("{} points differ by more than {:.3g} N from their neighbours and are left out: lines {}",
+                                       lines.size(), limit_N, fmt::join(lines, ", ")));
 }
 
 }  // namespace musclesim

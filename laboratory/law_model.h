@@ -1,4 +1,4 @@
-/// Force laws as families of functions that a fit chooses from.
+/// A family of force laws with parameters that a fit adjusts.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,56 +12,51 @@
 
 namespace musclesim {
 
-/// The measured muscle as far as a family of laws needs to know it.
+/// The properties of the measured muscle that a family of laws needs.
 struct Specimen {
   double rest_length_mm = 0;  ///< s = 1, k = 0
   double shortest_mm = 0;     ///< measured
   double force_scale_N = 0;   ///< largest measured force
 };
 
-/// What Eq. 1 takes for its lengths: a number in mm is held, empty is fitted.
+/// The lengths of Eq. 1: a given length, in mm, is fixed; an empty one is fitted.
 struct BraunLengths {
   std::optional<double> minimum_mm, maximum_mm;
 };
 
-/// A number that the fit may choose.
+/// A parameter that the fit adjusts, with its bounds.
 struct FitParameter {
   std::string name;
   double lowest, highest;
 };
 
-/// A constant of the law as it is reported.
+/// A constant of the law, for reports.
 struct LawConstant {
   std::string name, unit;
-  bool is_factor = false;  ///< its interval is symmetric in the logarithm where its sign is sure
+  bool is_factor = false;  ///< its interval is symmetric in the logarithm if the sign is certain
 };
 
-/// One family. Parameters are what the fit moves, chosen so that it moves well; constants are what the law's formula calls them.
+/// One family. The fit adjusts its parameters, which are chosen for good convergence; reports give its constants, those of the law's
+/// formula.
 class LawModel {
  public:
   virtual ~LawModel() = default;
   virtual std::string name() const = 0;
   virtual const std::vector<FitParameter>& parameters() const = 0;
-  /// Where fits start.
+  /// Initial parameters of the fits.
   virtual std::vector<Eigen::VectorXd> starts() const = 0;
-  /// The law with these parameters. Throws BadParameter where there is none.
+  /// The law with these parameters. Throws BadParameter if they make no valid law.
   virtual std::unique_ptr<ForceLaw> build(const Eigen::VectorXd& parameters) const = 0;
   virtual std::vector<LawConstant> constants() const = 0;
   virtual Eigen::VectorXd constantsAt(const Eigen::VectorXd& parameters) const { return parameters; }
-  /// Whether the constants are values of a table, which penalties keep smooth, and not numbers with a meaning of their own.
+  /// True if the constants are values of a table, kept smooth by penalties, and have no meaning of their own.
   virtual bool isTable() const { return false; }
-  /// Further residuals in N, per point of the fit, that it makes small: they decide what the points leave open. May be empty.
+  /// Penalties: further residuals, in N per point of the fit. They determine what the points do not. May be empty.
   virtual Eigen::VectorXd penaltiesN(const Eigen::VectorXd&) const { return {}; }
-  /// Keys below "force_law." and values, for a configuration file.
+  /// Keys (below "force_law.") and values for a configuration file.
   virtual std::vector<std::pair<std::string, std::string>> configuration(const Eigen::VectorXd& parameters) const = 0;
   /// The measured length that corresponds to the maximum length of a robot's muscle, mm.
   virtual double restLengthMm(const Eigen::VectorXd& parameters) const = 0;
 };
-
-/// Names of all families: braun, chou-hannaford-linear (the four constants A, B, C, D), chou-hannaford (A, B, D, E, beta), sarosi, map.
-const std::vector<std::string>& lawModelNames();
-
-/// Throws BadParameter with the nearest name if there is no family of that name.
-std::unique_ptr<LawModel> makeLawModel(const std::string& name, const Specimen& specimen, const BraunLengths& lengths);
 
 }  // namespace musclesim

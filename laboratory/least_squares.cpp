@@ -12,10 +12,10 @@ namespace musclesim {
 
 namespace {
 
-/// Steps of the difference quotients, relative to the parameter, and at least this.
+/// Steps of the difference quotients: relative to the parameter, and the least step.
 constexpr double relative_step = 1e-6, least_step = 1e-8;
 
-/// The whole problem as one residual block: a law is built once for all points.
+/// The whole problem as one residual block, so that each evaluation builds the law only once for all points.
 class Block final : public ceres::CostFunction {
  public:
   explicit Block(const LeastSquaresProblem& problem) : problem_(problem) {
@@ -94,7 +94,7 @@ LeastSquaresResult minimise(const LeastSquaresProblem& problem, const std::vecto
     if (!isUsable(summary) || 2 * summary.final_cost >= best.sum_of_squares) continue;
     best = {x, 2 * summary.final_cost, summary.termination_type == ceres::CONVERGENCE};
   }
-  if (best.x.size() == 0) throw Error("least squares: none of the starts leads to a solution");
+  if (best.x.size() == 0) throw Error("least squares: no start leads to a solution");
   return best;
 }
 

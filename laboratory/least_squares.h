@@ -9,7 +9,7 @@ namespace musclesim {
 
 /// Minimise |r(x)|^2 over lowest <= x <= highest.
 struct LeastSquaresProblem {
-  /// Fills r(x). What it throws as musclesim::Error counts as "no such x".
+  /// Fills r(x). If it throws musclesim::Error, x counts as not allowed.
   std::function<void(const Eigen::VectorXd& x, Eigen::VectorXd& r)> residuals;
   int residual_count = 0;
   Eigen::VectorXd lowest, highest;
@@ -21,8 +21,8 @@ struct LeastSquaresResult {
   bool converged = false;
 };
 
-/// The best of the solutions from several starts (Levenberg and Marquardt; Ceres), derivatives by central differences. Deterministic.
-/// Throws Error if none of the starts leads anywhere.
+/// The best solution from several starts (Levenberg and Marquardt, by Ceres; derivatives by central differences). Deterministic.
+/// Throws Error if no start leads to a solution.
 LeastSquaresResult minimise(const LeastSquaresProblem& problem, const std::vector<Eigen::VectorXd>& starts);
 
 /// dr/dx by central differences.

@@ -23,7 +23,7 @@ class Frame {
     simulation_.parameters().requireAllKnown();
   }
 
-  /// Hangs another load and waits for rest.
+  /// Changes the load and waits for rest.
   FramePoint hang(double load_kg, FrameWay way) {
     dMass mass;
     dMassSetSphereTotal(&mass, std::max(load_kg, least_load_kg) * g_per_kg, drawn_radius_mm);
@@ -32,7 +32,7 @@ class Frame {
     return read(load_kg * gravity_m_per_s2, way, at_rest);
   }
 
-  /// Moves the held end slowly to another length and waits for rest; the first call holds it.
+  /// Moves the held end slowly to a length and waits for rest. The first call starts holding the end.
   FramePoint hold(double length_mm, FrameWay way) {
     const dJointID end = muscle().endJoint()->id();
     dBodySetKinematic(load_);
@@ -56,7 +56,7 @@ class Frame {
 
   static SimulationOptions optionsFor(const FrameSpecimen& specimen, const Parameters& parameters) {
     SimulationOptions options;
-    options.stepper = StepperKind::ode;  // it sees the load's changes and gives the force at the end
+    options.stepper = StepperKind::ode;  // this stepper follows changes of the load and reports the force at the end
     options.substeps = 10;
     options.parameters = parameters;
     options.parameters.set("rig.minimum_length_mm", specimen.minimum_mm, "specimen");
@@ -152,7 +152,7 @@ std::vector<FramePoint> loadSteps(const FrameSpecimen& specimen, const Parameter
 
 std::vector<FramePoint> lengthSteps(const FrameSpecimen& specimen, const Parameters& parameters, const std::vector<double>& pressures) {
   return thereAndBack(specimen, parameters, pressures, [](Frame& frame, int i, FrameWay way) {
-    constexpr double margin_ratio = 0.02;  // the ends themselves are the stops
+    constexpr double margin_ratio = 0.02;  // keeps clear of the stops at both ends
     const auto range = frame.range();
     const double share = margin_ratio + (1 - 2 * margin_ratio) * i / step_count;
     return frame.hold(range.shortest_mm + share * (range.longest_mm - range.shortest_mm), way);

@@ -1,4 +1,4 @@
-/// The paper's experiment in the simulator: a muscle in the load frame, its length under loads, its force at lengths.
+/// Simulates the paper's load-frame experiment: measures a muscle's length under given loads and its force at given lengths.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace musclesim {
 
-/// A muscle of the load frame. The paper measures a short, a medium and a long one and does not give their lengths; these are a choice.
+/// A muscle in the load frame. The paper measures a short, a medium and a long muscle without giving their lengths; ours are assumed.
 struct FrameSpecimen {
   std::string name;
   double minimum_mm, maximum_mm;
@@ -27,22 +27,23 @@ enum class FrameWay { loading, unloading };
 /// A muscle at rest in the frame.
 struct FramePoint {
   double pressure_ratio = 0, length_mm = 0;
-  double force_N = 0;  ///< weight of the load, or what a load cell at the held end reads
+  double force_N = 0;  ///< weight of the load, or the reading of a load cell at the held end
   double law_N = 0;    ///< F(p, l) at the same pressure and length
   FrameWay way = FrameWay::loading;
-  bool at_rest = false;  ///< had come to rest when it was read
+  bool at_rest = false;  ///< the muscle had come to rest when it was read
   int long_stop_count = 0, short_stop_count = 0, link_count = 0;
-  /// All links at stops: the stops carry the load, the law says nothing about the length. As long as one link is free, the law decides.
+  /// True if all links are at stops: then the stops carry the load, and the length does not follow from the law. If any link is free, it
+  /// does.
   bool isStopped() const { return long_stop_count + short_stop_count == link_count; }
 };
 
-/// Loads hung one after another, from none to the heaviest and back, at each pressure; the muscle comes to rest under each. The load is
-/// brought on slowly: whenever it is faster than before and slows down again, all bodies are stopped, so that it never swings past.
+/// Hangs loads one after another at each pressure, from none to the heaviest and back, and waits until the muscle rests under each. So that
+/// the load never overshoots, all bodies are stopped whenever its speed has passed a maximum (kinetic damping).
 /// `parameters`: overrides, for example of friction or force law.
 std::vector<FramePoint> loadSteps(const FrameSpecimen& specimen, const Parameters& parameters,
                                   const std::vector<double>& pressures = framePressures());
 
-/// Lengths imposed one after another at each pressure, from the shortest to the longest and back in ten steps; the force is the one at the
+/// Imposes lengths one after another at each pressure, from the shortest to the longest and back in ten steps each; reads the force at the
 /// held end.
 std::vector<FramePoint> lengthSteps(const FrameSpecimen& specimen, const Parameters& parameters,
                                     const std::vector<double>& pressures = framePressures());

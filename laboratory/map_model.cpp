@@ -9,7 +9,7 @@ namespace musclesim {
 
 namespace {
 
-/// Weights of the penalty, found by leaving out lengths and pressures of measured maps (docs/laboratory.md).
+/// Weights of the penalty, chosen by cross-validation on measured maps (docs/laboratory.md).
 constexpr double over_length_weight = 0.003, over_pressure_weight = 0.03;
 
 int lengthCount(double range_ratio) {
@@ -27,7 +27,7 @@ MapModel::MapModel(const Specimen& specimen)
 }
 
 std::vector<Eigen::VectorXd> MapModel::starts() const {
-  // A plane that vanishes at no pressure and at the shortest length; the map is linear in its nodes, one start is enough.
+  // Force proportional to pressure and to length above the shortest. The map is linear in its nodes, so one start is enough.
   Eigen::VectorXd start(pressure_count_ * length_count_);
   for (int i = 0; i < pressure_count_; ++i)
     for (int j = 0; j < length_count_; ++j)

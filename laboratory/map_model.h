@@ -1,4 +1,4 @@
-/// The measured map as a family: forces at nodes, kept smooth where points are few.
+/// The family of measured maps: forces at nodes, kept smooth where points are few.
 #pragma once
 
 #include "law_model.h"
@@ -6,8 +6,8 @@
 
 namespace musclesim {
 
-/// Nodes at 4 pressures, and at lengths about 5 % of the rest length apart (4 to 16). What keeps the map smooth is a penalty on the second
-/// differences of the nodes' forces: weak over length, where real maps bend, strong over pressure, where they are nearly straight.
+/// It has nodes at 4 pressures and at 4 to 16 lengths, about 5 % of the rest length apart. A penalty on the second differences of the
+/// forces at nodes keeps it smooth: weak over length, where measured maps bend, and strong over pressure, where they are nearly straight.
 class MapModel final : public LawModel {
  public:
   explicit MapModel(const Specimen& specimen);

@@ -12,10 +12,10 @@ namespace musclesim {
 
 namespace {
 
-/// No muscle gets this many times as long as it is at its shortest; the longest of the paper's rigs gets 5.8 times as long.
+/// Largest plausible ratio of the longest to the shortest length of a muscle; in the paper's rigs it is at most 5.8.
 constexpr double largest_length_quotient = 8;
 
-/// A value at its place, for messages.
+/// A pressure as text for messages.
 std::string pressureText(const StaticPoints& points, double ratio) {
   return points.full_scale_kPa ? fmt::format("{:g} kPa", ratio * *points.full_scale_kPa) : fmt::format("{:g}", ratio);
 }
@@ -24,13 +24,13 @@ void requireTwoOfEach(const StaticPoints& points) {
   const auto& first = points.points.front();
   if (groupByPressure(points.points).size() < 2)
     throw BadFile(points.file, first.line, 0,
-                  fmt::format("all {} points have the pressure {}: how the force grows with pressure cannot be told; at least 2 pressures "
-                              "(better 5 or more, from low to full) are needed",
+                  fmt::format("all {} points have the pressure {}: at least 2 pressures (better 5 or more, from low to "
+                              "full) are needed to tell how the force grows with pressure",
                               points.points.size(), pressureText(points, first.pressure_ratio)));
   if (groupByLength(points.points).size() < 2)
     throw BadFile(points.file, first.line, 0,
-                  fmt::format("all {} points have the length {:g} mm: how the force changes with length cannot be told; at least 2 lengths "
-                              "(better 4 or more) are needed",
+                  fmt::format("all {} points have the length {:g} mm: at least 2 lengths (better 4 or more) are needed to tell "
+                              "how the force changes with length",
                               points.points.size(), first.length_mm));
 }
 
@@ -39,14 +39,13 @@ void requireOneMusclesLengths(const StaticPoints& points) {
   if (longest_mm <= largest_length_quotient * shortest_mm) return;
   for (const auto& point : points.points)
     if (point.length_mm == shortest_mm)
-      throw BadFile(
-          points.file, point.line, 0,
-          fmt::format("length {:g} mm, but another is {:g} mm: no muscle gets more than {:g} times as long as its shortest length; "
-                      "are the columns swapped, or several muscles in one file (--where column=value)?",
-                      shortest_mm, longest_mm, largest_length_quotient));
+      throw BadFile(points.file, point.line, 0,
+                    fmt::format("length {:g} mm, but another is {:g} mm: no muscle extends to more than {:g} times its shortest length; "
+                                "are the columns swapped, or several muscles in one file (--where column=value)?",
+                                shortest_mm, longest_mm, largest_length_quotient));
 }
 
-/// The plane F = g + g_p p + g_l l nearest to the measured points must rise both ways.
+/// Fits the plane F = g + g_p p + g_l l to the measured points; it must rise with both p and l.
 void requireRisingForce(const StaticPoints& points) {
   const auto measured = points.measured();
   Eigen::MatrixXd columns(measured.size(), 3);
@@ -59,7 +58,7 @@ void requireRisingForce(const StaticPoints& points) {
   const Eigen::VectorXd slopes_N = columns.colPivHouseholderQr().solve(forces_N);
   const auto refuse = [&](const std::string& with) {
     throw BadFile(points.file,
-                  fmt::format("the force falls with {} ({:.3g} N over the whole range, by the nearest plane; must grow): a "
+                  fmt::format("the force falls with {} ({:.3g} N over the whole range, slope of the fitted plane; must grow): a "
                               "muscle pulls harder at higher pressure and at greater length; are columns swapped?",
                               with, with == "pressure" ? slopes_N(1) : slopes_N(2) * (1 - points.shortestMm() / points.longestMm())));
   };

@@ -1,11 +1,11 @@
-/// Whether a table can be static points of a muscle at all, before anything is fitted to it.
+/// Checks that a table can be static points of a muscle, before anything is fitted to it.
 #pragma once
 
 #include "static_points.h"
 
 namespace musclesim {
 
-/// Least number of points that any fit makes sense with.
+/// The least number of points for a fit.
 inline constexpr std::size_t fewest_points = 8;
 
 /// Throws BadFile for a table with too few points.

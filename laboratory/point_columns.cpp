@@ -6,15 +6,15 @@
 #include <cmath>
 
 #include "musclesim/base/error.h"
-#include "musclesim/base/text.h"
 #include "musclesim/base/parameters.h"
+#include "musclesim/base/text.h"
 #include "musclesim/base/units.h"
 
 namespace musclesim {
 
 namespace {
 
-/// What a quantity can be given in, and what a muscle's can be.
+/// A unit that a quantity can have in a file, and the plausible range of its values for a muscle.
 struct Unit {
   std::string quantity, unit;
   double factor, lowest, highest;  ///< range in the unit itself
@@ -54,7 +54,7 @@ const Unit* unitOf(const std::string& quantity, const std::string& unit) {
   return nullptr;
 }
 
-/// A column's name, its unit, and whether it is written: behind a colon, or as the name's ending.
+/// A column's name and unit. The unit may follow a colon or end the name; `has_unit` is false if neither is the case.
 struct MappedColumn {
   std::string name, unit;
   bool has_unit;
@@ -72,7 +72,7 @@ MappedColumn splitUnit(const std::string& written) {
   return {written, is_unit ? ending : "", is_unit};
 }
 
-/// What a name without a unit is taken for: fraction, mm, N.
+/// The unit assumed for a name without a unit: fraction, mm, N.
 const Unit& plainUnit(const std::string& quantity) {
   return *std::find_if(units().begin(), units().end(), [&](const Unit& unit) { return unit.quantity == quantity; });
 }
@@ -132,16 +132,17 @@ PointColumn PointColumns::find(const std::string& quantity, const StaticPointsOp
       if (unit.quantity == quantity && reader_.header()[i].text == withUnit(quantity, unit.unit)) found.push_back(columnOf(i, unit));
   if (found.size() == 1) return found[0];
   if (found.size() > 1)
-    throw BadFile(
-        file_, reader_.headerLine(), 0,
-        fmt::format("columns {} and {} both hold the {}; --columns {}=NAME chooses one", found[0].name, found[1].name, quantity, quantity));
+    throw BadFile(file_, reader_.headerLine(), 0,
+                  fmt::format("columns {} and {} both hold the {}; choose one with --columns {}=NAME", found[0].name, found[1].name,
+                              quantity, quantity));
   for (const auto& cell : reader_.header())
     if (cell.text == quantity) reader_.refuse(cell, fmt::format("column {} has no unit; allowed: {}", quantity, allowedNames(quantity)));
   std::vector<std::string> names;
   for (const auto& cell : reader_.header()) names.emplace_back(cell.text);
-  throw BadFile(file_, reader_.headerLine(), 0,
-                fmt::format("no column holds the {}; allowed: {}; the file has {}; --columns {}=NAME maps another", quantity,
-                            allowedNames(quantity), fmt::join(names, ", "), quantity));
+  throw BadFile(
+      file_, reader_.headerLine(), 0,
+      fmt::format("no column holds the {}; allowed: {}; the file has {}; if one of these holds it, name it with --columns {}=NAME",
+                  quantity, allowedNames(quantity), fmt::join(names, ", "), quantity));
 }
 
 bool PointColumns::selects(const std::vector<CsvCell>& cells) const {

@@ -1,4 +1,4 @@
-/// The columns of a table of static points: which holds what, in which unit.
+/// Finds the columns of pressure, length and force in a table of static points, with their units.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ namespace musclesim {
 struct PointColumn {
   std::size_t index = 0;
   std::string name;
-  double factor = 1;  ///< to fractions or kPa, mm, N
+  double factor = 1;  ///< converts to fractions or kPa, mm, N
   double lowest = 0, highest = 0;
   std::string unit, hint;  ///< hint: what a value out of range may mean
 
@@ -34,7 +34,7 @@ class PointColumns {
   /// Whether a row passes the filters.
   bool selects(const std::vector<CsvCell>& cells) const;
   const std::vector<std::string>& ignored() const { return ignored_; }
-  /// Mapped columns whose names have no unit, with the one they are taken to be in.
+  /// Mapped columns whose names have no unit, with the assumed unit.
   const std::vector<std::string>& assumed() const { return assumed_; }
 
  private:

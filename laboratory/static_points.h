@@ -13,8 +13,8 @@ struct StaticPoint {
   double pressure_ratio = 0;  ///< fraction of full scale
   double length_mm = 0;
   double force_N = 0;     ///< pulling positive
-  int line = 0;           ///< of the file
-  bool censored = false;  ///< the force is at or below the sensor's floor; all that is known is that it is not above it
+  int line = 0;           ///< line in the file
+  bool censored = false;  ///< the reading is at or below the sensor's floor: the force is known only to be at most the floor
   bool outlier = false;   ///< far from its neighbours; see markOutliers
 };
 
@@ -23,8 +23,8 @@ struct StaticPoints {
   std::string file;
   std::vector<StaticPoint> points;
   std::optional<double> full_scale_kPa;  ///< pressure of ratio 1; empty where the file holds fractions
-  double floor_N = 0;                    ///< of the censored points
-  std::vector<std::string> notes;        ///< what a user should know: columns ignored, rows skipped, points censored
+  double floor_N = 0;                    ///< the sensor's floor, for censored points
+  std::vector<std::string> notes;        ///< messages for the user: columns ignored, rows skipped, points censored
 
   double shortestMm() const;
   double longestMm() const;
@@ -34,21 +34,14 @@ struct StaticPoints {
   int censoredCount() const;
 };
 
-/// How a file is read.
+/// Options for reading a file.
 struct StaticPointsOptions {
   /// "pressure", "length" or "force" and the column that holds it. The unit is the name's ending (_kPa, _cm), or follows a colon (L:mm).
   std::vector<std::pair<std::string, std::string>> columns;
-  /// Column and value of the rows to keep; all must hold.
+  /// Keep only rows that have this value in this column, for all pairs.
   std::vector<std::pair<std::string, std::string>> where;
   std::optional<double> full_scale_kPa;    ///< default: the largest pressure of the file
-  std::optional<double> censored_below_N;  ///< default: a lowest force that occurs again and again is the sensor's floor
+  std::optional<double> censored_below_N;  ///< default: the lowest force, if it occurs repeatedly
 };
-
-/// Reads a CSV file with one column each of pressure (fraction), pressure_kPa, _bar or _MPa; length_mm, _cm or _m; force_N.
-/// Throws BadFile, with line, value and allowed range, for what no static test of a muscle can have given: missing units, values out of
-/// range, lengths that differ too much, forces that fall with pressure or length (columns swapped), fewer than two pressures or lengths.
-StaticPoints readStaticPoints(const std::string& file, const StaticPointsOptions& options = {});
-/// The same from text; `file` is used in messages.
-StaticPoints parseStaticPoints(const std::string& text, const std::string& file, const StaticPointsOptions& options = {});
 
 }  // namespace musclesim

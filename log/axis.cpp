@@ -9,12 +9,12 @@ namespace musclesim {
 
 namespace {
 
-/// Numbers beyond this are drawn at it, so that no difference of two overflows.
+/// Larger numbers are drawn at this limit, so that differences cannot overflow.
 constexpr double largest_number = 1e150;
-/// A range narrower than this part of its own numbers cannot have ticks that differ.
+/// The least width of a range, relative to its numbers, for which tick labels differ.
 constexpr double narrowest_ratio = 1e-9;
 
-/// An end this near to a tick, in parts of the range, moves to the tick.
+/// An end of the range moves to a tick that is nearer than this, relative to the range.
 constexpr double near_ratio = 0.01;
 
 /// The smallest of 1, 2, 5 times a power of ten that is not below `least`.

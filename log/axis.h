@@ -23,16 +23,16 @@ class Extent {
 /// Maps numbers to pixels. Ticks are multiples of 1, 2 or 5 times a power of ten.
 class Axis {
  public:
-  /// About `tick_count` ticks. `round_ends`: the range grows to the ticks beyond its ends; otherwise only where a tick is that near
-  /// (1 % of the range). An extent without width gets one.
+  /// Makes about `tick_count` ticks. With `round_ends` the range grows to the next tick at both ends; otherwise only to a tick within 1 %
+  /// of the range. An extent of zero width is widened.
   Axis(const Extent& extent, double first_pixel, double last_pixel, int tick_count, bool round_ends);
 
   double minimum() const { return minimum_; }
   double maximum() const { return maximum_; }
-  /// Numbers outside the range lie beyond the ends, but never more than the axis' length.
+  /// Numbers outside the range lie beyond the ends, by at most the length of the axis.
   double pixel(double value) const;
   const std::vector<double>& ticks() const { return ticks_; }
-  /// The number at a tick with as many digits as the ticks need.
+  /// The text of a tick's number, with as many digits as the ticks need.
   std::string label(double tick) const;
 
  private:

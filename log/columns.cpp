@@ -16,7 +16,7 @@ namespace musclesim {
 
 namespace {
 
-/// What stands between the quantity and the unit.
+/// The part of a name between the quantity and the unit.
 enum class Component { none, muscle, joint, axis };
 
 struct Unit {
@@ -25,7 +25,7 @@ struct Unit {
   FullScale full_scale = FullScale::none;
 };
 
-/// The first unit is the canonical one. A fraction has no name.
+/// The first unit is the canonical unit. The unit of a fraction has no name.
 struct Quantity {
   std::string_view name;
   Component component;
@@ -80,7 +80,7 @@ std::string allPatterns() {
   return out;
 }
 
-/// Names like the unknown one that would be accepted, for "did you mean".
+/// "did you mean" with the valid name that is nearest to an unknown name.
 std::string suggestion(const std::string& name) {
   constexpr std::size_t longest = 60;
   if (name.size() > longest) return "";
@@ -101,7 +101,7 @@ std::string suggestion(const std::string& name) {
   return nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest);
 }
 
-/// A whole number as a name writes it: no sign, no leading zero.
+/// A muscle index in a name: a whole number without sign or leading zero.
 std::optional<int> muscleIndex(std::string_view text) {
   constexpr std::size_t longest = 3;
   if (text.empty() || text.size() > longest || (text.size() > 1 && text[0] == '0')) return std::nullopt;
@@ -214,14 +214,6 @@ double fullScale(const Column& column, const RecordingInfo& info) {
   const std::string member = is_voltage ? "command_full_scale_V" : "pressure_full_scale_kPa";
   throw BadParameter(fmt::format("{}_{}_{}: {} can be converted to fractions only if the sidecar gives \"{}\"", column.quantity,
                                  column.muscle, column.unit, column.unit, member));
-}
-
-std::string signalUnit(const std::string& signal_name) {
-  try {
-    return parseColumnName(signal_name).unit;
-  } catch (const BadParameter&) {
-    return "";
-  }
 }
 
 }  // namespace musclesim

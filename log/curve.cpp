@@ -7,7 +7,7 @@ namespace musclesim {
 
 namespace {
 
-/// Collects points and thins them column by column.
+/// Collects points and thins them out, one pixel column after another.
 class Thinner {
  public:
   void add(SvgPoint point) {

@@ -43,7 +43,7 @@ void drawDiagram(Svg& svg, const Diagram& diagram, double left, double top) {
   svg.frame(box, frame_color);
 }
 
-/// Each label once, in the order of the diagrams.
+/// All labels without repetition, in the order of the diagrams.
 std::vector<LegendEntry> legendOf(const std::vector<Diagram>& diagrams) {
   std::vector<LegendEntry> entries;
   for (const auto& diagram : diagrams)

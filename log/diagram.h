@@ -1,4 +1,4 @@
-/// Diagrams of numbers over numbers: curves and measured points, several in one figure.
+/// Diagrams of y over x with curves and points; several in one figure.
 #pragma once
 
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace musclesim {
 
-/// One curve (mark none) or set of points of a diagram.
+/// A curve (mark none) or a set of points in a diagram.
 struct DiagramSeries {
-  std::string label;  ///< for the legend and where the mouse rests; empty: not in the legend
+  std::string label;  ///< for the legend and the tooltip; empty: not in the legend
   Color color;
   std::vector<double> x, y;  ///< NaN in y: a gap
   SvgMark mark = SvgMark::none;
@@ -23,10 +23,10 @@ struct Diagram {
   std::vector<DiagramSeries> series;
 };
 
-/// Colours for an ordered quantity from 0 to 1: blue, green, orange, red, of like brightness.
+/// Colour scale for a quantity from 0 to 1: blue, green, orange, red, of similar brightness.
 Color orderedColor(double ratio);
 
-/// The diagrams in rows of `column_count`, each with its axes, one legend for all on top. A self-contained SVG.
+/// Draws the diagrams in rows of `column_count`, each with its axes, under one common legend. Returns a self-contained SVG.
 std::string diagramsSvg(const std::string& title, const std::vector<Diagram>& diagrams, int column_count);
 
 }  // namespace musclesim

@@ -20,7 +20,7 @@ namespace {
 constexpr double figure_width = 960, figure_height = 640;
 constexpr double left_margin = 78, right_margin = 76, top_margin = 46;
 constexpr double panel_gap = 16, time_axis_height = 44, bottom_margin = 10;
-constexpr double upper_share_ratio = 0.55;  ///< of the height of both panels
+constexpr double upper_share_ratio = 0.55;  ///< share of the upper panel in the height of both
 
 std::vector<LegendEntry> legendEntries(const std::vector<Curve>& curves) {
   std::vector<LegendEntry> entries;
@@ -94,9 +94,9 @@ void RunFigure::drawPanel(const Panel& panel, const SvgBox& box, bool with_time_
 }
 
 void RunFigure::drawCurves(const std::vector<Curve>& curves, const SvgBox& box, const Axis& axis) {
-  // A curve along the frame shall not be cut in half.
+  // Room for the line width, so that a curve along the frame is not cut in half.
   const SvgBox clip{box.left - 1, box.top - 1, box.width + 2, box.height + 2};
-  // The first of the legend is drawn last, on top.
+  // The curve that comes first in the legend is drawn last, on top.
   for (auto curve = curves.rbegin(); curve != curves.rend(); ++curve)
     svg_.curve(curvePieces(recording_.time_s, curve->signal->values, timeAxis(box), axis, curve->between), curve->color, curve->width, clip,
                fmt::format("{} ({})", curve->label, curve->signal->name));

@@ -18,7 +18,7 @@ bool isMeasured(const Signal* signal) {
   return signal && std::any_of(signal->values.begin(), signal->values.end(), [](double value) { return !std::isnan(value); });
 }
 
-/// All measured signals "<quantity>_<i><unit>" in their muscles' colours.
+/// All measured signals "<quantity>_<i><unit>", each in the colour of its muscle.
 std::vector<Curve> muscleCurves(const Recording& recording, const std::string& quantity, const std::string& unit,
                                 const std::vector<Color>& muscle_colors) {
   std::vector<Curve> curves;

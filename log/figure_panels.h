@@ -1,4 +1,4 @@
-/// What the figure of a run shows: which signals of a recording, in which colours, under which titles.
+/// The contents of a run's figure: which signals of a recording it shows, in which colours and under which titles.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace musclesim {
 
-/// One signal as it shall be drawn.
+/// How one signal is drawn.
 struct Curve {
   const Signal* signal;
   Color color;
@@ -29,10 +29,10 @@ struct Panel {
   bool empty() const { return curves.empty() && right_curves.empty(); }
 };
 
-/// Above: height, target and activity; without a hand the angles, lengths or forces, whichever is measured first.
+/// The upper panel: height, target and activity; for a robot without a hand the first that is measured of angles, lengths and forces.
 Panel upperPanel(const Recording& recording, const std::vector<Color>& muscle_colors);
 
-/// Below: the pressures, or the commands if no pressure is measured.
+/// The lower panel: the pressures, or the commands if no pressure is measured.
 Panel lowerPanel(const Recording& recording, const std::vector<Color>& muscle_colors);
 
 }  // namespace musclesim

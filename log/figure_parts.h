@@ -1,4 +1,4 @@
-/// What all figures draw alike: axes, grid, legend.
+/// Parts that all figures share: axes, grid, legend.
 #pragma once
 
 #include <string>
@@ -21,13 +21,13 @@ struct LegendEntry {
   SvgMark mark = SvgMark::none;
 };
 
-/// The entries of a legend, row by row, none wider than `width`.
+/// The entries of a legend, split into rows no wider than `width`.
 std::vector<std::vector<LegendEntry>> legendRows(const std::vector<LegendEntry>& entries, double width);
 void drawLegend(Svg& svg, const std::vector<std::vector<LegendEntry>>& rows, double left, double top);
 
-/// Grid lines and ticks of the axis below a box; with labels and a title unless it is empty.
+/// Draws grid lines and ticks of the axis below a box; also labels and the title, unless the title is empty.
 void drawLowerAxis(Svg& svg, const Axis& axis, const SvgBox& box, const std::string& title);
-/// Grid lines, ticks, labels and title of the axis at the left of a box; the title stands at `title_x`.
+/// Draws grid lines, ticks, labels and title of the axis left of a box; the title is at `title_x`.
 void drawLeftAxis(Svg& svg, const Axis& axis, const SvgBox& box, const std::string& title, double title_x);
 
 }  // namespace musclesim

@@ -19,12 +19,12 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_rows = 10'000'000;
 
-/// Values over time (or over the row number), of one column or of the whole table.
+/// Values over time or over the row number.
 struct Series {
   std::vector<double> time_s, values;
 };
 
-/// The columns of a CSV file that are asked for.
+/// The requested columns of a CSV file.
 class Table {
  public:
   Table(const std::string& file, const std::vector<std::string>& names)
@@ -56,7 +56,7 @@ class Table {
   std::vector<std::vector<double>> values_;
 };
 
-/// The series at a time: a straight line between its points, or the last value. Before the first and after the last the nearest one.
+/// The value of the series at a time: interpolated linearly, or the last value; outside its range the nearest value.
 double valueAt(const Series& series, double time_s, bool linear) {
   const auto next = std::upper_bound(series.time_s.begin(), series.time_s.end(), time_s);
   const auto k = static_cast<std::size_t>(next - series.time_s.begin());
@@ -66,7 +66,7 @@ double valueAt(const Series& series, double time_s, bool linear) {
   return share == 0 ? series.values[k - 1] : (1 - share) * series.values[k - 1] + share * series.values[k];
 }
 
-/// The recording that is being made: names[i], values[i][row].
+/// Builds the recording.
 class Import {
  public:
   Import(const std::string& csv_file, const ImportMapping& mapping) : csv_file_(csv_file), mapping_(mapping) {
@@ -76,8 +76,10 @@ class Import {
       else
         columns_.push_back(&column);
     if (time_ == nullptr && !mapping.settle_s)
-      throw BadFile(mapping.file, "columns: time_s is missing; where rows are settled steps, rows.settle_s says how long each was held");
-    if (time_ != nullptr && mapping.settle_s) throw BadFile(mapping.file, "either columns.time_s or rows.settle_s, not both");
+      throw BadFile(mapping.file,
+                    "columns: time_s is missing; if each row is the reading at the end of a held command, give rows.settle_s, the time "
+                    "each command was held");
+    if (time_ != nullptr && mapping.settle_s) throw BadFile(mapping.file, "columns.time_s and rows.settle_s cannot both be given");
     if (time_ != nullptr && (time_->from.empty() || !time_->table.empty()))
       throw BadFile(mapping.file, "columns.time_s: must come from a column of the first table");
   }
@@ -106,7 +108,7 @@ class Import {
     if (time_ != nullptr) names.push_back(time_->from);
     for (const ImportColumn* column : columns_)
       if (!column->from.empty() && column->table.empty()) names.push_back(column->from);
-    if (names.empty()) throw BadFile(mapping_.file, "columns: none comes from the table");
+    if (names.empty()) throw BadFile(mapping_.file, "columns: at least one must come from the table");
     const Table first(csv_file_, names);
     for (std::size_t row = 0; row < first.rowCount(); ++row)
       clock_.push_back(time_ != nullptr ? first[time_->from][row] * time_->factor + time_->offset : static_cast<double>(row));
@@ -125,7 +127,7 @@ class Import {
     }
   }
 
-  /// In the recording's unit, with times that increase: of rows with one time the first stays.
+  /// The series in the recording's unit, with increasing times: of several rows with the same time the first is kept.
   static Series scaled(const ImportColumn& column, const Series& raw, const std::string& file) {
     Series result;
     for (std::size_t row = 0; row < raw.values.size(); ++row) {
@@ -149,7 +151,7 @@ class Import {
     rows_.push_back(std::move(row));
   }
 
-  /// Each step becomes two rows: where its command begins, and shortly before it ends, with the readings.
+  /// Makes two rows of each step: one where its command begins, and one with the readings shortly before it ends.
   void settledRows() {
     constexpr double read_at = 0.95;
     const auto every = static_cast<std::size_t>(mapping_.every);
@@ -158,8 +160,9 @@ class Import {
       addRow(number * *mapping_.settle_s, step, false);
       addRow((number + read_at) * *mapping_.settle_s, step, true);
     }
-    notes_.push_back(fmt::format("no clock: each of {} rows is taken for what was read {:g} s after its command began, {:g} s long",
-                                 clock_.size(), read_at * *mapping_.settle_s, *mapping_.settle_s));
+    notes_.push_back(
+        fmt::format("the table has no time: each of {} rows is taken as the reading {:g} s after its command began, {:g} s long",
+                    clock_.size(), read_at * *mapping_.settle_s, *mapping_.settle_s));
   }
 
   void evenRows() {
@@ -170,7 +173,7 @@ class Import {
       const double time_s = start_s + static_cast<double>(i) * *mapping_.step_s;
       addRow(time_s, time_s, true);
     }
-    notes_.push_back(fmt::format("rows every {:g} s, straight lines between the table's {} rows", *mapping_.step_s, clock_.size()));
+    notes_.push_back(fmt::format("rows every {:g} s, interpolated linearly between the table's {} rows", *mapping_.step_s, clock_.size()));
   }
 
   void ownRows() {
@@ -181,7 +184,7 @@ class Import {
       else if ((row - repeated_count) % static_cast<std::size_t>(mapping_.every) == 0)
         addRow(clock_[row], clock_[row], true);
     }
-    if (repeated_count > 0) notes_.push_back(fmt::format("{} rows have the time of the row before; they are left out", repeated_count));
+    if (repeated_count > 0) notes_.push_back(fmt::format("{} rows have the same time as the row before and are left out", repeated_count));
   }
 
   void cut() {
@@ -228,7 +231,7 @@ class Import {
   const std::string& csv_file_;
   const ImportMapping& mapping_;
   const ImportColumn* time_ = nullptr;
-  std::vector<const ImportColumn*> columns_;  ///< without the time
+  std::vector<const ImportColumn*> columns_;  ///< all columns but the time
   std::vector<double> clock_;                 ///< time of the first table's rows, or their numbers
   std::vector<Series> series_;                ///< per column
   std::vector<double> time_s_;

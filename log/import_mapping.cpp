@@ -14,7 +14,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Reads the members of one table and refuses those that nobody asked for.
+/// Reads the members of one table and refuses unknown members.
 class Members {
  public:
   Members(const toml::table& table, std::string file, std::string place)
@@ -97,7 +97,7 @@ void readRows(const toml::table& table, ImportMapping& mapping) {
   rows.requireAllKnown();
   if (mapping.every < 1) rows.refuse(*table.get("every"), "rows.every: must be at least 1");
   if (const toml::node* before = table.get("before"); before && !mapping.before_s)
-    rows.refuse(*before, "rows.before: needs rows.before_s, how long the plant rested");
+    rows.refuse(*before, "rows.before: needs rows.before_s, the time the plant rested");
   if (const toml::node* before = table.get("before"); before && !before->is_table())
     rows.refuse(*before, "rows.before: must be a table like { command_0 = 0 }");
   if (const toml::table* before = table["before"].as_table())
@@ -108,7 +108,7 @@ void readRows(const toml::table& table, ImportMapping& mapping) {
     }
 }
 
-/// Everything but columns and rows is the sidecar's.
+/// All members except columns and rows belong to the sidecar.
 std::string sidecarJson(toml::table table) {
   table.erase("columns");
   table.erase("rows");
@@ -125,7 +125,8 @@ ImportMapping readImportMapping(const std::string& toml_file) {
   ImportMapping mapping;
   mapping.file = toml_file;
   const toml::table* columns = table["columns"].as_table();
-  if (!columns) throw BadFile(toml_file, "has no table [columns] that says which column of the recording comes from which of the table");
+  if (!columns)
+    throw BadFile(toml_file, "has no section [columns], which must say which column of the table each column of the recording comes from");
   for (const auto& [key, node] : *columns) mapping.columns.push_back(readColumn(std::string(key.str()), node, toml_file));
   if (const toml::node* rows = table.get("rows")) {
     if (!rows->is_table())

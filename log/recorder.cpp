@@ -25,7 +25,7 @@ constexpr std::chrono::seconds longest_unwritten{1};
 
 }  // namespace
 
-/// The open CSV file, the rows that are not written yet, and the sidecar to be.
+/// The open CSV file, the rows not yet written, and the sidecar for close().
 struct Recorder::Implementation {
   Implementation(const std::string& file, RecordingInfo sidecar, std::vector<std::string> columns)
       : csv_file(file), info(std::move(sidecar)), rows(std::move(columns)) {
@@ -93,7 +93,7 @@ Recorder::~Recorder() {
   try {
     close(false);
   } catch (...) {
-    // The sidecar on the disk says "complete": false since the recorder was opened; there is nobody left to tell.
+    // A destructor cannot report the error; the sidecar on the disk still says "complete": false.
   }
   if (implementation_->descriptor >= 0) ::close(implementation_->descriptor);
 }

@@ -21,7 +21,7 @@ namespace musclesim {
 namespace {
 
 constexpr std::size_t largest_sidecar_bytes = std::size_t{16} << 20;
-/// A measured pressure outside these fractions of full scale is more likely a wrong unit than a sensor's error.
+/// A measured pressure outside these fractions of full scale more likely has a wrong unit than a sensor error.
 constexpr double plausible_pressure_minimum = -0.5, plausible_pressure_maximum = 1.5;
 
 /// A column of the file that becomes a signal (or the time).
@@ -71,7 +71,7 @@ void TableReader::readHeader() {
     if (!isIgnored(cell.text)) addColumn(cell, i);
     if (isIgnored(cell.text)) ignored += (ignored.empty() ? "" : ", ") + std::string(cell.text);
   }
-  if (!ignored.empty()) recording_.notes.push_back("columns ignored as asked: " + ignored);
+  if (!ignored.empty()) recording_.notes.push_back("columns ignored on request: " + ignored);
   for (const std::string& name : options_.ignore_columns)
     if (std::ranges::none_of(csv_.header(), [&](const CsvCell& cell) { return cell.text == name; }))
       recording_.notes.push_back("there is no column " + name + " to ignore");
@@ -161,11 +161,11 @@ void TableReader::addNotes() {
   }
   for (const auto& [conversion, names] : converted) recording_.notes.push_back(conversion + names);
   for (const auto& [name, deviation] : recording_.info.noise_std)
-    if (!recording_.find(name)) recording_.notes.push_back("noise_std of " + name + ", which is no column of this recording");
+    if (!recording_.find(name)) recording_.notes.push_back("noise_std names " + name + ", which is not a column of this recording");
   noteSlowRows();
   for (const auto& signal : recording_.signals) {
     const bool is_empty = std::all_of(signal.values.begin(), signal.values.end(), [](double value) { return std::isnan(value); });
-    if (is_empty) recording_.notes.push_back(signal.name + " holds no value in any row");
+    if (is_empty) recording_.notes.push_back(signal.name + " has no value in any row");
     if (!signal.name.starts_with("pressure_")) continue;
     const auto odd = std::find_if(signal.values.begin(), signal.values.end(),
                                   [](double value) { return value < plausible_pressure_minimum || value > plausible_pressure_maximum; });
@@ -174,7 +174,7 @@ void TableReader::addNotes() {
   }
 }
 
-/// Milliseconds in place of seconds would be simulated, for hours.
+/// Warns of long steps: if time_s were in milliseconds, a replay would take hours.
 void TableReader::noteSlowRows() {
   constexpr double slow_s = 2;
   const std::vector<double>& time_s = recording_.time_s;
@@ -183,10 +183,10 @@ void TableReader::noteSlowRows() {
   std::adjacent_difference(time_s.begin(), time_s.end(), steps_s.begin());
   const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
   std::nth_element(steps_s.begin() + 1, middle, steps_s.end());
-  if (*middle > slow_s) recording_.notes.push_back(fmt::format("rows are {:g} s apart: is time_s in seconds?", *middle));
+  if (*middle > slow_s) recording_.notes.push_back(fmt::format("typical rows are {:g} s apart: is time_s in seconds?", *middle));
 }
 
-/// The text without a last line that lacks its line end, if the sidecar says that the writer did not finish.
+/// Drops a last line without line end if the sidecar says that the writer did not finish.
 std::string_view withoutTornLine(std::string_view text, Recording& recording) {
   if (recording.info.complete.value_or(true)) return text;
   recording.notes.push_back("the sidecar says \"complete\": false: the run stopped early or is still being recorded");

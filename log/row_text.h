@@ -1,4 +1,4 @@
-/// Rows of a recording as text: what writeRecording and Recorder put into a CSV file, and nothing that readRecording would refuse.
+/// Writes rows of a recording as CSV text, for writeRecording and Recorder. It refuses everything that readRecording would refuse.
 #pragma once
 
 #include <string>
@@ -6,10 +6,10 @@
 
 namespace musclesim {
 
-/// Commands may leave 0..1 by this much (rounding in the program that gives them) and are clamped.
+/// Commands may lie outside 0..1 by this much, because of rounding in their source; they are clamped.
 inline constexpr double command_slack_ratio = 1e-9;
 
-/// Appends the fewest digits that read back to the same double; nothing for NaN.
+/// Appends a number with the fewest digits that read back to the same double; appends nothing for NaN.
 void appendNumber(std::string& text, double value);
 
 class RowText {

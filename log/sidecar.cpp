@@ -38,7 +38,7 @@ const std::vector<std::string>& knownMembers() {
   return names;
 }
 
-/// What runs of this program write besides; nobody needs to be told of it.
+/// Further members that runs of this program write. The reader accepts them without a note.
 bool isOfARun(const std::string& member) {
   static const std::vector<std::string> names = {"controller",      "task",       "stepper", "substeps",
                                                  "internal_step_s", "parameters", "verdict", "by_hand_s"};
@@ -49,7 +49,7 @@ bool isKnown(const std::string& member) {
   return std::find(knownMembers().begin(), knownMembers().end(), member) != knownMembers().end();
 }
 
-/// Reads the members one by one; each function refuses a wrong type or value at its place.
+/// Reads the members one by one. Each function refuses a wrong type or value and gives its place.
 class SidecarReader {
  public:
   SidecarReader(const std::string& text, const std::string& file, const std::vector<std::string>& ignore_columns)
@@ -202,7 +202,7 @@ void SidecarReader::keepFurtherMembers(RecordingInfo& info, std::vector<std::str
     names += (names.empty() ? "" : ", ") + inQuotes(member);
   }
   info.extra_json = further.dump();
-  if (!names.empty()) notes.push_back("further members of the sidecar, kept as they are: " + names);
+  if (!names.empty()) notes.push_back("unknown members of the sidecar, kept unchanged: " + names);
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ OrderedJson sidecarJson(const RecordingInfo& info) {
   return object;
 }
 
-/// Runs `action`; what is wrong with text that the caller made is the caller's fault, not a file's.
+/// Runs `action` and rethrows BadFile as BadParameter, since the text comes from the caller and not from a file.
 template <class Action>
 auto asBadParameter(const Action& action) {
   try {

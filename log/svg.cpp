@@ -9,7 +9,7 @@ namespace musclesim {
 
 namespace {
 
-/// Colours brighter than this get a casing; yellow, aquamarine, green, pink and light gray are, orange is not.
+/// Lines of colours brighter than this get a darker outline: yellow, aquamarine, green, pink and light gray, but not orange.
 constexpr double casing_brightness = 0.68;
 constexpr double casing_darkness_ratio = 0.62;
 constexpr double casing_extra_width = 0.9;
@@ -33,7 +33,7 @@ std::size_t characterLength(std::string_view text, std::size_t offset) {
   return 0;
 }
 
-/// Pixels with two digits behind the point, without trailing zeros.
+/// A number of pixels with at most two decimals.
 std::string pixels(double value) {
   std::string text = fmt::format("{:.2f}", value);
   while (text.back() == '0') text.pop_back();

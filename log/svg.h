@@ -31,10 +31,10 @@ struct SvgTextStyle {
   SvgAnchor anchor = SvgAnchor::start;
   std::string color = "#333333";
   bool bold = false;
-  bool turned = false;  ///< reads from below to above
+  bool turned = false;  ///< by 90 degrees, to read upwards
 };
 
-/// Text as it may stand between tags and in attributes: markup escaped, control characters and broken UTF-8 replaced by "?".
+/// Escapes text for use between tags and in attributes; replaces control characters and invalid UTF-8 by "?".
 std::string escapedXml(std::string_view text);
 
 /// "#rrggbb"; components outside 0..1 are clamped.
@@ -46,7 +46,7 @@ Color darkened(const Color& color, double ratio);
 /// How bright a colour looks on a screen, 0 (black) .. 1 (white). Source: ITU-R BT.709, luma coefficients.
 double brightness(const Color& color);
 
-/// A drawing that grows from back to front.
+/// A drawing. Later elements cover earlier ones.
 class Svg {
  public:
   Svg(double width, double height, const std::string& title);
@@ -54,14 +54,14 @@ class Svg {
   void line(SvgPoint from, SvgPoint to, const std::string& color, double width);
   void frame(const SvgBox& box, const std::string& color);
   void text(SvgPoint where, const std::string& words, const SvgTextStyle& style);
-  /// Lines through the points of each piece, clipped to `clip`. A piece of one point is drawn as a dot. Light colours get a darker casing,
-  /// so that they can be seen on white. `hint` is shown where the mouse rests.
+  /// Lines through the points of each piece, clipped to `clip`. A piece of one point is drawn as a dot. Light colours get a darker outline
+  /// to be visible on white. `hint` is the tooltip.
   void curve(const std::vector<std::vector<SvgPoint>>& pieces, const Color& color, double width, const SvgBox& clip,
              const std::string& hint);
-  /// A short piece of a curve for a legend.
+  /// A short line that stands for a curve in a legend.
   void sample(SvgPoint from, double length, const Color& color, double width);
 
-  /// A point. `hint` is shown where the mouse rests.
+  /// A point. `hint` is the tooltip.
   void mark(SvgPoint where, SvgMark mark, const Color& color, const std::string& hint);
 
   /// The finished document.

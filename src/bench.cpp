@@ -26,9 +26,10 @@ struct BenchArguments {
   std::string out = "docs";
 };
 
-constexpr double shortest_cpu_s = 0.1;  ///< what is fast goes on for so long: its first steps, from cold memory, must not count
+constexpr double shortest_cpu_s =
+    0.1;  ///< fast runs are extended to this time, so that their first, slower steps (cold caches) do not matter
 
-/// What is measured: one line of the figure.
+/// A configuration to measure: one line of the figure.
 struct Candidate {
   std::string name;
   PhysicsKind physics;
@@ -59,8 +60,8 @@ double cpuSeconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-/// CPU time over simulated time of one run under random pressures, new ones every 0.25 s of true time. It ends after the duration, but
-/// not before shortest_cpu_s, or at the time limit, after the control step that passes it.
+/// Measures CPU time over simulated time of one run under random pressures, which change every 0.25 s of true time. The run ends after the
+/// duration, but not before shortest_cpu_s; it ends early after the control step in which it passes the time limit.
 BenchRun measure(const Candidate& candidate, int muscle_count, const BenchArguments& arguments) {
   SimulationOptions options;
   options.physics = candidate.physics;
@@ -100,7 +101,7 @@ BenchRun measure(const Candidate& candidate, int muscle_count, const BenchArgume
   return run;
 }
 
-/// The run with the median ratio.
+/// The run with the median ratio among the repeats.
 BenchRun median(std::vector<BenchRun> runs) {
   std::sort(runs.begin(), runs.end(), [](const BenchRun& a, const BenchRun& b) { return a.ratio < b.ratio; });
   BenchRun result = runs[runs.size() / 2];
@@ -115,7 +116,7 @@ int bench(const ModelOptions& model, const BenchArguments& arguments) {
   const std::vector<Candidate> all = candidates();
   std::vector<std::vector<std::vector<BenchRun>>> runs(all.size());  // by candidate, number of muscles, repeat
   for (auto& of_candidate : runs) of_candidate.resize(arguments.muscle_counts.size());
-  // Every repeat goes through everything, candidates in turn: what else the machine does for a while meets one repeat of many.
+  // Each repeat measures everything once, so that other load on the machine for a while disturbs only one repeat of each point.
   for (int repeat = 0; repeat < arguments.repeat_count; ++repeat)
     for (std::size_t n = 0; n < arguments.muscle_counts.size(); ++n)
       for (std::size_t c = 0; c < all.size(); ++c) {
@@ -145,8 +146,10 @@ int bench(const ModelOptions& model, const BenchArguments& arguments) {
 Action addBench(CLI::App& command, ModelOptions& model) {
   auto arguments = std::make_shared<BenchArguments>();
   command.add_option("--duration", arguments->duration_s, "Simulated time per run, in true s")->capture_default_str();
-  command.add_option("--time-limit", arguments->time_limit_s, "CPU time in s after which a run is cut short")->capture_default_str();
-  command.add_option("--repeats", arguments->repeat_count, "Runs of which the median counts")->capture_default_str();
+  command.add_option("--time-limit", arguments->time_limit_s, "A run that has used this much CPU time, in s, is cut short")
+      ->capture_default_str();
+  command.add_option("--repeats", arguments->repeat_count, "Number of runs per point; the report gives their median")
+      ->capture_default_str();
   command.add_option("--muscles", arguments->muscle_counts, "Numbers of muscles, separated by commas")
       ->delimiter(',')
       ->capture_default_str();

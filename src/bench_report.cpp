@@ -94,9 +94,10 @@ std::string benchTable(const std::vector<BenchCurve>& curves, double duration_s,
       "true time. r < 1 is faster than real time. `original` physics is 31.6 times slower than true\ntime: its r is per second of its own "
       "clock, as in the paper.\n\n";
   text += fmt::format(
-      "All of it is one process' work; every number is the median of its repeats over {:g} true seconds or, where that is longer, {:g} s "
-      "of CPU time. `*`: cut short after {:g} s of CPU time and not repeated. Exponent: of n in a power law through the points from n = 10 "
-      "on. Spread: the largest over the smallest of the repeats, median and worst over all n; far from 1 where the machine had other "
+      "One process measured all of this; every number is the median of its repeats over {:g} true seconds or, where that is longer, {:g} s "
+      "of CPU time. `*`: cut short after {:g} s of CPU time and not repeated. Exponent: b of the power law a n^b, fitted to the points "
+      "from n = 10 "
+      "on. Spread: the largest over the smallest of the repeats, median and worst over all n; it is far from 1 if the machine had other "
       "work.\n\n",
       duration_s, shortest_cpu_s, time_limit_s);
   text += "| |";
@@ -118,7 +119,8 @@ std::string benchTable(const std::vector<BenchCurve>& curves, double duration_s,
                         gap_mm, contacts);
   }
   text +=
-      "\nInternal steps: per control step of 0.01 s. Joint gap: the largest over all n; dWorldQuickStep is fast because it leaves gaps.\n";
+      "\nInternal steps: per control step of 0.01 s. Joint gap: the largest over all n; dWorldQuickStep is fast because it lets joints "
+      "drift apart.\n";
   for (const char* physics : {"original", "si"}) {
     const BenchCurve *ode = nullptr, *chain = nullptr;
     for (const BenchCurve& curve : curves) {

@@ -20,11 +20,12 @@ struct BenchCurve {
   std::vector<BenchRun> runs;
 };
 
-/// r = a n^b through the points from `first_count` muscles on, least squares of the logarithms; NaN for less than two points.
+/// The exponent b of r = a n^b, fitted to the points with at least `first_count` muscles by least squares of the logarithms; NaN for fewer
+/// than two points.
 double fittedExponent(const BenchCurve& curve, int first_count);
 
 std::string benchTable(const std::vector<BenchCurve>& curves, double duration_s, double shortest_cpu_s, double time_limit_s);
-/// r over n, both logarithmic, with the paper's curve.
+/// The figure: r over n, both axes logarithmic, with the paper's curve.
 std::string benchFigure(const std::vector<BenchCurve>& curves);
 nlohmann::json benchJson(const std::vector<BenchCurve>& curves);
 

@@ -30,7 +30,7 @@ int makeCases(MakeArguments& arguments) {
   arguments.make.progress = [&](int done, int count) { progress.show(done, count); };
   const auto key = blind::make(arguments.folder, arguments.keys, arguments.make);
   if (key.empty()) {
-    fmt::print(stderr, "musclesim: interrupted; the cases made so far have no key yet; the same call goes on\n");
+    fmt::print(stderr, "musclesim: interrupted; the key is not written yet; repeat the same command to make the missing cases\n");
     return interrupted_base + interruptSignal();
   }
   fmt::print("cases   {}\nkey     {}\nseal    {}/seal.json\n", arguments.make.count + arguments.make.arm_count, key.string(),
@@ -41,16 +41,17 @@ int makeCases(MakeArguments& arguments) {
 Action addMake(CLI::App& command) {
   auto arguments = std::make_shared<MakeArguments>();
   command.add_option("folder", arguments->folder, "New folder for the cases and the seal")->required();
-  command.add_option("--keys", arguments->keys, "Folder for the key, out of reach of `blind run`")->required();
-  command.add_option("--count", arguments->make.count, "Cases on rig and elbow in turn (default 120)");
-  command.add_option("--arm-count", arguments->make.arm_count, "Further cases on the arm (default 12)");
-  command.add_option("--seed", arguments->make.seed, "Of all draws (default 1)");
-  command.add_option("--duration-s", arguments->make.duration_s, "Of each recording (default 6); half of it on the arm");
-  addList(command, "--kinds", arguments->make.kinds, "Only these: single, double, open, null");
-  addList(command, "--causes", arguments->make.causes, "Only these effects of the catalogue (default: all in turn)");
+  command.add_option("--keys", arguments->keys, "Folder for the key; `blind run` must not be able to read it")->required();
+  command.add_option("--count", arguments->make.count, "Number of cases on rig and elbow, alternating (default 120)");
+  command.add_option("--arm-count", arguments->make.arm_count, "Number of further cases on the arm (default 12)");
+  command.add_option("--seed", arguments->make.seed, "Seed of all random choices (default 1)");
+  command.add_option("--duration-s", arguments->make.duration_s,
+                     "Length of each recording in s (default 6); recordings of the arm have half of it");
+  addList(command, "--kinds", arguments->make.kinds, "Make only these kinds of case: single, double, open, null");
+  addList(command, "--causes", arguments->make.causes, "Draw causes from these effects of the catalogue only (default: all, in turn)");
   command.add_option("--jobs", arguments->make.job_count, "Threads (default: one per core); the cases do not depend on it")
       ->check(CLI::Range(1, 1024));
-  command.add_option("--commit", arguments->make.commit, "Version of the sources, noted in the seal");
+  command.add_option("--commit", arguments->make.commit, "Version of the sources, to be noted in the seal");
   command.add_flag("--quiet", arguments->quiet, "No progress line");
   return [arguments] { return makeCases(*arguments); };
 }
@@ -67,7 +68,7 @@ int runCases(RunArguments& arguments) {
   arguments.run.progress = [&](int done, int count) { progress.show(done, count); };
   const blind::RunSummary summary = blind::run(arguments.folder, arguments.run);
   fmt::print("answers  {} of {}\n", summary.answered, summary.count);
-  if (summary.failed > 0) fmt::print("failed   {}: the answer is the reason why the case cannot be diagnosed\n", summary.failed);
+  if (summary.failed > 0) fmt::print("failed   {}: these cases cannot be diagnosed; their answers say why\n", summary.failed);
   return interruptSignal() != 0 ? interrupted_base + interruptSignal() : done;
 }
 
@@ -77,7 +78,7 @@ Action addRunCases(CLI::App& command) {
   command.add_option("--jobs", arguments->run.job_count, "Cases at once (default: one per core); the answers do not depend on it")
       ->check(CLI::Range(1, 1024));
   addList(command, "--candidates", arguments->run.candidates, "Only these effects, by id, separated by commas");
-  command.add_option("--commit", arguments->run.commit, "Version of the sources, noted with the answers");
+  command.add_option("--commit", arguments->run.commit, "Version of the sources, to be noted with the answers");
   command.add_flag("--quiet", arguments->quiet, "No progress line");
   return [arguments] { return runCases(*arguments); };
 }
@@ -133,7 +134,7 @@ int scoreCases(const ScoreArguments& arguments) {
     return done;
   }
   for (const auto& [words, name] : {std::pair("verdict right", "verdict"), std::pair("acceptable first", "acceptable"),
-                                    std::pair("acceptable among three", "acceptable3"), std::pair("first stage right", "stage"),
+                                    std::pair("acceptable in first three", "acceptable3"), std::pair("first stage right", "stage"),
                                     std::pair("truth in the ambiguity set", "covered"), std::pair("open causes detected", "open_detected"),
                                     std::pair("false alarms", "false_alarm")})
     printRate(all, words, name);
@@ -157,9 +158,10 @@ Action addBlind(CLI::App& command) {
   const Action make_action = addMake(*make);
   CLI::App* run = command.add_subcommand("run", "Diagnoses every case that has no answer yet, without the key");
   const Action run_action = addRunCases(*run);
-  CLI::App* score = command.add_subcommand("score", "Checks the fingerprints, opens the key and counts");
+  CLI::App* score = command.add_subcommand("score", "Checks the fingerprints, opens the key and scores the answers");
   const Action score_action = addScore(*score);
-  CLI::App* follow = command.add_subcommand("follow", "Acts on the answers: true effect left out, proposed experiment, fresh recording");
+  CLI::App* follow = command.add_subcommand(
+      "follow", "Follows up the answers: diagnoses without the true effect, makes the proposed experiment, predicts a fresh recording");
   const Action follow_action = addFollow(*follow);
   return [=] { return make->parsed() ? make_action() : run->parsed() ? run_action() : score->parsed() ? score_action() : follow_action(); };
 }

@@ -14,7 +14,7 @@ namespace musclesim::program {
 
 namespace {
 
-/// An empty value (--step "") would count as "not given". Sub-commands included.
+/// Refuses empty values (--step ""), which would count as not given; also in sub-commands.
 void refuseEmptyValues(CLI::App& command) {
   for (CLI::App* below : command.get_subcommands({})) refuseEmptyValues(*below);
   for (CLI::Option* option : command.get_options())
@@ -26,12 +26,12 @@ void refuseEmptyValues(CLI::App& command) {
 CommandLine::CommandLine()
     : app_(
           "Simulator of robots driven by pneumatic artificial muscles.\n"
-          "Without a sub-command it is `run`: the RoboticArm finds its height under attractor selection.") {
+          "Without a sub-command it does `run`: attractor selection lifts the RoboticArm's hand to a height.") {
   app_.name("musclesim");
   app_.set_version_flag("--version", "musclesim " MUSCLESIM_VERSION);
   app_.footer(
       "Exit status: 0 done, 1 internal error, 2 usage, 3 bad input file, 4 simulation diverged,\n"
-      "5 input/output error, 6 incomplete sweep, 130/143 interrupted (files complete up to then).");
+      "5 input/output error, 6 incomplete sweep, 130/143 interrupted (the files hold everything up to then).");
   app_.require_subcommand(0, 1);
 
   run_ = addRun(app_, model_);
@@ -39,23 +39,22 @@ CommandLine::CommandLine()
     CLI::App* command = app_.add_subcommand(name, description);
     commands_.emplace_back(command, addTo(*command));
   };
-  add("replay", "Plays a recording's commands through the model and compares",
+  add("replay", "Simulates a recording's commands and compares the result with its measurements",
       [&](CLI::App& command) { return addReplay(command, model_); });
   add("import", "Turns a table of measurements into a recording", addImport);
-  add("effects", "Lists the effects that a clean model leaves out, or describes one", addEffects);
+  add("effects", "Lists the effects that can be added to the model, or describes one", addEffects);
   add("fit", "Fits force laws to measured static points", addFit);
-  add("experiment", "The paper's load-frame experiment in the simulator",
-      [&](CLI::App& command) { return addExperiment(command, model_); });
-  add("bench", "Measures r(n), CPU time over simulated time, for all steppers and muscle models",
+  add("experiment", "Simulates the paper's load-frame experiment", [&](CLI::App& command) { return addExperiment(command, model_); });
+  add("bench", "Measures CPU time over simulated time, r(n), for n muscles, all steppers and muscle models",
       [&](CLI::App& command) { return addBench(command, model_); });
-  add("diagnose", "Says where recordings differ from the model, why, and how far that can be closed",
+  add("diagnose", "Finds where recordings differ from the model, which effect explains it, and how much of the gap that closes",
       [&](CLI::App& command) { return addDiagnose(command, model_); });
   add("blind", "Checks the diagnosis on recordings whose cause is withheld", addBlind);
-  add("plan", "Writes down the runs of a parameter sweep", addPlan);
-  add("work", "Runs rows of a sweep that no other worker has taken, until none is left", addWork);
+  add("plan", "Prepares the runs of a parameter sweep", addPlan);
+  add("work", "Runs those rows of a sweep that no other worker has taken, until none is left", addWork);
   add("collect", "Puts the results of a sweep into one table", addCollect);
   refuseEmptyValues(app_);
-  registerOutOfCatalogueLaws();  // recordings that a check of the diagnosis has made can be replayed
+  registerOutOfCatalogueLaws();  // so that recordings made by the check of the diagnosis can be replayed
 }
 
 std::vector<std::string> CommandLine::commandNames() const {
@@ -64,7 +63,7 @@ std::vector<std::string> CommandLine::commandNames() const {
   return names;
 }
 
-/// The sub-command goes first, wherever it stands: what is before it is meant for it.
+/// Moves the sub-command to the front, since options before it are meant for it.
 std::vector<std::string> CommandLine::ordered(std::vector<std::string> arguments) const {
   const std::vector<std::string> names = commandNames();
   for (std::size_t i = 0; i < arguments.size(); ++i) {
@@ -78,7 +77,7 @@ std::vector<std::string> CommandLine::ordered(std::vector<std::string> arguments
   return arguments;
 }
 
-/// What a usage error says; words that fit nowhere in the order in which they were given, with the command that may have been meant.
+/// The message of a usage error. Unexpected words are listed in the order given, with the command that was probably meant.
 std::string CommandLine::messageFor(const CLI::ParseError& error) const {
   if (!dynamic_cast<const CLI::ExtrasError*>(&error)) return error.what();
   const std::vector<std::string> words = app_.remaining(true);

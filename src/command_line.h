@@ -1,4 +1,4 @@
-/// The command line: which command is to run, with which options.
+/// The command line of the program: its commands and their options.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -17,9 +17,9 @@ class CommandLine {
   CommandLine(const CommandLine&) = delete;
   CommandLine& operator=(const CommandLine&) = delete;
 
-  /// Reads the arguments, the program's name first. Returns an exit status if all is said with that (--help, a usage error).
+  /// Reads the arguments, beginning with the program's name. Returns an exit status if no command is to run (--help, a usage error).
   std::optional<int> parse(int argument_count, const char* const* arguments);
-  /// Runs the command that was parsed; returns the exit status, errors are thrown.
+  /// Runs the parsed command and returns the exit status. Errors are thrown.
   int run();
 
  private:

@@ -1,4 +1,4 @@
-/// The sub-commands. Each adds itself to the command line and returns what to do when it is chosen.
+/// The sub-commands. Each function adds its command to the command line and returns the function that runs it.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -8,7 +8,7 @@
 
 namespace musclesim::program {
 
-/// What the program ends with; see the table in docs/getting_started.md.
+/// Exit statuses of the program; see the table in docs/getting_started.md.
 enum ExitStatus {
   done = 0,
   internal_error = 1,
@@ -23,15 +23,15 @@ enum ExitStatus {
 /// Runs a chosen command and returns the exit status; errors are thrown.
 using Action = std::function<int()>;
 
-/// `run`, also the command without a name: the options are added to both.
+/// `run`, which is also the default command: its options are added to both.
 Action addRun(CLI::App& app, ModelOptions& model);
 Action addReplay(CLI::App& command, ModelOptions& model);
 Action addDiagnose(CLI::App& command, ModelOptions& model);
 /// `effects`: the catalogue of effects.
 Action addEffects(CLI::App& command);
-/// `import`: foreign tables become recordings.
+/// `import`: turns measured tables into recordings.
 Action addImport(CLI::App& command);
-/// `experiment`: the load frame of the paper in the simulator.
+/// `experiment`: simulates the paper's load-frame experiment.
 Action addExperiment(CLI::App& command, ModelOptions& model);
 /// `fit`: force laws from measured static points.
 Action addFit(CLI::App& command);

@@ -1,4 +1,4 @@
-/// `musclesim diagnose`: from recordings to where the gap lies, which effect causes it and how far it shrinks.
+/// `musclesim diagnose`: finds from recordings where the gap lies, which effect causes it, and how far the effect reduces it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -44,13 +44,13 @@ std::string scheduleText(const Experiment& experiment) {
   return text;
 }
 
-/// With the effects that the model already had by --effects, so that the file can take that file's place.
+/// Includes the effects that --effects gave to the model, so that the file can replace the file of --effects.
 void writeWith(const std::vector<ActiveEffect>& found, std::vector<ActiveEffect> effects, const std::filesystem::path& file) {
   effects.insert(effects.end(), found.begin(), found.end());
   writeEffects(effects, file.string());
 }
 
-/// What a sidecar says of the model that is diagnosed, but for the effects of --effects: those are no part of what is recorded.
+/// The sidecar members that describe the diagnosed model, without the effects of --effects, which are not part of the recording.
 RecordingInfo modelOf(const Recording& recording, const ReplayOptions& options) {
   RecordingInfo given = recording.info;
   replaceRobot(given, options.robot);
@@ -61,7 +61,7 @@ RecordingInfo modelOf(const Recording& recording, const ReplayOptions& options) 
   return model;
 }
 
-/// The proposed commands as a recording of the plant that has no readings yet.
+/// The proposed commands as a recording of the plant, without readings.
 void writeSchedule(const Diagnosis& diagnosis, const RecordingInfo& model, const std::filesystem::path& folder) {
   RecordingInfo info;
   info.robot = model.robot;
@@ -87,7 +87,7 @@ void writeAll(const Diagnosis& diagnosis, const std::filesystem::path& folder, c
   if (arguments.json) replaceFile(*arguments.json, json);
 }
 
-/// Before minutes of work: what is written has a place, and it is none of the files that are read.
+/// Checks before minutes of work that all outputs can be written and that none would overwrite an input.
 void requirePlaces(const std::filesystem::path& folder, const ModelOptions& model, const DiagnoseArguments& arguments) {
   std::vector<std::string> inputs = arguments.recordings;
   for (const std::string& recording : arguments.recordings) inputs.push_back(sidecarPath(recording));
@@ -143,22 +143,25 @@ int diagnoseCommand(const ModelOptions& model, const DiagnoseArguments& argument
 Action addDiagnose(CLI::App& command, ModelOptions& model) {
   auto arguments = std::make_shared<DiagnoseArguments>();
   command
-      .add_option("recordings", arguments->recordings, "Recordings of one plant; with several, the last is only used to measure the result")
+      .add_option("recordings", arguments->recordings,
+                  "Recordings of one plant; if there are several, the last one is held out to test the result")
       ->required();
   command.add_option("--out", arguments->out,
                      "Folder for report.html, diagnosis.json, effects.json and the rest (default: RECORDING-diagnosis)");
   command.add_option("--jobs", arguments->jobs, "Threads (default: one per core); the answer does not depend on it")
       ->check(CLI::Range(1, 1024));
-  addList(command, "--candidates", arguments->candidates, "Only these effects, by id, separated by commas");
-  addList(command, "--exclude", arguments->exclude, "All effects but these");
+  addList(command, "--candidates", arguments->candidates, "Consider only these effects, by id, separated by commas");
+  addList(command, "--exclude", arguments->exclude, "Consider all effects except these, by id, separated by commas");
   addList(command, "--tune", arguments->tune,
-          "Numbers of the model that nobody measured, by name, separated by commas: fitted first, written to nominal.toml");
-  command.add_option("--max-effects", arguments->max_effects, "Effects at once, found one after the other (default 2)")
+          "Fit these unmeasured parameters of the model first, by name, separated by commas; written to nominal.toml");
+  command
+      .add_option("--max-effects", arguments->max_effects,
+                  "Largest number of effects that act together; they are searched one after another (default 2)")
       ->check(CLI::Range(1, 6));
   addList(command, "--ignore-columns", arguments->ignore_columns, "Columns to skip, separated by commas");
   addModelOptions(command, model);
   command.remove_option(command.get_option("--json"));
-  command.add_option("--json", arguments->json, "Write diagnosis.json also to FILE");
+  command.add_option("--json", arguments->json, "Write a copy of diagnosis.json to FILE");
   return [&model, arguments] { return diagnoseCommand(model, *arguments); };
 }
 

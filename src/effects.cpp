@@ -1,4 +1,4 @@
-/// `musclesim effects`: the catalogue of effects, or one of them in full.
+/// `musclesim effects`: lists the catalogue of effects, or describes one of them.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -101,7 +101,7 @@ int effects(const EffectsArguments& arguments) {
 
 Action addEffects(CLI::App& command) {
   auto arguments = std::make_shared<EffectsArguments>();
-  command.add_option("id", arguments->id, "One effect, with its equation, parameters, units, ranges and source");
+  command.add_option("id", arguments->id, "Describe this effect: equation, parameters, units, ranges and source");
   command.add_flag("--json", arguments->json, "Print one JSON object");
   return [arguments] { return effects(*arguments); };
 }

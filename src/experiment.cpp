@@ -1,4 +1,4 @@
-/// `musclesim experiment`: the paper's load-frame experiment in the simulator.
+/// `musclesim experiment`: simulates the paper's load-frame experiment.
 #include <fmt/format.h>
 
 #include <charconv>
@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "interrupt.h"
 #include "laboratory/frame_report.h"
+#include "laboratory/point_reader.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
 #include "output_folder.h"
@@ -24,7 +25,7 @@ struct ExperimentArguments {
   PointsOptions points;
 };
 
-/// "all", a name, or MIN/MAX in mm.
+/// Reads "all", the name of a specimen, or MIN/MAX in mm.
 std::vector<FrameSpecimen> specimensOf(const std::string& written) {
   if (written == "all") return frameSpecimens();
   for (const auto& specimen : frameSpecimens())
@@ -82,9 +83,10 @@ int experiment(const ModelOptions& model, const ExperimentArguments& arguments) 
   fmt::print("{}\n", frameTable(reports));
   if (measured)
     for (const auto& [name, entry] : json["specimens"].items())
-      fmt::print("{} against {}: relative squared error {:.3g} over {} points, {} outside of the simulated pressures and lengths\n", name,
-                 *arguments.data, entry["data"]["relative_squared_error"].get<double>(), entry["data"]["points"].get<int>(),
-                 entry["data"]["outside"].get<int>());
+      fmt::print(
+          "{} compared with {}: relative squared error {:.3g} over {} points; {} points lie outside the simulated pressures and lengths\n",
+          name, *arguments.data, entry["data"]["relative_squared_error"].get<double>(), entry["data"]["points"].get<int>(),
+          entry["data"]["outside"].get<int>());
   for (const auto& specimen : specimens) fmt::print("points  {0}.csv\nfigure  {0}.svg\n", (folder / specimen.name).string());
   if (model.json) fmt::print("{}\n", json.dump());
   return done;
@@ -102,7 +104,7 @@ Action addExperiment(CLI::App& command, ModelOptions& model) {
   command.add_option("--config", model.config, "TOML file with named parameters, for example a fitted muscle");
   command
       .add_option("--set", model.set,
-                  "Override one named parameter; may be repeated. Loads and lengths of the specimen are the experiment's own")
+                  "Override one named parameter; may be repeated. The experiment itself sets the loads and the specimen's lengths")
       ->allow_extra_args(false)
       ->option_text("NAME=VALUE");
   command.add_flag("--quiet", model.quiet, "No messages on standard error except errors");

@@ -8,6 +8,8 @@
 #include "interrupt.h"
 #include "laboratory/fit_figure.h"
 #include "laboratory/fit_report.h"
+#include "laboratory/law_families.h"
+#include "laboratory/point_reader.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
 #include "output_folder.h"
@@ -27,7 +29,7 @@ struct FitArguments {
   bool quiet = false, json = false;
 };
 
-/// A length of Eq. 1 in mm, or nothing where it shall be fitted.
+/// A fixed length of Eq. 1 in mm, or nothing if the length is to be fitted.
 std::optional<double> lengthMm(const std::string& option, const std::string& written) {
   if (written == "free") return std::nullopt;
   char* end = nullptr;
@@ -40,7 +42,8 @@ std::optional<double> lengthMm(const std::string& option, const std::string& wri
 BraunLengths braunLengths(const FitArguments& arguments, const Specimen& specimen) {
   const bool given = arguments.minimum_length != FitArguments().minimum_length || arguments.maximum_length != FitArguments().maximum_length;
   if (given && arguments.law != "all" && arguments.law != "braun")
-    throw BadParameter("--law", arguments.law, "be braun or all where --minimum-length or --maximum-length is given: they are of Eq. 1");
+    throw BadParameter("--law", arguments.law,
+                       "be braun or all where --minimum-length or --maximum-length is given: only Eq. 1 has these lengths");
   BraunLengths lengths;
   lengths.minimum_mm = lengthMm("--minimum-length", arguments.minimum_length);
   lengths.maximum_mm =

@@ -1,4 +1,4 @@
-/// `musclesim import`: a foreign table becomes a recording.
+/// `musclesim import`: turns a measured table into a recording.
 #include "musclesim/log/import.h"
 
 #include <fmt/format.h>
@@ -33,7 +33,7 @@ int importCommand(const ImportArguments& arguments) {
   const auto robots = registeredRobots();
   if (!arguments.quiet &&
       std::none_of(robots.begin(), robots.end(), [&](const auto& robot) { return robot.first == recording.info.robot; }))
-    std::fprintf(stderr, "musclesim: robot %s is none of this program's: only a program that registers it can replay the recording\n",
+    std::fprintf(stderr, "musclesim: this program has no robot %s: only a program that registers it can replay the recording\n",
                  recording.info.robot.c_str());
   prepareRecording(arguments.out);
   writeRecording(recording, arguments.out);
@@ -49,7 +49,8 @@ int importCommand(const ImportArguments& arguments) {
 Action addImport(CLI::App& command) {
   auto arguments = std::make_shared<ImportArguments>();
   command.add_option("table", arguments->table, "Table of measurements: DATA.csv, one header row")->required();
-  command.add_option("mapping", arguments->mapping, "What its columns are: MAPPING.toml; docs/recordings.md describes it")->required();
+  command.add_option("mapping", arguments->mapping, "Meaning of its columns: MAPPING.toml; docs/recordings.md describes the format")
+      ->required();
   command.add_option("out", arguments->out, "Recording to write: OUT.csv, with OUT.json beside it")->required();
   command.add_flag("--quiet", arguments->quiet, "No messages on standard error except errors");
   return [arguments] { return importCommand(*arguments); };

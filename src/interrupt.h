@@ -1,11 +1,11 @@
-/// Ctrl-C and termination: noted by the handler, acted upon between two steps, so that files are complete.
+/// Ctrl-C and termination: the handler only notes the signal; the run ends between two steps, so that its files are complete.
 #pragma once
 
 namespace musclesim::program {
 
 /// Installs handlers for SIGINT and SIGTERM. A second signal ends the process at once.
 void watchInterrupts();
-/// From here on a signal ends the process at once: for commands whose files are each written in one go.
+/// Restores the default: from now on a signal ends the process at once. For commands that write each file in one piece.
 void endAtInterrupts();
 /// The number of the signal that arrived, 0 if none did.
 int interruptSignal();

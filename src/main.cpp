@@ -28,7 +28,7 @@ int main(int argument_count, char** arguments) {
     const std::optional<int> at_once = command_line.parse(argument_count, arguments);
     const int status = at_once ? *at_once : command_line.run();
     if (std::fflush(stdout) != 0) throw IoError("standard output: cannot be written");
-    // After a caught fault of ODE its own cleanup may not run: leave without it.
+    // After a caught fault of ODE, its cleanup at exit is not safe: leave without it.
     std::_Exit(status);
   } catch (const BadParameter& error) {
     std::_Exit(complain(error, bad_usage));
@@ -40,7 +40,7 @@ int main(int argument_count, char** arguments) {
     std::_Exit(complain(error, io_error));
   } catch (const Interrupted&) {
     std::_Exit(interrupted_base + interruptSignal());
-  } catch (const std::system_error& error) {  // of file systems and of output
+  } catch (const std::system_error& error) {  // from file systems and output
     std::_Exit(complain(error, io_error));
   } catch (const std::exception& error) {
     std::_Exit(complain(error, internal_error));

@@ -23,12 +23,12 @@ void addModelOptions(CLI::App& command, ModelOptions& options) {
   const std::string model = "Model";
   command
       .add_option("--robot", options.robot,
-                  "Robot: arm, rig, elbow, wrist, spring_bench or a registered name (default: arm; of a recording its own)")
+                  "Robot: arm, rig, elbow, wrist, spring_bench or a registered name (default: the recording's, else arm)")
       ->group(model);
   command
       .add_option("--physics", options.physics,
-                  "si: true seconds; original: the published program's units; scaled: its constants in true units (default: si; of a "
-                  "recording its own)")
+                  "si: true seconds; original: the published program's units; scaled: its constants in true units (default: the "
+                  "recording's, else si)")
       ->group(model);
   command
       .add_option("--initial-state", options.initial_state, "built: the pose as built; settled: at equilibrium (default: the robot's own)")
@@ -37,7 +37,7 @@ void addModelOptions(CLI::App& command, ModelOptions& options) {
   command.add_option("--stepper", options.stepper, "auto, chain, ode (dWorldStep) or quick (dWorldQuickStep)")
       ->group(model)
       ->capture_default_str();
-  command.add_option("--step", options.step_s, "Control and logging step in s (default 0.01; of a recording its own)")->group(model);
+  command.add_option("--step", options.step_s, "Control and logging step in s (default: the recording's, else 0.01)")->group(model);
   command.add_option("--substeps", options.substeps, "Internal steps per control step (default: as many as the stepper needs)")
       ->group(model);
   command.add_option("--muscles", options.muscle_count, "Number of muscles of the arm, 1 .. 30 (default 10)")->group(model);
@@ -48,7 +48,7 @@ void addModelOptions(CLI::App& command, ModelOptions& options) {
                   "Friction of the chains' joints; coulomb: dry (default); viscous: grows with the speed, faster to compute")
       ->group(model);
   command.add_flag("--plane", options.plane, "Add a ground plane")->group(model);
-  command.add_option("--seed", options.seed, "Seed of everything random (default 1; of a recording its own)")
+  command.add_option("--seed", options.seed, "Seed of all random numbers (default: the recording's, else 1)")
       ->group(model)
       ->check([](const std::string& value) {
         std::uint64_t seed = 0;
@@ -61,7 +61,7 @@ void addModelOptions(CLI::App& command, ModelOptions& options) {
       ->allow_extra_args(false)
       ->option_text("NAME=VALUE");
   command.add_option("--config", options.config, "TOML file with named parameters")->group(model);
-  command.add_option("--effects", options.effects, "JSON file with effects that the clean model leaves out (musclesim effects lists them)")
+  command.add_option("--effects", options.effects, "JSON file with effects to add to the model (musclesim effects lists them)")
       ->group(model);
   command.add_flag("--quiet", options.quiet, "No messages on standard error except errors")->group(model);
   command.add_flag("--json", options.json, "Print the verdict as one JSON object, the last line of standard output")->group(model);
@@ -92,16 +92,19 @@ std::vector<ActiveEffect> effectsFrom(const ModelOptions& options) {
 
 void addPointsOptions(CLI::App& command, CLI::Option& table, PointsOptions& options) {
   const std::string needed = " Needs: " + table.get_name();
-  addList(command, "--columns", options.columns, "Other columns; NAME:unit gives a unit (else fraction, mm, N)")
+  addList(command, "--columns", options.columns,
+          "Columns that hold pressure, length or force under another name; NAME:unit gives the unit (else fraction, mm, N)")
       ->needs(&table)
       ->option_text("pressure=NAME,length=NAME,force=NAME" + needed);
-  addList(command, "--where", options.where, "Only these rows; may be repeated")->needs(&table)->option_text("COLUMN=VALUE,..." + needed);
-  command.add_option("--full-scale-kPa", options.full_scale_kPa, "Pressure of fraction 1 (default: the largest of the file)")
+  addList(command, "--where", options.where, "Use only rows with this value in this column; may be repeated")
+      ->needs(&table)
+      ->option_text("COLUMN=VALUE,..." + needed);
+  command.add_option("--full-scale-kPa", options.full_scale_kPa, "Pressure in kPa that counts as 1 (default: the largest in the file)")
       ->check(CLI::Range(1.0, 1e4))
       ->needs(&table);
   command
       .add_option("--censored-below", options.censored_below_N,
-                  "Force in N at and below which the sensor shows nothing (default: found where the lowest force repeats)")
+                  "The force sensor reads nothing below this force in N (default: the lowest force, if it occurs repeatedly)")
       ->needs(&table);
 }
 

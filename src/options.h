@@ -1,4 +1,4 @@
-/// Options that several sub-commands share: which model runs, on which physics, with which numbers.
+/// Options that several sub-commands share: robot, physics, stepper and parameters of the model.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -29,16 +29,16 @@ struct ModelOptions {
 /// Adds the model options to a command; all commands write into the same ModelOptions, so their place among the arguments is free.
 void addModelOptions(CLI::App& command, ModelOptions& options);
 
-/// An option of values that commas separate. What follows behind a space is no part of it, so that a file named there is not taken for one.
+/// Adds an option with values separated by commas. An argument after a space does not belong to it, so that a file name may follow.
 CLI::Option* addList(CLI::App& command, const std::string& name, std::vector<std::string>& values, const std::string& help);
 
 /// The named parameters: --config first, then --muscles, --muscle and --joint-friction, then --set.
 Parameters parametersFrom(const ModelOptions& options);
 
-/// --substeps; 0 without it. Throws BadParameter for less than 1.
+/// The value of --substeps, or 0 if it is not given. Throws BadParameter for less than 1.
 int substepsFrom(const ModelOptions& options);
 
-/// The effects of --effects; none without it.
+/// The effects in the file of --effects; none if it is not given.
 std::vector<ActiveEffect> effectsFrom(const ModelOptions& options);
 
 /// How static points of a muscle are read from a table.
@@ -47,13 +47,13 @@ struct PointsOptions {
   std::optional<double> full_scale_kPa, censored_below_N;
 };
 
-/// They are refused without `table`, the option that names the table.
+/// Adds the options for reading points. They need the option `table`, which names the file.
 void addPointsOptions(CLI::App& command, CLI::Option& table, PointsOptions& options);
 
 /// Throws BadParameter unless columns and rows are given as name=value.
 StaticPointsOptions staticPointsOptions(const PointsOptions& options);
 
-/// All of it, for a recording's plant.
+/// All model options together, for the plant of a recording.
 ReplayOptions replayOptionsFrom(const ModelOptions& model);
 
 /// One line to standard error, unless --quiet.

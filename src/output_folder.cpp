@@ -39,7 +39,7 @@ fs::path outputFolder(const std::optional<std::string>& given, const std::string
 }
 
 void requireWritable(const fs::path& folder) {
-  if (access(folder.c_str(), W_OK | X_OK) != 0) throw IoError(fmt::format("{}: nothing can be written there", folder.string()));
+  if (access(folder.c_str(), W_OK | X_OK) != 0) throw IoError(fmt::format("{}: the folder is not writable", folder.string()));
 }
 
 void prepareRecording(const fs::path& csv) {
@@ -47,7 +47,7 @@ void prepareRecording(const fs::path& csv) {
   if (csv.has_parent_path()) makeFolder(csv.parent_path());
 }
 
-/// The sidecar tells: the table of a run that was killed may be torn.
+/// Looks at the sidecar, because the table of a killed run may be incomplete.
 void requireReplaceable(const fs::path& csv) {
   const fs::path sidecar = sidecarPath(csv.string());
   if (!fs::exists(csv) && !fs::exists(sidecar)) return;
@@ -64,7 +64,7 @@ void requireOther(const fs::path& output, const std::vector<std::string>& inputs
   std::error_code ignored;
   for (const std::string& input : inputs)
     if (fs::equivalent(output, input, ignored))
-      throw BadParameter(fmt::format("{} is read and would be written over: choose another name or folder for what is written", input));
+      throw BadParameter(fmt::format("{} is an input and would be overwritten: choose another name or folder for the output", input));
 }
 
 }  // namespace musclesim::program

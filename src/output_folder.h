@@ -1,4 +1,4 @@
-/// Where a command writes its files.
+/// Output files and folders of a command.
 #pragma once
 
 #include <filesystem>
@@ -8,25 +8,25 @@
 
 namespace musclesim::program {
 
-/// log/runs/<date-time>-<label>, with a number appended if that exists; not made yet.
+/// The path log/runs/<date-time>-<label>, with a number appended if it exists. The folder is not created.
 std::filesystem::path freshFolder(const std::string& label);
 
-/// The folder given, or a fresh one; made if it does not exist. Throws IoError if it cannot be made.
+/// The given folder, or a fresh one. Creates it if it does not exist. Throws IoError if it cannot be created.
 std::filesystem::path outputFolder(const std::optional<std::string>& given, const std::string& label);
 
-/// Makes a folder and those above it. Throws IoError.
+/// Creates a folder and its parents. Throws IoError.
 void makeFolder(const std::filesystem::path& folder);
 
 /// Throws IoError if nothing can be written into a folder.
 void requireWritable(const std::filesystem::path& folder);
 
-/// Throws BadParameter unless a recording's file ends in .csv, and makes the folder it is to be in. Throws IoError if that cannot be made.
+/// Throws BadParameter unless the path of a recording ends in .csv. Creates its folder; throws IoError if it cannot be created.
 void prepareRecording(const std::filesystem::path& csv);
 
-/// Throws BadParameter if a recording of that name would replace one that was not simulated, another table or another JSON file.
+/// Throws BadParameter if writing a recording there would replace a measured recording or a file that is not a recording.
 void requireReplaceable(const std::filesystem::path& csv);
 
-/// Throws BadParameter if a file that is to be written is one of those that are read.
+/// Throws BadParameter if an output file is also an input file.
 void requireOther(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 
 }  // namespace musclesim::program

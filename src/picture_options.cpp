@@ -9,7 +9,7 @@ namespace musclesim::program {
 
 void addPictureOptions(CLI::App& command, PictureOptions& options, const std::string& group) {
   command.add_option("--screenshot", options.screenshot, "Picture of the last state, FILE.png; needs no display")->group(group);
-  command.add_option("--video", options.video, "Video, FILE.mp4, or pictures in FILE-frames without ffmpeg; needs no display")
+  command.add_option("--video", options.video, "Video, FILE.mp4 (without ffmpeg: pictures in the folder FILE-frames); needs no display")
       ->group(group);
   command.add_option("--picture-size", options.size_px, "Width and height in pixels, WxH")->group(group)->delimiter('x')->expected(2);
   command.add_option("--camera", options.camera, "Azimuth and elevation in degrees, distance in mm: A,E,D")
@@ -23,8 +23,8 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, const std::st
 void PictureOptions::requireUsed(const std::string& why) const {
   const bool asks_for_view = !camera.empty() || size_px != PictureOptions().size_px;
   if (asks_for_view && !wanted())
-    throw BadParameter(fmt::format("--camera and --picture-size are those of a window, a --screenshot or a --video, but {}", why));
-  if (speed && !video) throw BadParameter(fmt::format("--speed is that of a window or a video, but {} and there is no --video", why));
+    throw BadParameter(fmt::format("--camera and --picture-size need a window, --screenshot or --video, but {}", why));
+  if (speed && !video) throw BadParameter(fmt::format("--speed needs a window or --video, but {} and there is no --video", why));
 }
 
 double speedRatio(const PictureOptions& options, const PhysicsSettings& physics) {

@@ -23,7 +23,7 @@ void prepareFile(const std::string& option, const std::string& file, const std::
   if (fs::path(file).has_parent_path()) makeFolder(fs::path(file).parent_path());
 }
 
-/// Draws what it sees.
+/// Draws the states that it sees.
 class Pictures final : public Spectator {
  public:
   Pictures(const PictureOptions& options, Simulation& simulation)
@@ -78,7 +78,7 @@ class Pictures final : public Spectator {
   Offscreen offscreen_;
   std::unique_ptr<VideoWriter> video_;
   std::optional<Camera> camera_;
-  std::optional<double> start_s_;  ///< of the first state seen: a recording's clock begins anywhere
+  std::optional<double> start_s_;  ///< time of the first state; a recording's clock can begin at any time
   std::optional<Snapshot> last_;
 };
 

@@ -17,19 +17,19 @@ struct PictureOptions {
   std::optional<std::string> screenshot, video;
   std::vector<int> size_px = {1024, 768};
   std::vector<float> camera;    ///< azimuth and elevation in degrees, distance in mm; empty: the robot's own view
-  std::optional<double> speed;  ///< simulated time over time of the video or of the wall
+  std::optional<double> speed;  ///< simulated time over time of the video or wall time
   bool wanted() const { return screenshot || video; }
-  /// Throws BadParameter for options that would be without effect where no window opens. `why` says why none does.
+  /// Throws BadParameter for options that have no effect because no window opens. `why` gives the reason for the message.
   void requireUsed(const std::string& why = "no window opens here") const;
 };
 
 void addPictureOptions(CLI::App& command, PictureOptions& options, const std::string& group);
 
-/// Simulated time over time of the viewer's clock: --speed, or 1; in `original` units, where all is slower, 10. Throws BadParameter unless
-/// it is positive and finite.
+/// Simulated time over time that the viewer sees: --speed if given, else 1, or 10 in `original` physics, where everything moves more
+/// slowly. Throws BadParameter unless it is positive and finite.
 double speedRatio(const PictureOptions& options, const PhysicsSettings& physics);
 
-/// Draws the frames of --video as the run goes on and --screenshot at its end, and says on standard output where they are.
+/// Draws the frames of --video during the run and the --screenshot at its end, and prints the paths of the files.
 /// Throws BadParameter if this build cannot draw or there is no OSMesa.
 std::unique_ptr<Spectator> makePictures(const PictureOptions& options, Simulation& simulation);
 

@@ -1,4 +1,4 @@
-/// Stands for pictures.cpp in a build without libraries for pictures.
+/// Replaces pictures.cpp in a build without the libraries for pictures.
 #include "musclesim/base/error.h"
 #include "pictures.h"
 

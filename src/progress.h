@@ -6,7 +6,7 @@
 
 namespace musclesim::program {
 
-/// Rewrites one line on standard error a few times per second; silent when standard error is not a terminal or when told so.
+/// Rewrites one line on standard error a few times per second. Silent if standard error is not a terminal, or on request.
 class ProgressLine {
  public:
   explicit ProgressLine(bool quiet);
@@ -14,7 +14,7 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  /// Whether a new text would be shown now; the end is always shown.
+  /// Whether a new text would be shown now. The last state is always shown.
   bool isDue(bool at_end) const;
   void show(const std::string& text);
   double wallS() const;
@@ -38,7 +38,7 @@ class Progress {
   ProgressLine line_;
 };
 
-/// Progress of work in phases that counts simulations.
+/// Progress of work in phases, counted in simulations.
 class PhaseProgress {
  public:
   explicit PhaseProgress(bool quiet) : line_(quiet) {}
@@ -48,7 +48,7 @@ class PhaseProgress {
   ProgressLine line_;
 };
 
-/// Progress of a list of like cases.
+/// Progress through a list of similar cases.
 class CaseProgress {
  public:
   explicit CaseProgress(bool quiet) : line_(quiet) {}

@@ -1,4 +1,4 @@
-/// `musclesim replay`: a recording's commands through the model, and how far the model is off.
+/// `musclesim replay`: simulates a recording's commands and compares the result with its measurements.
 #include "musclesim/simulation/replay.h"
 
 #include <fmt/format.h>
@@ -80,7 +80,7 @@ int replay(const ModelOptions& model, const ReplayArguments& arguments) {
   if (spectator) spectator->finish();
   if (arguments.out && !result.simulated.time_s.empty()) writeRecording(result.simulated, *arguments.out);
   if (result.interrupted)
-    say(model, fmt::format("interrupted; what follows is of {} of {} rows", result.simulated.time_s.size(), recording.time_s.size()));
+    say(model, fmt::format("interrupted; the results cover {} of {} rows", result.simulated.time_s.size(), recording.time_s.size()));
   printTable(result);
   if (result.divergence) std::fprintf(stderr, "musclesim: error: %s\n", result.divergence->c_str());
   if (model.json) fmt::print("{}\n", verdictOf(result, arguments).dump());
@@ -93,7 +93,7 @@ int replay(const ModelOptions& model, const ReplayArguments& arguments) {
 Action addReplay(CLI::App& command, ModelOptions& model) {
   auto arguments = std::make_shared<ReplayArguments>();
   command.add_option("recording", arguments->recording, "Recording, NAME.csv with NAME.json beside it")->required();
-  command.add_option("--out", arguments->out, "Write what the model measures, at the recording's times, to SIM.csv");
+  command.add_option("--out", arguments->out, "Write the simulated readings, at the recording's times, to SIM.csv");
   addList(command, "--ignore-columns", arguments->ignore_columns, "Columns to skip, separated by commas");
   addPictureOptions(command, arguments->pictures, "Pictures");
   addModelOptions(command, model);

@@ -10,6 +10,7 @@
 #include "musclesim/base/color.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/units.h"
+#include "musclesim/controller/controller_registry.h"
 #include "musclesim/log/figure.h"
 #include "musclesim/log/recorder.h"
 #include "output_folder.h"
@@ -23,7 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// In the original's units the paper's 6 s; in true seconds the time the arm takes to settle (docs/parameters.md).
+/// Default decision interval: the paper's 6 s in original physics; in true seconds the time that the arm takes to settle
+/// (docs/parameters.md).
 double defaultDecisionIntervalS(const PhysicsSettings& physics) {
   constexpr double original_s = 6.0, si_s = 3.0;
   if (physics.kind == PhysicsKind::si) return si_s;
@@ -46,23 +48,23 @@ bool hasWindow(const RunOptions& options) {
   return !options.simple && !options.pictures.wanted();
 }
 
-/// Options of what this run does not have would be without effect.
+/// Refuses options that would have no effect in this run.
 void requireUsedOptions(const RunOptions& options) {
   if (hasWindow(options)) return;
   const char* without_window = options.simple ? "--simple opens no window" : "--screenshot and --video open no window";
-  if (options.window_log) throw BadParameter(fmt::format("--window-log logs what is done in a window, but {}", without_window));
+  if (options.window_log) throw BadParameter(fmt::format("--window-log logs the user's actions in a window, but {}", without_window));
   options.pictures.requireUsed(without_window);
 }
 
-/// Without --duration: the published 300 s; as much as makes a video worth looking at; with a window until it is closed.
+/// The duration without --duration: 300 s as published; shorter for a picture or video; with a window until it is closed.
 double defaultDurationS(const RunOptions& options) {
   constexpr double batch_s = 300, pictures_s = 20;
   return options.simple ? batch_s : hasWindow(options) ? longest_s : pictures_s;
 }
 
-/// Why a run is over.
+/// How a run ended.
 struct Ending {
-  std::string status;  ///< of the verdict
+  std::string status;  ///< status in the verdict
   std::string error;   ///< empty: none
   int exit_status;
 };
@@ -82,7 +84,7 @@ class Run {
 
   int execute() {
     const std::string initial_state = model_.initial_state.value_or(simulation_.robot().initialState());
-    // The first decision comes before the files: what the controller reports by then decides the columns.
+    // The first decision comes before the files are opened, because the columns depend on what the controller reports.
     const State first_state = robot().getState();
     const musclesim::Action first_action = controller_->output(first_state);
     const fs::path csv = recordingPath(options_, simulation_.seed());
@@ -104,7 +106,7 @@ class Run {
     } catch (const Diverged& error) {
       divergence = error;
     } catch (const Interrupted&) {
-      // endingOf() tells of the signal.
+      // endingOf() reports the signal.
     }
     const Ending ending = endingOf(divergence);
     const nlohmann::json verdict = conclude(ending, progress.wallS());
@@ -117,9 +119,9 @@ class Run {
   }
 
  private:
-  /// A window puts the user's hands before the controller.
+  /// With a window, the user can take over from the controller.
   void addController() {
-    auto controller = Controller::make(options_.controller, controllerRequest(simulation_, options_));
+    auto controller = makeController(options_.controller, controllerRequest(simulation_, options_));
     if (hasWindow(options_)) {
       auto hands = std::make_unique<ManualController>(std::move(controller), robot().actuatorCount());
       hands_ = hands.get();
@@ -162,7 +164,7 @@ class Run {
     return options;
   }
 
-  /// The figure beside the recording; an empty path for a run that ended before its first row.
+  /// Writes the figure beside the recording. Returns an empty path if the run ended before its first row.
   fs::path drawFigure(const fs::path& csv, long row_count) const {
     if (row_count == 0) return {};
     fs::path svg = fs::path(csv).replace_extension(".svg");
@@ -204,7 +206,7 @@ class Run {
     return values;
   }
 
-  /// The paper's run loop: state, output, step; with a row of the log before the world moves.
+  /// The paper's run loop: state, output, step. A row is logged before the world moves.
   void loop(Recorder& recorder, Progress& progress, musclesim::Action action) {
     const long step_count = std::lround(duration_s_ / simulation_.stepS());
     const long record_every = std::max(1L, std::lround(options_.record_interval_s.value_or(simulation_.stepS()) / simulation_.stepS()));
@@ -219,7 +221,7 @@ class Run {
       simulation_.step();
       warnOfGap();
     }
-    robot().step(action);  // the last row, too, shows the forces at its own time
+    robot().step(action);  // so that the last row, too, has the forces at its own time
     record(recorder, progress, true);
   }
 
@@ -234,8 +236,8 @@ class Run {
   void warnOfLateCommands(double interval_s) {
     if (std::exchange(late_commands_warned_, true)) return;
     say(model_,
-        fmt::format("warning: commands change between the recorded rows, {:g} s apart: a replay of this recording changes them at the "
-                    "next row; a shorter --record-interval would keep it exact",
+        fmt::format("warning: the rows are recorded {:g} s apart and commands change between them: a replay of this recording would change "
+                    "them late, at the next row; a shorter --record-interval avoids this",
                     interval_s));
   }
 
@@ -244,8 +246,9 @@ class Run {
     const JointGap& gap = simulation_.worstGap();
     if (gap_warned_ || gap.gap_mm <= warning_mm) return;
     gap_warned_ = true;
-    say(model_, fmt::format("warning: {} is torn by {:.2g} mm at {:.4g} s; a smaller --step or more --substeps would be more accurate",
-                            gap.joint, gap.gap_mm, simulation_.time_s()));
+    say(model_,
+        fmt::format("warning: {} has come apart by {:.2g} mm at {:.4g} s; a smaller --step or more --substeps would be more accurate",
+                    gap.joint, gap.gap_mm, simulation_.time_s()));
   }
 
   bool hasEndedEarly() const { return simulation_.time_s() < duration_s_ - simulation_.stepS(); }
@@ -275,7 +278,7 @@ class Run {
 
   void sayEnding(const Ending& ending) const {
     if (!ending.error.empty()) std::fprintf(stderr, "musclesim: error: %s\n", ending.error.c_str());
-    if (ending.exit_status > interrupted_base) say(model_, "interrupted; the files are complete up to then");
+    if (ending.exit_status > interrupted_base) say(model_, "interrupted; the files hold everything up to then");
     if (ending.exit_status == done && options_.duration_s && hasEndedEarly())
       say(model_, fmt::format("the window was closed: {:.4g} s of {:g} s are recorded", simulation_.time_s(), duration_s_));
   }
@@ -327,12 +330,14 @@ int run(const ModelOptions& model, const RunOptions& options) {
 
 void addOptions(CLI::App& command, RunOptions& options) {
   const std::string group = "Run";
-  command.add_flag("--simple", options.simple, "Batch run without display or interaction; without it a window opens")->group(group);
+  command.add_flag("--simple", options.simple, "Batch run without window or interaction (default: a window opens)")->group(group);
   command.add_flag("--verbose", options.verbose, "List all primitives and actuators on standard output")->group(group);
-  command.add_option("--controller", options.controller, "Controller: " + fmt::format("{}", fmt::join(Controller::names(), ", ")))
+  command.add_option("--controller", options.controller, "Controller: " + fmt::format("{}", fmt::join(registeredControllers(), ", ")))
       ->group(group)
       ->capture_default_str();
-  command.add_option("--task", options.task, "height: bring the hand to a height; reach: to a point")->group(group)->capture_default_str();
+  command.add_option("--task", options.task, "height: bring the hand to a height; reach: bring it to a point")
+      ->group(group)
+      ->capture_default_str();
   command.add_option("--target", options.target_mm, "X,Y,Z of the target in mm (for the height task only Y counts)")
       ->group(group)
       ->delimiter(',')
@@ -352,7 +357,9 @@ void addOptions(CLI::App& command, RunOptions& options) {
       ->group(group);
   command.add_option("--out", options.out, "Folder of the run (default: log/runs/<date-time>-<task>-<seed>)")->group(group);
   command.add_flag("--print-config", options.print_config, "Print all parameters as TOML and exit")->group(group);
-  command.add_option("--window-log", options.window_log, "One line of JSON per key or click in the window, with the state after it, FILE")
+  command
+      .add_option("--window-log", options.window_log,
+                  "Log the user's actions in the window to FILE: one line of JSON per key or click, with the state after it")
       ->group("Pictures");
   addPictureOptions(command, options.pictures, "Pictures");
 }
@@ -361,7 +368,7 @@ void addOptions(CLI::App& command, RunOptions& options) {
 
 Action addRun(CLI::App& app, ModelOptions& model) {
   auto options = std::make_shared<RunOptions>();
-  CLI::App* named = app.add_subcommand("run", "Runs a robot under a controller, with a log and a figure (the default)");
+  CLI::App* named = app.add_subcommand("run", "Runs a robot under a controller and writes a log and a figure (the default)");
   for (CLI::App* command : {&app, named}) {
     addOptions(*command, *options);
     addModelOptions(*command, model);

@@ -31,7 +31,7 @@ RecordingInfo describe(Simulation& simulation, const RunOptions& options, const 
   return info;
 }
 
-/// The listing of the paper's --verbose: all primitives and actuators.
+/// Prints all primitives and actuators, as the paper's --verbose does.
 void list(Simulation& simulation) {
   for (const auto& primitive : simulation.world().primitives()) {
     const Vector p = primitive->getPosition();

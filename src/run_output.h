@@ -1,4 +1,4 @@
-/// What a run writes: its folder, the description in the sidecar, the listing of --verbose, the score of a task.
+/// Outputs of a run: its folder, the contents of the sidecar, the listing of --verbose, the score of a task.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@
 
 namespace musclesim::program {
 
-/// The options of `run` beside those of the model.
+/// The options of `run` except the model options.
 struct RunOptions {
   bool simple = false, verbose = false, print_config = false;
   std::string controller = "asm", task = "height";
@@ -24,7 +24,7 @@ struct RunOptions {
   PictureOptions pictures;
 };
 
-/// Where the recording goes: --record, or run.csv in --out, or in a fresh folder log/runs/<date-time>-<task>-<seed>.
+/// The path of the recording: --record, or run.csv in --out, or run.csv in a fresh folder log/runs/<date-time>-<task>-<seed>.
 /// Throws BadParameter for a name that does not end in .csv.
 std::filesystem::path recordingPath(const RunOptions& options, std::uint64_t seed);
 

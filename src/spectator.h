@@ -1,4 +1,4 @@
-/// Whoever looks on while a simulation runs.
+/// Observers of a running simulation.
 #pragma once
 
 #include <optional>
@@ -8,17 +8,17 @@
 
 namespace musclesim::program {
 
-/// Is shown every moment of a run and changes nothing in it, so that a run has the same bits with and without.
+/// Sees every control step of a run and changes nothing: a run gives the same bits with and without it.
 class Spectator {
  public:
   virtual ~Spectator() = default;
-  /// The readings once per control step, in order of time, the first and the last included. False: the run is to end here.
+  /// Gets the readings of each control step, in order of time, including the first and the last. Returns false to end the run.
   virtual bool see(const State& state) = 0;
-  /// Why it ended the run, if it could not go on itself.
+  /// The reason if a failure of its own made it end the run.
   virtual std::optional<std::string> failure() const { return std::nullopt; }
-  /// The run has ended in a divergence; before finish().
+  /// Called if the run diverged, before finish().
   virtual void diverge(const std::string& message) { static_cast<void>(message); }
-  /// The run is over; the simulation may be gone.
+  /// Called after the run; the simulation may no longer exist.
   virtual void finish() = 0;
 };
 

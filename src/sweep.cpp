@@ -108,7 +108,7 @@ int collectSweep(const CollectArguments& arguments) {
     fmt::print("table    {}\njson     {}\n", collected.csv_file, collected.json_file);
   }
   for (const std::string& column : collected.unmet_columns)
-    fmt::print(stderr, "musclesim: columns: \"{}\": no row has a number of that name\n", column);
+    fmt::print(stderr, "musclesim: columns: \"{}\": no row has a number of this name\n", column);
   if (!collected.complete()) return incomplete_sweep;
   return collected.unmet_columns.empty() ? done : bad_usage;
 }
@@ -126,10 +126,10 @@ Action addPlan(CLI::App& command) {
 Action addWork(CLI::App& command) {
   auto arguments = std::make_shared<WorkArguments>();
   command.add_option("sweep", arguments->folder, "Folder that `plan` wrote")->required();
-  command.add_option("--time-limit", arguments->time_limit_s, "Wall time in s after which this worker has stopped (default: none)");
+  command.add_option("--time-limit", arguments->time_limit_s, "This worker stops within this wall time, in s (default: no limit)");
   command.add_option("--stale-after", arguments->stale_after_s,
-                     "A worker on another machine without heartbeat for so many s is gone (default 60)");
-  command.add_flag("--no-wait", arguments->no_wait, "End when all rows are taken, do not wait whether a worker dies");
+                     "A worker on another machine counts as dead after this many s without a heartbeat (default 60)");
+  command.add_flag("--no-wait", arguments->no_wait, "Exit when all rows are taken, without waiting to take over from a worker that dies");
   command.add_flag("--quiet", arguments->quiet, "No messages on standard error except errors");
   command.add_flag("--json", arguments->json, "Print a summary as one JSON object");
   return [arguments] { return workOnSweep(*arguments); };

@@ -1,4 +1,4 @@
-/// From where a robot is looked at in the beginning.
+/// The initial camera of a robot.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace musclesim::program {
 
-/// The arm from the side that the published program shows, any other robot as a whole; `given` is --camera, azimuth and elevation in
-/// degrees and distance in mm, or empty. Throws BadParameter for numbers out of range.
+/// Shows the arm from the same side as the published program, and any other robot as a whole. `given` holds the values of --camera, azimuth
+/// and elevation in degrees and distance in mm, or is empty. Throws BadParameter for numbers out of range.
 Camera initialCamera(const std::string& robot_name, const Snapshot& snapshot, const std::vector<float>& given);
 
 }  // namespace musclesim::program

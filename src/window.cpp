@@ -10,7 +10,7 @@ namespace musclesim::program {
 
 namespace {
 
-/// Shows what it sees and waits as the user of the window demands.
+/// Shows the states that it sees and waits between them as the user of the window demands.
 class WindowSpectator final : public Spectator {
  public:
   WindowSpectator(const PictureOptions& options, Simulation& simulation, ManualController& hands, const State& first,

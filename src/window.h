@@ -10,8 +10,8 @@
 
 namespace musclesim::program {
 
-/// Opens a window that shows the run and sets its pace; `folder` is where its pictures go, `log_file` takes a line of JSON per key or click
-/// (empty: none). Throws BadParameter if this build has no window or there is no display.
+/// Opens a window that shows the run and sets its speed. It saves pictures in `folder` and writes a line of JSON per key or click to
+/// `log_file` (empty: no log). Throws BadParameter if this build has no window or there is no display.
 std::unique_ptr<Spectator> openWindow(const PictureOptions& options, Simulation& simulation, ManualController& hands, const State& first,
                                       const std::string& folder, const std::string& log_file);
 

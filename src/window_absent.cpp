@@ -1,11 +1,11 @@
-/// Stands for window.cpp in a build without libraries for a window.
+/// Replaces window.cpp in a build without the libraries for a window.
 #include "musclesim/base/error.h"
 #include "window.h"
 
 namespace musclesim::program {
 
 void requireWindow() {
-  throw BadParameter("this build has no window: use --simple for a batch run, --screenshot or --video for pictures");
+  throw BadParameter("this build has no window: use --simple to run without one, --screenshot or --video for pictures");
 }
 
 std::unique_ptr<Spectator> openWindow(const PictureOptions&, Simulation&, ManualController&, const State&, const std::string&,

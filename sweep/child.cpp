@@ -23,7 +23,7 @@ namespace {
 constexpr int could_not_start = 127;
 constexpr double patience_s = 5;
 
-/// An open file, also if the child is killed before it does anything.
+/// Opens an output file in the parent, so that it exists even if the child is killed at once.
 class OpenFile {
  public:
   OpenFile(const std::string& file, int flags) : descriptor_(open(file.c_str(), flags | O_CLOEXEC, 0666)) {
@@ -42,11 +42,11 @@ struct StandardFiles {
   OpenFile in, out, error;
 };
 
-/// What the child does before it becomes the program; only calls that are safe between fork and exec.
+/// Runs in the child before exec. It may only make calls that are safe between fork and exec.
 [[noreturn]] void become(const ChildCommand& command, const StandardFiles& files, char* const* arguments, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(could_not_start);
-  setpgid(0, 0);  // Ctrl-C reaches the worker, which ends the child in order
+  setpgid(0, 0);  // Ctrl-C reaches only the worker, which then ends the child
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
   if (files.in.become(STDIN_FILENO) && files.out.become(STDOUT_FILENO) && files.error.become(STDERR_FILENO) &&
@@ -55,7 +55,7 @@ struct StandardFiles {
   _exit(could_not_start);
 }
 
-/// The process until its end; asks `stop` in between.
+/// Waits for the end of a process and calls `stop` meanwhile.
 class Child {
  public:
   explicit Child(pid_t pid) : pid_(pid), descriptor_(static_cast<int>(syscall(SYS_pidfd_open, pid, 0))) {}
@@ -94,7 +94,7 @@ class Child {
     if (ended < 0 && errno != EINTR) throw IoError(fmt::format("process {}: its end is not known: {}", pid_, std::strerror(errno)));
     return ended > 0;
   }
-  /// Until the child ends or a signal arrives, a fifth of a second at most; without descriptors of processes (Linux before 5.3) 5 ms.
+  /// Waits until the child ends or a signal arrives, at most 0.2 s; without process descriptors (Linux before 5.3) it waits 5 ms.
   void pause() const {
     pollfd ended{descriptor_, POLLIN, 0};
     poll(&ended, descriptor_ >= 0 ? 1 : 0, descriptor_ >= 0 ? 200 : 5);
@@ -114,7 +114,7 @@ ChildEnd runChild(const ChildCommand& command, const std::function<bool()>& stop
   arguments.push_back(nullptr);
   constexpr int anew = O_WRONLY | O_CREAT | O_TRUNC;
   const StandardFiles files{{"/dev/null", O_RDONLY}, {command.out_file, anew}, {command.error_file, anew}};
-  std::signal(SIGCHLD, SIG_DFL);  // where it is ignored, as some starters leave it, the system keeps no exit status
+  std::signal(SIGCHLD, SIG_DFL);  // some parent processes leave it ignored; then the system keeps no exit status
   const pid_t parent = getpid(), pid = fork();
   if (pid < 0) throw IoError(fmt::format("{}: no process can be started: {}", command.program, std::strerror(errno)));
   if (pid == 0) become(command, files, arguments.data(), parent);

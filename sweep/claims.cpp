@@ -35,14 +35,15 @@ std::string firstLine(const std::string& file) {
   return line;
 }
 
-/// Processes with equal ids are the same only within one boot of one machine and one space of ids (containers).
+/// Identifies one boot of one machine and one container: only within it does a process id identify a process.
 std::string thisMachine() {
   std::error_code error;
   const auto ids = fs::read_symlink("/proc/self/ns/pid", error).string();
   return firstLine("/proc/sys/kernel/random/boot_id") + " " + ids;
 }
 
-/// When a process began, in clock ticks since boot: ids are used again, this pair is not. Empty: there is no such process.
+/// The start time of a process, in clock ticks since boot; empty if there is no such process. Ids are reused, pairs of id and start time
+/// are not.
 std::string beginOf(long pid) {
   const std::string line = firstLine(fmt::format("/proc/{}/stat", pid));
   const auto name_end = line.rfind(')');
@@ -64,7 +65,7 @@ double steadySeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// What a claim says, if it is one.
+/// The contents of a claim; empty if the file is not a claim.
 struct Claim {
   std::string worker, machine, begin;
   long pid = 0;
@@ -91,7 +92,7 @@ double modifiedS(const std::string& file, int& reason) {
 
 Claims::Claims(const std::string& folder, double stale_after_s) : folder_(folder), machine_(thisMachine()), stale_after_s_(stale_after_s) {
   const std::string begin = beginOf(getpid());
-  // Containers on one machine may have equal host names and ids of processes.
+  // Containers on one machine may have equal host names and process ids.
   worker_ = fmt::format("{}-{}-{}", hostName(), getpid(), uniqueName());
   text_ = nlohmann::json{{"worker", worker_}, {"host", hostName()}, {"machine", machine_}, {"pid", getpid()}, {"begin", begin}}.dump();
   replaceFile(folder_ + "/workers/" + worker_, text_);
@@ -138,12 +139,12 @@ RowHistory Claims::history(std::size_t row) const {
       addEnd(history, path(row, attempt) + ".end");
       continue;
     }
-    // Whoever took over has seen that the worker was gone.
+    // The worker that took over has checked that the previous worker was gone.
     const bool is_last = access(path(row, attempt + 1).c_str(), F_OK) != 0;
     history.free = !is_last || isGone(path(row, attempt));
     if (!history.free) return history;
     ++history.kill_count;
-    history.message = readClaim(path(row, attempt)) ? "its worker vanished" : path(row, attempt) + ": is not a claim; its worker vanished";
+    history.message = readClaim(path(row, attempt)) ? "its worker vanished" : path(row, attempt) + ": is unreadable; its worker vanished";
   }
   return history;
 }
@@ -158,7 +159,7 @@ void Claims::addEnd(RowHistory& history, const std::string& end_file) {
 
 bool Claims::isGone(const std::string& claim_file) const {
   const auto claim = readClaim(claim_file);
-  // A power failure may leave a claim without contents; a network file system may show a fresh one so for a moment.
+  // A power failure may leave an empty claim; a network file system may show a new claim as empty for a moment.
   if (!claim) return ageS(claim_file) > stale_after_s_;
   if (claim->worker == worker_) return false;
   if (claim->machine == machine_) return beginOf(claim->pid) != claim->begin;
@@ -171,7 +172,7 @@ double Claims::ageS(const std::string& file) const {
   if (reason == ENOENT) return 1e300;  // it has ended
   const double now_s = modifiedS(folder_ + "/workers/" + worker_, reason);
   if (reason != 0) throw IoError(fmt::format("{}/workers: cannot be read: {}", folder_, std::strerror(reason)));
-  // This worker's own heartbeat may be old by as much as it waits between two.
+  // This worker's own heartbeat may be as old as its interval between heartbeats.
   return now_s - then_s;
 }
 

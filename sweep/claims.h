@@ -1,14 +1,15 @@
-/// Who works on which row: agreed through files alone, so that workers need nothing but a folder that they share.
+/// Claims say which worker works on which row. They are files, so that workers need nothing but a shared folder.
 ///
-///     workers/WORKER         one per worker; its time of change is the worker's heartbeat
+///     workers/WORKER         one per worker; its modification time is the worker's heartbeat
 ///     claims/ROW.N           the N-th attempt at a row, created atomically (link) by the worker who makes it; never removed
-///     claims/ROW.N.end       that attempt ended without a result, and why
-/// Claims are on the disk before work begins. One that is not readable as a claim nevertheless is an attempt whose worker is gone when the
-/// file is older than the limit.
+///     claims/ROW.N.end       says that this attempt ended without a result, and why
+/// A claim is on the disk before work begins. If a claim is nevertheless unreadable, it counts as an attempt, and its worker as gone once
+/// the file is older than the limit.
 ///
-/// A row is free if no attempt was made, if the last one has an end, or if the worker of the last one is gone: on this machine when its
-/// process no longer exists, on another when its heartbeat is older than the limit. Times are compared as the file system gives them, so
-/// that clocks of machines need not agree. Two workers that take over the same row try to create the same ROW.N+1, and one succeeds.
+/// A row is free if no attempt was made, if the last attempt has an end, or if the worker of the last attempt is gone. A worker on this
+/// machine is gone if its process no longer exists; a worker on another machine is gone if its heartbeat is older than the limit. Only
+/// times from the file system are compared, so the machines' clocks need not agree. If two workers take over the same row, both try to
+/// create ROW.N+1, and one succeeds.
 #pragma once
 
 #include <map>
@@ -18,38 +19,38 @@
 
 namespace musclesim {
 
-/// How an attempt ended that has no result.
+/// How an attempt without a result ended.
 enum class AttemptEnd {
-  crashed,    ///< by its own doing: a signal like SIGSEGV, an internal error, out of time
-  killed,     ///< from outside, or its worker vanished
-  abandoned,  ///< given back by a worker that had to stop
+  crashed,    ///< its own failure: a signal like SIGSEGV, an internal error, out of time
+  killed,     ///< killed from outside, or its worker vanished
+  abandoned,  ///< its worker had to stop and gave the row back
 };
 
-/// What is known of a row's attempts so far.
+/// The attempts at a row so far.
 struct RowHistory {
   int attempt_count = 0;
   int crash_count = 0, kill_count = 0;
   bool free = true;     ///< a next attempt may be made
-  std::string message;  ///< of the last one that failed
+  std::string message;  ///< reason of the last failed attempt
 };
 
 class Claims {
  public:
   /// Registers this process as a worker of the sweep in `folder`. Throws IoError.
   Claims(const std::string& folder, double stale_after_s);
-  /// Takes the worker's file away.
+  /// Removes the worker's file.
   ~Claims();
   Claims(const Claims&) = delete;
   Claims& operator=(const Claims&) = delete;
 
-  /// Shows that this worker lives; cheap, at most once a tenth of the limit.
+  /// Heartbeat: shows that this worker lives. Cheap: touches the file at most ten times per limit.
   void beat();
-  /// Tries to make the N-th attempt at a row this worker's, N from 1. False if it is another's.
+  /// Claims the N-th attempt at a row, N from 1. Returns false if another worker has it.
   bool claim(std::size_t row, int attempt);
-  /// Notes that an attempt of this worker ended without a result.
+  /// Records that an attempt of this worker ended without a result.
   void end(std::size_t row, int attempt, AttemptEnd how, const std::string& message);
   RowHistory history(std::size_t row) const;
-  /// Which rows anybody has tried.
+  /// For each row, whether any worker has tried it.
   std::vector<bool> tried(std::size_t row_count) const;
   const std::string& worker() const { return worker_; }
 
@@ -57,7 +58,7 @@ class Claims {
   std::string path(std::size_t row, int attempt) const;
   static void addEnd(RowHistory& history, const std::string& end_file);
   bool isGone(const std::string& claim_file) const;
-  /// How long before this worker's last heartbeat a file was changed.
+  /// Time from the last change of a file to this worker's last heartbeat.
   double ageS(const std::string& file) const;
 
   std::string folder_, machine_, worker_, text_;

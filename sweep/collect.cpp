@@ -19,7 +19,7 @@ using nlohmann::ordered_json;
 struct Number {
   std::string name;
   ordered_json value;
-  bool of_machine;  ///< tells a time or place of the run
+  bool of_machine;  ///< depends on the machine: a wall time or a path
 };
 using Flat = std::vector<Number>;
 
@@ -43,7 +43,7 @@ void flatten(const ordered_json& json, const std::string& prefix, bool with_list
     for (const auto& [name, value] : json.items()) add(name, value);
 }
 
-/// Which numbers are wanted, and which wishes no number has met.
+/// Selects the numbers to collect; remembers which patterns matched no number.
 class Choice {
  public:
   explicit Choice(const std::vector<std::string>& columns) : all_(columns.empty()), unmet_(columns), columns_(columns) {}
@@ -62,7 +62,7 @@ class Choice {
   const std::vector<std::string>& unmet() const { return unmet_; }
 
  private:
-  /// What tells times and places must be asked for by its name.
+  /// Wall times and paths are collected only if a pattern gives their full name.
   static bool matches(const std::string& column, const Number& number) {
     if (!column.ends_with('*')) return number.name == column;
     return !number.of_machine && number.name.starts_with(column.substr(0, column.size() - 1));
@@ -72,7 +72,7 @@ class Choice {
   std::vector<std::string> unmet_, columns_;
 };
 
-/// RFC 4180: in quotes if it must be.
+/// A CSV cell, in quotes if necessary (RFC 4180).
 std::string cell(const ordered_json& value) {
   if (value.is_null()) return {};
   if (!value.is_string()) return value.dump();
@@ -82,7 +82,7 @@ std::string cell(const ordered_json& value) {
   return '"' + text + '"';
 }
 
-/// The rows of the table; columns in the order in which rows have them first.
+/// The rows of the table. Columns are in the order of their first appearance.
 class Table {
  public:
   void add(const ordered_json& row) {

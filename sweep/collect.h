@@ -1,4 +1,4 @@
-/// Collecting: all results of a sweep in one table.
+/// Collects all results of a sweep in one table.
 #pragma once
 
 #include <string>
@@ -6,20 +6,20 @@
 
 namespace musclesim {
 
-/// Which rows have no numbers, and why.
+/// The state of the rows: how many are done, and which are missing or have failed.
 struct Collected {
   std::size_t row_count = 0, done_count = 0;
   std::vector<std::size_t> missing, diverged, failed, crashed;
-  std::vector<std::string> unmet_columns;  ///< of the plan's columns those that no row has; empty while no row is done
+  std::vector<std::string> unmet_columns;  ///< columns of the plan that no row has; empty while no row is done
   std::string csv_file, json_file;
 
-  /// Every row was run to an end of its own; divergence is one.
+  /// True if every row is done or diverged.
   bool complete() const { return missing.empty() && failed.empty() && crashed.empty(); }
 };
 
-/// Writes collected.csv and collected.json into the sweep's folder: row, status, parameters, numbers. They depend on the rows' results
-/// only, not on who made them or when: members named wall_s, wall_per_simulated_s, log, figure, out and elapsed_s are left out unless the
-/// plan's columns name them in full. Throws BadFile, IoError.
+/// Writes collected.csv and collected.json into the sweep's folder: row, status, parameters, numbers. Their contents do not depend on which
+/// worker ran a row or when: members named wall_s, wall_per_simulated_s, log, figure, out and elapsed_s are left out unless the plan's
+/// columns give their full names. Throws BadFile, IoError.
 Collected collect(const std::string& folder);
 
 }  // namespace musclesim

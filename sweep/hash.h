@@ -1,4 +1,4 @@
-/// Fingerprints: equal for equal bytes, almost surely different otherwise. Not against forgery.
+/// Hashes that detect changes: equal for equal bytes, almost surely different otherwise. They do not protect against forgery.
 #pragma once
 
 #include <bit>
@@ -15,7 +15,7 @@ class Hash {
     for (const char byte : bytes) value_ = (value_ ^ static_cast<unsigned char>(byte)) * 0x100000001b3ULL;
     value_ = (value_ ^ bytes.size()) * 0x100000001b3ULL;
   }
-  /// By its bits: -0 and 0 differ.
+  /// Adds the bits of the number: -0 and 0 differ.
   void add(double number) {
     const auto bits = std::bit_cast<std::uint64_t>(number);
     add(std::string_view(reinterpret_cast<const char*>(&bits), sizeof bits));
@@ -28,8 +28,8 @@ class Hash {
   std::uint64_t value_ = 0xcbf29ce484222325ULL;
 };
 
-/// All registered robots with their default parameters: names, masses and places of the primitives, lengths and limits of the muscles,
-/// parameters. Differs when a robot was changed, so that a sweep is not finished with another model than it was begun with.
+/// Hash of all registered robots with their default parameters: names, masses and positions of the primitives, lengths and limits of the
+/// muscles, parameters. It changes if a robot changes, so that a sweep cannot be continued with another model.
 std::string robotsHash();
 
 }  // namespace musclesim

@@ -1,4 +1,4 @@
-/// Reading and writing of manifest.json.
+/// Reads and writes manifest.json.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -49,7 +49,7 @@ std::string manifestText(const Sweep& sweep) {
   return text + "\n  ]\n}\n";
 }
 
-/// Reads members and says which one is wrong.
+/// Reads the members; an error names the wrong member.
 class ManifestReader {
  public:
   ManifestReader(const std::string& text, const std::string& file) : document_(text, file) {}

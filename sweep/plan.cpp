@@ -108,17 +108,16 @@ class Plan {
 
   void requireSize(const toml::node& place, std::size_t row_count, std::size_t parameter_count) const {
     if (row_count > most_sweep_rows || row_count * parameter_count > most_sweep_values)
-      reader_.refuse(place, fmt::format("these are {} rows of {} parameters; at most {} rows and {} values are allowed", row_count,
+      reader_.refuse(place, fmt::format("the plan has {} rows of {} parameters; at most {} rows and {} values are allowed", row_count,
                                         parameter_count, most_sweep_rows, most_sweep_values));
   }
 
-  /// Multiplies the rows so far by those of a section.
+  /// Combines every row so far with every row of a section.
   void combine(const toml::node& place, const std::vector<RowParameters>& section) {
     static const std::set<std::string> reserved = {"out", "row", "repeat", "status", "message"};
     requireSize(place, rows_.size() * section.size(), rows_.front().size() + section.front().size());
     for (const auto& [name, value] : section.front())
-      if (!names_.insert(name).second || reserved.contains(name))
-        reader_.refuse(place, name + ": is given twice, or a name that has a meaning of its own");
+      if (!names_.insert(name).second || reserved.contains(name)) reader_.refuse(place, name + ": is given twice or is a reserved name");
     std::vector<RowParameters> ready = section;
     for (auto& row : ready)
       for (auto& [name, value] : row)
@@ -183,8 +182,8 @@ class Plan {
     return std::ranges::any_of(sweep_.command, [&](const auto& argument) { return argument.find("{" + name + "}") != std::string::npos; });
   }
 
-  /// Rows that differ in their parameters but not in the repeat have the same seed: their differences are not chance. A seed that the
-  /// command does not use is not listed, for it would not be that of the run.
+  /// Rows of the same repeat have the same seed, so that their differences come from their parameters and not from chance. A seed that the
+  /// command does not use is not listed, since the run would not have it.
   void addRepeats() {
     std::size_t count = 1;
     if (const auto found = sections_.find("repeats"); found != sections_.end()) {
@@ -194,7 +193,7 @@ class Plan {
       }
       requireSize(*found->second, rows_.size() * count, rows_.front().size() + 2);
       if (count > 1 && !commandUses("seed") && !commandUses("repeat"))
-        reader_.refuse(*found->second, "repeats: would all be the same run; write {seed} or {repeat} into the command");
+        reader_.refuse(*found->second, "repeats: all would be the same run; use {seed} or {repeat} in the command");
     }
     std::vector<RowParameters> rows;
     for (std::size_t i = 0; i < count; ++i) {

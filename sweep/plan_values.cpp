@@ -28,7 +28,7 @@ std::string PlanReader::text(const toml::node& node, const std::string& name) co
 double PlanReader::number(const toml::node& node, const std::string& name) const {
   if (!node.is_number()) refuse(node, name + ": must be a number");
   const auto number = node.value<double>();
-  if (!number) refuse(node, name + ": must be at most 2^53, beyond which not every whole number is one of double precision");
+  if (!number) refuse(node, name + ": must be at most 2^53, the limit up to which a double holds every whole number");
   if (!std::isfinite(*number)) refuse(node, name + ": must be finite");
   return *number;
 }

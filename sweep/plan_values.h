@@ -12,7 +12,7 @@
 
 namespace musclesim {
 
-/// What a parameter's values are drawn from.
+/// The distribution that a parameter's values are drawn from.
 struct Distribution {
   std::string name;
   double low = 0, high = 1;
@@ -20,11 +20,11 @@ struct Distribution {
   bool integer = false;                   ///< whole numbers low .. high
   std::vector<Parameter::Value> choices;  ///< instead of a range
 
-  /// The value at a place 0 <= unit < 1 of the distribution.
+  /// The quantile of the distribution at 0 <= unit < 1.
   Parameter::Value at(double unit) const;
 };
 
-/// Walks through a section; throws BadFile at what it cannot accept.
+/// Reads the sections of a plan; throws BadFile with the place of an error.
 class PlanReader {
  public:
   explicit PlanReader(std::string file) : file_(std::move(file)) {}
@@ -37,7 +37,7 @@ class PlanReader {
   Parameter::Value value(const toml::node& node, const std::string& name) const;
 
   using Values = std::vector<Parameter::Value>;
-  /// Names joined by dots and their lists of values.
+  /// Parameters with their lists of values; names of nested tables are joined by dots.
   std::vector<std::pair<std::string, Values>> lists(const toml::table& section, const std::string& prefix = "") const;
   std::vector<std::pair<std::string, Parameter::Value>> constants(const toml::table& section, const std::string& prefix = "") const;
   /// All entries but `count`.

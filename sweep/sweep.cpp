@@ -107,7 +107,7 @@ std::vector<std::string> argumentsOf(const Sweep& sweep, std::size_t number, con
     throw BadParameter("command", fmt::format("{} arguments", arguments.size()), fmt::format("have at most {}", most_arguments));
   for (const std::string& argument : arguments)
     if (argument.size() > most_argument_bytes || argument.find('\0') != std::string::npos)
-      throw BadParameter(fmt::format("command: an argument has {} bytes or a NUL among them; at most {} are allowed", argument.size(),
+      throw BadParameter(fmt::format("command: an argument has {} bytes, or contains a NUL; at most {} bytes are allowed", argument.size(),
                                      most_argument_bytes));
   return arguments;
 }

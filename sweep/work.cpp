@@ -31,16 +31,16 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t output_limit_bytes = std::size_t{64} << 20;
 constexpr int most_crashes = 2, most_kills = 5;
 constexpr std::chrono::milliseconds longest_wait(1000);
-constexpr std::chrono::milliseconds interrupt_delay(300);  ///< between the ends of a run and of its worker by the same cause, at most
-constexpr double end_margin_s = 1.0;                       ///< what a worker needs to give a row back
+constexpr std::chrono::milliseconds interrupt_delay(300);  ///< a signal that ends a run reaches its worker within this time, if both get it
+constexpr double end_margin_s = 1.0;                       ///< time that a worker needs to give a row back
 
-/// What the program's exit statuses say about a row; see docs/getting_started.md.
+/// Exit statuses of the program, which give the status of a row; see docs/getting_started.md.
 enum Status { done = 0, bad_usage = 2, bad_input = 3, diverged = 4 };
 
 void requireSameModel(const Sweep& sweep, const std::string& folder) {
   const std::string file = folder + "/manifest.json", program = "musclesim " MUSCLESIM_VERSION;
   if (sweep.program != program) throw BadFile(file, fmt::format("was planned by {}; this is {}", sweep.program, program));
-  if (sweep.robots_hash != robotsHash()) throw BadFile(file, "was planned for robots that differ from those of this program");
+  if (sweep.robots_hash != robotsHash()) throw BadFile(file, "was planned with other robots than this program has");
   for (const auto& [path, expected] : sweep.inputs) {
     Hash hash;
     hash.add(readTextFile(folder + "/" + path, std::size_t{512} << 20));
@@ -48,7 +48,7 @@ void requireSameModel(const Sweep& sweep, const std::string& folder) {
   }
 }
 
-/// Puts a finished folder in place. If an earlier attempt came as far as this before it was killed, its folder is as good.
+/// Renames the folder of a finished attempt to its final name. If an earlier attempt did that before it was killed, its folder is kept.
 void moveInPlace(const std::string& from, const std::string& to) {
   syncFolder(from);
   if (std::rename(from.c_str(), to.c_str()) != 0) {
@@ -86,7 +86,7 @@ class Worker {
     return true;
   }
 
-  /// A fresh row, or one that another worker left; false if none is left to wait for.
+  /// Works on a new row, or on one that another worker left. Returns false if no row is left to wait for.
   bool workOnNext() {
     while (next_ < sweep_.rows.size()) {
       if (tried_[next_]) {
@@ -125,10 +125,10 @@ class Worker {
     return true;
   }
 
-  /// Runs a row that this worker has claimed, again if it crashes.
+  /// Runs a row that this worker has claimed, and repeats it if it crashes.
   void makeAttempt(std::size_t row, int attempt) {
     for (;; ++attempt) {
-      if (hasResult(folder_, row)) return;  // an earlier worker had been taken for dead
+      if (hasResult(folder_, row)) return;  // a worker that was believed dead has finished it
       const RowHistory before = attempt == 1 ? RowHistory() : claims_.history(row);
       if (before.crash_count >= most_crashes || before.kill_count >= most_kills) return giveUp(row, attempt, before);
       if (runOnce(row, attempt)) return;
@@ -182,14 +182,14 @@ class Worker {
     return options_.interrupt_signal() != 0;
   }
 
-  /// Why an attempt counts for nothing, if it does.
+  /// The reason why an attempt has no result; empty if it has one.
   std::optional<std::pair<AttemptEnd, std::string>> withoutResult(const ChildEnd& end, bool stop, bool out_of_time,
                                                                   const std::string& last_words) const {
     if (end.stopped && stop) return {{AttemptEnd::abandoned, "its worker had to stop"}};
     if (end.stopped && out_of_time) return {{AttemptEnd::crashed, fmt::format("took longer than {} s", sweep_.row_time_limit_s)}};
     const int signal = end.signal != 0 ? end.signal : end.exit_status > 128 ? end.exit_status - 128 : 0;
     const bool from_outside = signal == SIGKILL || signal == SIGTERM || signal == SIGINT || signal == SIGHUP;
-    // A batch system signals the run and its worker, in whatever order.
+    // A batch system signals both the run and its worker, in any order.
     if (from_outside && signal != SIGKILL && isInterruptedSoon()) return {{AttemptEnd::abandoned, "its worker had to stop"}};
     if (signal != 0)
       return {{from_outside ? AttemptEnd::killed : AttemptEnd::crashed, fmt::format("ended by signal {} ({})", signal, strsignal(signal))}};
@@ -213,7 +213,7 @@ class Worker {
     conclude(row, result);
   }
 
-  /// The plan says what is collected, or the run is told to print numbers.
+  /// True if the plan names numbers to collect, or the command tells the run to print numbers.
   bool expectsNumbers(const std::vector<std::string>& arguments) const {
     return !sweep_.columns.empty() || !sweep_.result_file.empty() || std::ranges::find(arguments, "--json") != arguments.end();
   }
@@ -256,7 +256,7 @@ class Worker {
   std::vector<bool> tried_;
   std::size_t next_ = 0, first_open_ = 0;
   double longest_row_s_ = 0;
-  std::chrono::milliseconds wait_{10};  ///< before it looks again whether others have finished or died
+  std::chrono::milliseconds wait_{10};  ///< time until it checks again whether other workers have finished or died
   WorkSummary summary_;
 };
 

@@ -8,6 +8,7 @@
 #include "../../effect/history.h"
 #include "laws_by_stage.h"
 #include "musclesim/robot/world.h"
+#include "wander.h"
 
 namespace musclesim::out_of_catalogue {
 

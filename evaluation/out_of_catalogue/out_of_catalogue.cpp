@@ -1,10 +1,8 @@
 #include "out_of_catalogue.h"
 
-#include <cmath>
 #include <mutex>
 
 #include "laws_by_stage.h"
-#include "musclesim/base/random.h"
 #include "musclesim/effect/catalogue.h"
 
 namespace musclesim {
@@ -26,15 +24,5 @@ void registerOutOfCatalogueLaws() {
     for (const OutOfCatalogueLaw& law : outOfCatalogueLaws()) registerEffect(law.info);
   });
 }
-
-namespace out_of_catalogue {
-
-double wander(std::uint64_t seed, double time_s, double interval_s) {
-  const double place = std::floor(time_s / interval_s), share = time_s / interval_s - place;
-  auto drawn = [&](double at) { return RandomStream(seed, "wander." + std::to_string(static_cast<long>(at))).uniform(-1, 1); };
-  return (1 - share) * drawn(place) + share * drawn(place + 1);
-}
-
-}  // namespace out_of_catalogue
 
 }  // namespace musclesim

@@ -6,6 +6,7 @@
 
 #include "laws_by_stage.h"
 #include "musclesim/robot/world.h"
+#include "wander.h"
 
 namespace musclesim::out_of_catalogue {
 

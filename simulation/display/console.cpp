@@ -35,9 +35,9 @@ std::vector<int> digits() {
 
 const std::vector<Console::Binding>& Console::bindings() {
   static const std::vector<Binding> all = {
-      {"i", "muscles: automatic or by hand", {'i'}, [](Console& c, int) { c.toggleManual(); }},
-      {"p  Space", "pause, go on", {'p', ' '}, [](Console& c, int) { c.pace().setPaused(!c.pace().isPaused()); }},
-      {"Right", "one step, then pause", {key::right}, [](Console& c, int) { c.pace().stepOnce(); }},
+      {"i", "muscles automatic or by hand", {'i'}, [](Console& c, int) { c.toggleManual(); }},
+      {"p  Space", "pause, resume", {'p', ' '}, [](Console& c, int) { c.pace().setPaused(!c.pace().isPaused()); }},
+      {"Right", "do one step, then pause", {key::right}, [](Console& c, int) { c.pace().stepOnce(); }},
       {"[  ]", "slower, faster", {'[', ']'}, [](Console& c, int code) { changeSpeed(c, code == '[' ? 1 / speed_step : speed_step); }},
       {"0 - 9", "select a muscle", digits(), [](Console& c, int code) { c.select(code - '0'); }},
       {",  .", "previous, next muscle", {',', '.'}, [](Console& c, int code) { c.select(c.selected() + (code == ',' ? -1 : 1)); }},
@@ -56,15 +56,15 @@ const std::vector<Console::Binding>& Console::bindings() {
        "zoom in, out (also the wheel)",
        {key::up, key::down},
        [](Console& c, int code) { c.camera.zoom(code == key::up ? zoom_step : 1 / zoom_step); }},
-      {"c", "first view again", {'c'}, [](Console& c, int) { c.camera = c.first_camera_; }},
+      {"c", "reset the view", {'c'}, [](Console& c, int) { c.camera = c.first_camera_; }},
       {"t", "transparent bones", {'t'}, [](Console& c, int) { flip(c, c.style.transparent, "transparent bones"); }},
-      {"m", "muscles in the colour of their tension", {'m'}, [](Console& c, int) { flip(c, c.style.color_tension, "colours of tension"); }},
+      {"m", "colour muscles by tension", {'m'}, [](Console& c, int) { flip(c, c.style.color_tension, "colours by tension"); }},
       {"f", "frames and labels", {'f'}, [](Console& c, int) { flip(c, c.style.frames, "frames and labels"); }},
-      {"s", "picture into the run's folder", {'s'}, [](Console& c, int) { c.wants_screenshot = true; }},
-      {"v", "video into the run's folder: start, stop", {'v'}, [](Console& c, int) { c.wants_video = !c.wants_video; }},
-      {"Tab", "panel", {key::tab}, [](Console& c, int) { c.show_panel = !c.show_panel; }},
+      {"s", "save a picture in the run's folder", {'s'}, [](Console& c, int) { c.wants_screenshot = true; }},
+      {"v", "start or stop a video in the run's folder", {'v'}, [](Console& c, int) { c.wants_video = !c.wants_video; }},
+      {"Tab", "show or hide the panel", {key::tab}, [](Console& c, int) { c.show_panel = !c.show_panel; }},
       {"h  F1", "this help", {'h', key::f1}, [](Console& c, int) { c.show_help = !c.show_help; }},
-      {"q  Esc", "end of the run", {'q', key::escape}, [](Console& c, int) { c.pace().close(); }},
+      {"q  Esc", "end the run", {'q', key::escape}, [](Console& c, int) { c.pace().close(); }},
   };
   return all;
 }
@@ -87,7 +87,7 @@ void Console::select(int muscle) {
   style.selected = muscle;
 }
 
-/// In hundredths, so that fifty steps from 0 are exactly 0.5.
+/// Counts in hundredths, so that fifty steps from 0 give exactly 0.5.
 void Console::raise(double by_ratio) {
   if (selected() < 0) return say("select a muscle first: 0 - 9 or a click on it");
   const double pressure = hands_.pressures()[static_cast<std::size_t>(selected())] + by_ratio;
@@ -95,7 +95,7 @@ void Console::raise(double by_ratio) {
 }
 
 void Console::setPressure(int muscle, double pressure_ratio) {
-  if (!hands_.isManual()) say("by hand now; i gives the muscles back");
+  if (!hands_.isManual()) say("muscles under manual control; press i for automatic");
   hands_.set(muscle, pressure_ratio);
 }
 

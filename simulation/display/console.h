@@ -1,4 +1,4 @@
-/// What the user of a window can do, and what the window shows because of it. Knows nothing of windows.
+/// The user's actions in a window and what the window shows as a result. Independent of any windowing library.
 #pragma once
 
 #include <chrono>
@@ -14,14 +14,14 @@
 
 namespace musclesim {
 
-/// A key: its character, lower case, or one of these.
+/// Key codes: a lower-case character, or one of these.
 namespace key {
 inline constexpr int escape = 27, f1 = 1001, up = 1002, down = 1003, left = 1004, right = 1005, tab = 9;
 }
 
 class Console {
  public:
-  /// Muscles, pressures and pace are those of a run, which may be in another thread.
+  /// `hands` and `pace` belong to a run, which may be in another thread.
   Console(ManualController& hands, Pace& pace, const Camera& first);
 
   /// A key and what it does, for the help overlay and the documentation.
@@ -32,11 +32,11 @@ class Console {
   };
   static const std::vector<Binding>& bindings();
 
-  /// Does what a key is for; false if it is for nothing.
+  /// Performs the action of a key; returns false if the key has none.
   bool press(int code);
   void select(int muscle);
   void raise(double by_ratio);
-  /// By hand, with a word about it if that is new.
+  /// Sets a pressure by hand; tells the user if this starts manual control.
   void setPressure(int muscle, double pressure_ratio);
   void toggleManual();
 
@@ -45,7 +45,7 @@ class Console {
   int muscleCount() const { return muscle_count_; }
   int selected() const { return style.selected; }
 
-  /// A line for the user that is shown for some seconds.
+  /// Shows the user a line for some seconds.
   void say(const std::string& message);
   std::string notice() const;
 
@@ -53,7 +53,7 @@ class Console {
   SceneStyle style;
   bool show_help = false, show_panel = true;
   bool wants_screenshot = false, wants_video = false;
-  std::optional<std::string> divergence;  ///< the banner
+  std::optional<std::string> divergence;  ///< text of the banner
 
   /// All of the above, for logs and tests.
   nlohmann::json state() const;

@@ -10,8 +10,8 @@ namespace musclesim {
 
 namespace {
 
-/// What goes wrong is noted before the window is destroyed, which closes it.
-void loop(Window& window, Display::Shared& shared) {
+/// Runs the window and records a failure before the window is destroyed, since destroying it closes the pace.
+void loop(Window& window, DisplayShared& shared) {
   try {
     window.loop();
   } catch (const std::exception& error) {
@@ -21,7 +21,7 @@ void loop(Window& window, Display::Shared& shared) {
   }
 }
 
-void runWindow(Display::Shared& shared) {
+void runWindow(DisplayShared& shared) {
   bool is_open = false;
   try {
     Window window(shared);
@@ -36,8 +36,8 @@ void runWindow(Display::Shared& shared) {
   shared.has_ended = true;
 }
 
-/// Leaves a thread that cannot end alone with what it uses.
-void abandon(std::jthread& thread, std::unique_ptr<Display::Shared>& shared) {
+/// Detaches a thread that cannot end and leaves it the data that it uses.
+void abandon(std::jthread& thread, std::unique_ptr<DisplayShared>& shared) {
   thread.detach();
   static_cast<void>(shared.release());
 }
@@ -47,7 +47,7 @@ constexpr auto look_around = std::chrono::milliseconds(5);
 }  // namespace
 
 Display::Display(DisplayOptions options, ManualController& hands, Snapshot first)
-    : shared_(std::make_unique<Shared>(std::move(options), hands, std::move(first))) {
+    : shared_(std::make_unique<DisplayShared>(std::move(options), hands, std::move(first))) {
   thread_ = std::jthread([shared = shared_.get()] { runWindow(*shared); });
   auto opened = shared_->opened.get_future();
   while (opened.wait_for(look_around) != std::future_status::ready) {

@@ -1,4 +1,4 @@
-/// The window: shows a run while it goes on and lets a hand steer it.
+/// The window: shows a run in progress and lets the user control it.
 #pragma once
 
 #include <functional>
@@ -7,51 +7,41 @@
 #include <string>
 #include <thread>
 
+#include "display_options.h"
 #include "musclesim/controller/manual.h"
-#include "pace.h"
-#include "simulation/scene/camera.h"
 #include "simulation/scene/snapshot.h"
 
 namespace musclesim {
 
-struct DisplayOptions {
-  std::string title = "musclesim";
-  int width_px = 1024, height_px = 768;
-  double speed_ratio = 1;  ///< simulated time over wall time
-  Camera camera;
-  std::string picture_folder;  ///< where the keys s and v put pictures and videos
-  std::string log_file;        ///< one line of JSON per key or click with the state after it; empty: none
-};
+struct DisplayShared;  // shared.h
 
-/// A window with a thread of its own, so that the picture keeps its rate whatever a step costs. At most one in a process at a time. After
-/// a loss() that thread never ends and holds the display: a program must leave by _Exit then.
+/// A window with a thread of its own, so that its frame rate does not depend on the cost of a step. At most one per process at a time.
+/// After a loss() that thread never ends and holds the display; the program must then end with _Exit.
 class Display {
  public:
   using Interrupted = std::function<bool()>;
 
-  /// Opens the window. Throws SceneError where there is no display or it cannot draw the scene, IoError where the display is lost
-  /// meanwhile.
+  /// Opens the window. Throws SceneError if there is no display or it cannot draw the scene, IoError if the display is lost during that.
   Display(DisplayOptions options, ManualController& hands, Snapshot first);
   /// Closes it.
   ~Display();
   Display(const Display&) = delete;
   Display& operator=(const Display&) = delete;
 
-  /// Shows the moment and waits until it is time to go on. False: the user has closed the window, or `interrupted` says so.
+  /// Shows the snapshot and waits until the run may continue. Returns false if the user has closed the window or `interrupted` returns
+  /// true.
   bool show(Snapshot snapshot, const Interrupted& interrupted);
-  /// Shows the banner of a divergence and waits until the user closes the window or `interrupted` says so.
+  /// Shows the banner of a divergence and waits until the user closes the window or `interrupted` returns true.
   void showDivergence(const std::string& message, const Interrupted& interrupted);
 
-  /// Why the window ended on its own: a lost connection, an X error, a failure to draw. Empty if it is open or somebody closed it.
+  /// Why the window failed: a lost connection, an X error, a failure to draw. Empty if it is open or was closed by the user.
   std::optional<std::string> loss() const;
 
-  /// Pictures drawn so far over the time since the window was opened.
+  /// Mean number of pictures per second since the window was opened.
   double framesPerS() const;
 
-  struct Shared;
-
  private:
-  std::unique_ptr<Shared> shared_;
+  std::unique_ptr<DisplayShared> shared_;
   std::jthread thread_;
 };
 

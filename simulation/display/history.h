@@ -16,7 +16,7 @@ class History {
     std::optional<double> activity, target_height_mm;
   };
 
-  /// Takes a snapshot unless its time is that of the last one.
+  /// Adds a snapshot, unless its time equals that of the last one.
   void add(const Snapshot& snapshot);
   const std::deque<Sample>& samples() const { return samples_; }
 

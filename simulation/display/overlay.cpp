@@ -20,7 +20,7 @@ const Color ink{0.13, 0.14, 0.16, ""}, paper{1, 1, 1, ""}, night{0.10, 0.11, 0.1
     alarm{0.72, 0.08, 0.06, ""};
 constexpr float margin = 12;
 
-/// Lines of text in a box.
+/// Draws lines of text in a box.
 void drawBox(Painter& painter, float x, float y, const std::vector<std::string>& lines, const Color& text, const Color& box, float alpha) {
   float width = 0;
   for (const std::string& line : lines) width = std::max(width, painter.widthOf(line));
@@ -43,7 +43,7 @@ std::vector<std::string> statusLines(const Console& console, const Snapshot& sna
   return lines;
 }
 
-/// Names beside points; a name that would cover another moves down.
+/// Draws names beside points; a name that would cover another one moves down.
 class Labels {
  public:
   Labels(Painter& painter, const Camera& camera, float width, float height)
@@ -119,7 +119,8 @@ std::vector<std::string> wrapped(const Painter& painter, const std::string& text
 
 void drawBanner(Painter& painter, const std::string& divergence, float width, float y) {
   std::vector<std::string> lines;
-  for (const std::string& text : {divergence, std::string("The run stands still; its recording is complete up to here. q ends it.")})
+  for (const std::string& text :
+       {divergence, std::string("The run has stopped; its recording holds everything up to here. Press q to close.")})
     for (const std::string& line : wrapped(painter, text, width - 6 * margin)) lines.push_back(line);
   drawBox(painter, 2 * margin, y, lines, paper, alarm, 0.92F);
 }

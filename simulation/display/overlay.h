@@ -1,4 +1,4 @@
-/// What is written over the scene: state of the run, notices, labels, help, the banner of a divergence.
+/// Text over the scene: state of the run, notices, labels, help, the banner of a divergence.
 #pragma once
 
 #include "console.h"
@@ -7,10 +7,10 @@
 
 namespace musclesim {
 
-/// Wall time over simulated time, target and measured.
+/// A line with wall time over simulated time, target and measured.
 std::string paceLine(const Console& console);
 
-/// Draws all of it into the scene's part of the window.
+/// Draws the whole overlay into the scene's part of the window.
 void drawOverlay(Painter& painter, const Console& console, const Snapshot& snapshot, float width_px, float height_px, bool with_status);
 
 }  // namespace musclesim

@@ -1,4 +1,4 @@
-/// How fast a run goes on: the viewer's clock, pause and single steps.
+/// The speed of a run in a window: wall clock, pause and single steps.
 #pragma once
 
 #include <chrono>
@@ -10,14 +10,14 @@
 
 namespace musclesim {
 
-/// Lets a run wait between its steps; only waits, so the steps themselves stay what they are. Used by the run's thread (waitFor) and by the
-/// viewer's (all others). A run that cannot keep up is not hurried: the time it lost is forgotten.
+/// Makes a run wait between its steps; it does not change the steps. The run's thread calls waitFor, the viewer's thread everything else.
+/// If a run cannot keep up, it does not catch up later: the lost time is forgotten.
 class Pace {
  public:
   /// `speed_ratio`: simulated time over wall time.
   explicit Pace(double speed_ratio) : speed_ratio_(speed_ratio) {}
 
-  /// Waits until it is the moment of a simulated time. False: the viewer has closed, or `interrupted` (asked now and then) says so.
+  /// Waits until a simulated time is due. Returns false if the viewer has closed or `interrupted` (called now and then) returns true.
   bool waitFor(double simulated_s, const std::function<bool()>& interrupted);
 
   void setSpeed(double speed_ratio);  ///< clamped to 0.001 .. 10000

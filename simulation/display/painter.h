@@ -1,4 +1,4 @@
-/// Text and rectangles over a picture, in pixels from the upper left corner.
+/// Draws text and rectangles over a picture, in pixels from the upper left corner.
 #pragma once
 
 #include <string>
@@ -17,10 +17,10 @@ class Painter {
   virtual float lineHeight() const = 0;
 };
 
-/// With the bitmap fonts of GLUT, for a window without a panel. The window's context must be current.
+/// Draws with the bitmap fonts of GLUT, for a window without a panel. The window's context must be current.
 class BitmapPainter final : public Painter {
  public:
-  /// Of the window.
+  /// The size of the window.
   BitmapPainter(int width_px, int height_px);
   ~BitmapPainter() override;
   BitmapPainter(const BitmapPainter&) = delete;

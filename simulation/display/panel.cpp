@@ -28,7 +28,7 @@ ImVec4 shade(const Color& color, float alpha = 1) {
   return {static_cast<float>(color.red), static_cast<float>(color.green), static_cast<float>(color.blue), alpha};
 }
 
-/// A font of the system if there is one, since the built-in one is coarse.
+/// Loads a system font if there is one, since the built-in font is coarse.
 void chooseFont() {
   for (const char* file :
        {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf",
@@ -88,7 +88,7 @@ class ImGuiPanel final : public Panel {
   int widthPx() const override { return panel_width_px; }
   void resize(int width, int height) override { ImGui_ImplGLUT_ReshapeFunc(width, height); }
 
-  /// Only while a number is being typed: a slider that was dragged must not swallow the keys of the scene.
+  /// The panel uses keys only while a number is being typed: after dragging a slider, keys must reach the scene.
   bool key(unsigned char character) override {
     if (!ImGui::GetIO().WantTextInput) return false;
     ImGui_ImplGLUT_KeyboardFunc(character, 0, 0);
@@ -96,7 +96,8 @@ class ImGuiPanel final : public Panel {
   }
   void keyUp(unsigned char character) override { ImGui_ImplGLUT_KeyboardUpFunc(character, 0, 0); }
 
-  /// A press and its release can arrive between two pictures; the release then waits for the next, so that the press is seen.
+  /// A press and its release can both arrive before the next picture. The release is then delayed by one picture, so that the press has an
+  /// effect.
   bool button(int glut_button, int glut_state, int x, int y) override {
     ImGuiIO& io = ImGui::GetIO();
     io.MousePos = {static_cast<float>(x), static_cast<float>(y)};
@@ -163,7 +164,7 @@ class ImGuiPanel final : public Panel {
     if (ImGui::RadioButton("automatic", !by_hand) && by_hand) console.toggleManual();
     ImGui::SameLine();
     if (ImGui::RadioButton("by hand", by_hand) && !by_hand) console.toggleManual();
-    if (ImGui::Button(console.pace().isPaused() ? "Go on" : "Pause", {68, 0})) console.press('p');
+    if (ImGui::Button(console.pace().isPaused() ? "Resume" : "Pause", {76, 0})) console.press('p');
     ImGui::SameLine();
     if (ImGui::Button("Step")) console.press(key::right);
     ImGui::SameLine();
@@ -173,7 +174,7 @@ class ImGuiPanel final : public Panel {
     ImGui::TextUnformatted(paceLine(console).c_str());
   }
 
-  /// One slider per muscle with a patch of its colour, a click on which selects it; many muscles scroll.
+  /// One slider per muscle with a patch of its colour; a click on the patch selects the muscle. Many muscles scroll.
   static void drawPressures(Console& console, const Snapshot& snapshot) {
     constexpr int most_rows = 10;
     const auto rows = static_cast<float>(std::min(console.muscleCount(), most_rows));
@@ -231,7 +232,7 @@ class ImGuiPanel final : public Panel {
     drawPlot("", {{"force/N", force_color, of(&State::force_N)}}, history, height, std::nullopt);
   }
 
-  /// At the right end of the first plot's title.
+  /// Writes the duration of the plots at the right end of the first title.
   static void drawReach() {
     const std::string reach = fmt::format("last {:g} s", History::duration_s);
     const ImVec2 line = ImGui::GetCursorScreenPos();
@@ -256,7 +257,7 @@ class ImGuiPanel final : public Panel {
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("transparent bones (t)");
     ImGui::SameLine();
     ImGui::Checkbox("tension", &console.style.color_tension);
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("muscles in the colour of their tension (m)");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("colour muscles by tension (m)");
     ImGui::SameLine();
     ImGui::Checkbox("labels", &console.style.frames);
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("frames and labels (f)");

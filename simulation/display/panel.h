@@ -1,4 +1,4 @@
-/// Sliders, switches and live plots beside the scene. In a build without Dear ImGui there is none.
+/// The panel beside the scene: sliders, switches and live plots. A build without Dear ImGui has no panel.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace musclesim {
 
-/// Lives in the window's context; events come from the window.
+/// Draws in the window's context. The window passes its events on.
 class Panel {
  public:
   /// Null in a build without Dear ImGui.
@@ -18,7 +18,7 @@ class Panel {
 
   virtual int widthPx() const = 0;
   virtual void resize(int width, int height) = 0;
-  /// Events; the first three say whether the panel takes them from the scene.
+  /// Events. The first three return true if the panel uses the event, so that the scene must ignore it.
   virtual bool key(unsigned char character) = 0;
   virtual bool button(int glut_button, int glut_state, int x, int y) = 0;
   virtual bool move(int x, int y) = 0;

@@ -1,4 +1,4 @@
-/// Stands for panel.cpp in a build without Dear ImGui.
+/// Replaces panel.cpp in a build without Dear ImGui.
 #include "panel.h"
 
 namespace musclesim {

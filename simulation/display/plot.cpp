@@ -16,7 +16,7 @@ ImU32 packed(const Color& color, float alpha = 1) {
       {static_cast<float>(color.red), static_cast<float>(color.green), static_cast<float>(color.blue), alpha});
 }
 
-/// The smallest of 1, 2, 5 times a power of ten that is not below a width.
+/// The smallest number of the form 1, 2 or 5 times a power of ten that is at least a width.
 double roundUp(double width) {
   const double power = std::pow(10, std::floor(std::log10(width)));
   for (const double factor : {1.0, 2.0, 5.0})
@@ -52,7 +52,7 @@ void drawCurve(const PlotCurve& curve, const History& history, const ImVec2& cor
   ImGui::GetWindowDrawList()->AddPolyline(points.data(), static_cast<int>(points.size()), packed(curve.color), 0, 1.6F);
 }
 
-/// Title, then the names of the curves in their colours with their latest values.
+/// Writes the title, then the names of the curves in their colours with their latest values.
 void drawTitle(const std::string& title, const std::vector<PlotCurve>& curves, const History& history) {
   ImGui::TextUnformatted(title.c_str());
   for (const PlotCurve& curve : curves) {

@@ -16,7 +16,7 @@ struct PlotCurve {
   std::function<std::optional<double>(const History::Sample&)> value;
 };
 
-/// Draws at ImGui's cursor: a title with the latest values, a frame, curves over time. A fixed range, or one that follows the values.
+/// Draws at ImGui's cursor: a title with the latest values, a frame, curves over time. Without `range`, the range follows the values.
 void drawPlot(const std::string& title, const std::vector<PlotCurve>& curves, const History& history, float height_px,
               std::optional<std::pair<double, double>> range);
 

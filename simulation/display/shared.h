@@ -9,12 +9,15 @@
 #include <optional>
 #include <string>
 
-#include "display.h"
+#include "display_options.h"
+#include "musclesim/controller/manual.h"
+#include "pace.h"
+#include "simulation/scene/snapshot.h"
 
 namespace musclesim {
 
-struct Display::Shared {
-  Shared(DisplayOptions given, ManualController& controller, Snapshot first)
+struct DisplayShared {
+  DisplayShared(DisplayOptions given, ManualController& controller, Snapshot first)
       : options(std::move(given)),
         hands(controller),
         pace(options.speed_ratio),
@@ -23,10 +26,10 @@ struct Display::Shared {
   const DisplayOptions options;
   ManualController& hands;
   Pace pace;
-  std::promise<void> opened;            ///< or why it could not be
-  std::atomic<bool> is_ending = false;  ///< nothing is drawn any more
-  std::atomic<bool> has_ended = false;  ///< the window's thread is done
-  std::atomic<bool> is_stuck = false;   ///< it never will be: its display or its window is gone
+  std::promise<void> opened;            ///< set when the window is open, or to the exception why it could not open
+  std::atomic<bool> is_ending = false;  ///< the window draws nothing any more
+  std::atomic<bool> has_ended = false;  ///< the window's thread has ended
+  std::atomic<bool> is_stuck = false;   ///< the window's thread can never end, since its display or window is gone
   std::atomic<long> frame_count = 0;
   std::chrono::steady_clock::time_point opened_at;
 
@@ -39,7 +42,7 @@ struct Display::Shared {
     const std::lock_guard lock(access_);
     return latest_;
   }
-  /// The window cannot go on. Errors after its end are of no interest.
+  /// Called if the window cannot continue. Errors after its end are ignored.
   void lose(const std::string& reason) {
     if (!pace.isClosed()) {
       const std::lock_guard lock(access_);

@@ -27,23 +27,23 @@ constexpr double video_frames_per_s = 30;
 constexpr int wheel_up = 3, wheel_down = 4, drag_threshold_px = 3;
 constexpr float wheel_zoom = 1.1F;
 
-/// Xlib's handlers get no pointer of ours.
-Display::Shared* shared_of_handlers = nullptr;
+/// A global variable, because Xlib's handlers get no user pointer.
+DisplayShared* shared_of_handlers = nullptr;
 
-/// Where going on is not possible, the window's thread stops here and the run's thread writes the files.
+/// Stops the window's thread for good if it cannot continue; the run's thread then writes the files.
 [[noreturn]] void stopHere(const std::string& reason) {
   shared_of_handlers->lose(reason);
   shared_of_handlers->is_stuck = true;
   for (;;) pause();
 }
 
-/// The display is gone. Xlib would end the process.
+/// Handles a lost display. Without this handler Xlib would end the process.
 int stopAtLostDisplay(::Display*) {
   stopHere("the connection to the display is lost");
 }
 
-/// Mostly the window is gone. Mesa's drawing in software would go on with a size that the failed question for it has left unset. Only where
-/// nothing is drawn any more an error does not matter.
+/// Handles X errors, mostly because the window is gone. To continue would be unsafe: Mesa's software rendering would use a window size that
+/// the failed query left unset. An error is harmless only if nothing is drawn any more.
 int stopAtError(::Display* display, XErrorEvent* error) {
   if (shared_of_handlers->is_ending) return 0;
   char text[256];
@@ -51,13 +51,13 @@ int stopAtError(::Display* display, XErrorEvent* error) {
   stopHere(fmt::format("X error in request {}.{}: {}", error->request_code, error->minor_code, text));
 }
 
-/// Whether there is a display: GLUT does not ask. The connection stays while GLUT makes its own, since a server may start anew when the
-/// last one goes.
+/// Checks that there is a display, since GLUT does not. It keeps its connection while GLUT makes its own, because a server may restart when
+/// its last connection closes.
 class DisplayProbe {
  public:
   DisplayProbe() : display_(XOpenDisplay(nullptr)) {
     if (!display_)
-      throw SceneError("there is no display for a window: use --simple for a batch run, --screenshot or --video for pictures without one");
+      throw SceneError("there is no display for a window: use --simple to run without one, --screenshot or --video for pictures");
   }
   ~DisplayProbe() { XCloseDisplay(display_); }
   DisplayProbe(const DisplayProbe&) = delete;
@@ -105,7 +105,7 @@ std::string nameOfKey(int code) {
 
 }  // namespace
 
-Window::Window(Display::Shared& shared)
+Window::Window(DisplayShared& shared)
     : shared_(shared),
       console_(shared.hands, shared.pace, shared.options.camera),
       width_(shared.options.width_px),
@@ -174,7 +174,7 @@ void Window::listen() {
       this);
 }
 
-/// The context is still there and current.
+/// Frees everything; called while the context still exists and is current.
 void Window::closed() {
   shared_.is_ending = true;
   shared_.pace.close();
@@ -198,7 +198,7 @@ void Window::loop() {
     }
     draw();
     if (shared_.frame_count == 1) log("open");
-    // Half of the time at least is left to the simulation and to events.
+    // Leave at least half of the time to the simulation and to events.
     const auto cost = Clock::now() - now;
     watchCost(cost);
     next_frame = now + std::clamp<Clock::duration>(2 * cost, shortest_frame, longest_frame);
@@ -212,7 +212,7 @@ void Window::fitTarget() {
   target_ = std::make_unique<GpuTarget>(gl_, scene_width, height_, is_smooth_ ? GpuTarget::smooth : GpuTarget::plain);
 }
 
-/// The rate of pictures matters more than smooth edges: where drawing is too slow, there is one sample per pixel from then on.
+/// The frame rate matters more than smooth edges: if drawing is too slow, there is one sample per pixel from then on.
 void Window::watchCost(Clock::duration cost) {
   constexpr auto affordable = 25ms;
   constexpr int weight = 8, warm_up_frames = 12;
@@ -277,7 +277,7 @@ void Window::drag(int x, int y) {
     console_.camera.pan(dx, dy, static_cast<float>(height_));
 }
 
-/// The muscle whose line passes nearest to the pointer, if one is near.
+/// Selects the muscle whose line passes nearest to the pointer, if one is near.
 void Window::pickMuscle(int x, int y) {
   constexpr float near_px = 12;
   const Eigen::Vector2f pointer(static_cast<float>(x), static_cast<float>(y));
@@ -300,7 +300,7 @@ std::string Window::fileFor(const char* extension) const {
   }
 }
 
-/// The scene without what is written over it.
+/// Saves the scene without the overlay.
 void Window::savePictures() {
   try {
     if (console_.wants_screenshot) saveScreenshot();
@@ -313,7 +313,7 @@ void Window::savePictures() {
   console_.wants_screenshot = false;
 }
 
-/// Always with smooth edges.
+/// A screenshot always has smooth edges.
 void Window::saveScreenshot() {
   const std::string file = fileFor(".png");
   const GpuTarget target(gl_, target_->width(), target_->height(), GpuTarget::smooth);
@@ -322,12 +322,12 @@ void Window::saveScreenshot() {
   console_.say("picture " + file);
 }
 
-/// A video shows what the window shows, at the wall's time; frames that come late are repeated.
+/// A video shows the scene of the window in wall time; late frames are replaced by repeating the last one.
 void Window::updateVideo() {
   if (console_.wants_video && !video_) {
     video_ = std::make_unique<VideoWriter>(fileFor(".mp4"), target_->width(), target_->height(), video_frames_per_s);
     video_start_ = Clock::now();
-    console_.say("video started; v ends it");
+    console_.say("video started; press v to stop");
   }
   if (!video_) return;
   if (!console_.wants_video) {

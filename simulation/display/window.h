@@ -1,4 +1,4 @@
-/// The window of a Display: GLUT's callbacks, drawing, pictures and videos. All in the thread that made it.
+/// The window of a Display: GLUT's callbacks, drawing, pictures and videos. Use it only in the thread that made it.
 #pragma once
 
 #include <chrono>
@@ -18,13 +18,13 @@ namespace musclesim {
 
 class Window {
  public:
-  /// Throws SceneError where there is no display, or OpenGL is too old.
-  explicit Window(Display::Shared& shared);
+  /// Throws SceneError if there is no display or OpenGL is too old.
+  explicit Window(DisplayShared& shared);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  /// Until the run or the user ends it.
+  /// Runs until the run or the user ends it.
   void loop();
 
  private:
@@ -46,7 +46,7 @@ class Window {
   std::string fileFor(const char* extension) const;
   void log(const std::string& event);
 
-  Display::Shared& shared_;
+  DisplayShared& shared_;
   Console console_;
   History history_;
   Gl gl_;
@@ -55,7 +55,7 @@ class Window {
   std::unique_ptr<Panel> panel_;
   std::unique_ptr<VideoWriter> video_;
   Clock::time_point video_start_;
-  bool is_smooth_ = true;  ///< several samples per pixel, as long as that is fast enough
+  bool is_smooth_ = true;  ///< several samples per pixel, while that is fast enough
   Clock::duration mean_cost_ = {};
   std::ofstream log_;
   int window_ = 0, width_, height_;

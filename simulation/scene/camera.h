@@ -1,4 +1,4 @@
-/// Where a scene is looked at from.
+/// The camera of a scene.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,21 +15,21 @@ struct Camera {
 
   static constexpr float field_of_view_deg = 45;  ///< vertical
 
-  /// Drags of the mouse, in pixels.
+  /// Rotates by a drag of the mouse, in pixels.
   void rotate(float right_px, float down_px);
-  /// Nearer by a factor above 1, farther below.
+  /// A factor above 1 moves nearer, below 1 farther.
   void zoom(float factor);
   /// Moves the centre in the plane of the picture.
   void pan(float right_px, float down_px, float picture_height_px);
 
-  /// Where a point of the world appears in a picture, in pixels from the upper left corner; none behind the eye.
+  /// The place of a world point in a picture, in pixels from the upper left corner; none if the point is behind the eye.
   std::optional<Eigen::Vector2f> pixelOf(const Eigen::Vector3f& point_mm, float width_px, float height_px) const;
 
   Eigen::Vector3f eyeMm() const;
   Eigen::Matrix4f view() const;
   Eigen::Matrix4f projection(float aspect_ratio) const;
 
-  /// Shows the whole of a box, with a little room around it.
+  /// Moves so that a whole box is visible with a margin.
   static Camera framing(const Eigen::Vector3f& low_mm, const Eigen::Vector3f& high_mm);
 };
 

@@ -1,7 +1,7 @@
-/// The functions of OpenGL that the scene draws with, found at run time.
+/// The OpenGL functions that the scene uses, looked up at run time.
 ///
-/// A window finds them in the system's OpenGL, an offscreen picture in OSMesa. Both libraries export the same names, so the scene calls
-/// neither by name: both can be used in one process.
+/// A window takes them from the system's OpenGL, an offscreen picture from OSMesa. Both libraries export the same names; since the scene
+/// calls them through this table only, one process can use both.
 #pragma once
 
 #define GL_GLEXT_PROTOTYPES
@@ -24,7 +24,7 @@ namespace musclesim {
   X(UniformMatrix4fv) X(UseProgram) X(VertexAttribPointer) X(Viewport)
 // clang-format on
 
-/// gl.Clear(...) is glClear(...) of the context that the table was filled for.
+/// gl.Clear(...) calls glClear(...) of the context that the table was made for.
 struct Gl {
 #define MUSCLESIM_GL_MEMBER(name) decltype(&::gl##name) name = nullptr;  // NOLINT(bugprone-macro-parentheses)
   MUSCLESIM_GL_FUNCTIONS(MUSCLESIM_GL_MEMBER)

@@ -27,14 +27,14 @@ GpuProgram::GpuProgram(const Gl& gl, const char* vertex_source, const char* frag
   for (const auto& [kind, source] : {std::pair{GL_VERTEX_SHADER, vertex_source}, std::pair{GL_FRAGMENT_SHADER, fragment_source}}) {
     const GLuint shader = compile(gl, static_cast<GLenum>(kind), source);
     gl.AttachShader(id_, shader);
-    gl.DeleteShader(shader);  // lives on as long as the program
+    gl.DeleteShader(shader);  // OpenGL keeps it as long as the program exists
   }
   gl.BindAttribLocation(id_, 0, "position");
   gl.BindAttribLocation(id_, 1, "normal");
   gl.LinkProgram(id_);
   GLint fine = 0;
   gl.GetProgramiv(id_, GL_LINK_STATUS, &fine);
-  if (!fine) throw SceneError("this OpenGL cannot link a program of shaders");
+  if (!fine) throw SceneError("this OpenGL cannot link a shader program");
 }
 
 GpuProgram::~GpuProgram() {

@@ -1,4 +1,4 @@
-/// Programs, meshes and targets on the side of OpenGL. Each is made, used and destroyed while its context is current.
+/// OpenGL objects: shader programs, meshes and render targets. Create, use and destroy each while its context is current.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,7 +20,7 @@ class GpuProgram {
   GpuProgram& operator=(const GpuProgram&) = delete;
 
   void use() const { gl_.UseProgram(id_); }
-  /// Of the program in use.
+  /// Sets a uniform of the program in use.
   void set(const char* name, float value) const { gl_.Uniform1f(place(name), value); }
   void set(const char* name, const Eigen::Vector3f& v) const { gl_.Uniform3f(place(name), v.x(), v.y(), v.z()); }
   void set(const char* name, const Eigen::Vector4f& v) const { gl_.Uniform4f(place(name), v.x(), v.y(), v.z(), v.w()); }
@@ -51,7 +51,7 @@ class GpuMesh {
   GLsizei index_count_ = 0;
 };
 
-/// A picture being drawn, with up to `samples` samples per pixel where OpenGL can.
+/// A render target with up to `samples` samples per pixel, if OpenGL supports them.
 class GpuTarget {
  public:
   static constexpr int smooth = 4, plain = 0;
@@ -63,11 +63,11 @@ class GpuTarget {
   int width() const { return width_; }
   int height() const { return height_; }
   bool isSmooth() const { return samples_ > plain; }
-  /// What is drawn from now on goes here.
+  /// Makes this the target of all further drawing.
   void bind() const;
-  /// Copies the picture, its samples averaged, to the context's own buffer, which is then current.
+  /// Averages the samples and copies the picture to the context's own buffer, which becomes the current target.
   void show() const;
-  /// The picture that was shown last.
+  /// Reads the picture that was shown last.
   Image read() const;
 
  private:

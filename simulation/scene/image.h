@@ -1,4 +1,4 @@
-/// Pictures of pixels.
+/// Bitmap images.
 #pragma once
 
 #include <cstdint>

@@ -9,13 +9,14 @@ namespace musclesim {
 namespace {
 
 using V = Eigen::Vector3f;
-constexpr std::uint32_t round_count = 16, tube_round_count = 12, pieces_per_point = 2;  // few: software draws them, too
+constexpr std::uint32_t round_count = 16, tube_round_count = 12, pieces_per_point = 2;  // few, for software rendering
 
 float angle(std::uint32_t part, std::uint32_t of) {
   return 2 * std::numbers::pi_v<float> * static_cast<float>(part) / static_cast<float>(of);
 }
 
-/// Joins rings of `around` + 1 vertices each (the last repeats the first) to a surface; rings run along the axis, counter-clockwise.
+/// Joins rings of `around` + 1 vertices each (the last vertex repeats the first) to a surface. Rings follow each other along the axis; the
+/// vertices of each run counter-clockwise.
 void joinRings(Mesh& mesh, std::uint32_t ring_count, std::uint32_t around) {
   for (std::uint32_t ring = 0; ring + 1 < ring_count; ++ring) {
     for (std::uint32_t i = 0; i < around; ++i) {
@@ -87,7 +88,7 @@ Mesh squareMesh() {
 
 std::vector<V> smoothCurve(const std::vector<V>& points) {
   if (points.size() < 3) return points;
-  // End points three times: the curve begins and ends there.
+  // Repeat the end points three times, so that the curve begins and ends there.
   std::vector<V> p = points;
   p.insert(p.begin(), 2, points.front());
   p.insert(p.end(), 2, points.back());
@@ -112,7 +113,7 @@ Mesh tubeMesh(const std::vector<V>& curve, float radius) {
   V along = (points[1] - points[0]).normalized(), side = along.unitOrthogonal();
   for (std::size_t i = 0; i < points.size(); ++i) {
     const V next = (points[std::min(i + 1, points.size() - 1)] - points[i == 0 ? 0 : i - 1]).stableNormalized();
-    // The ring is carried along without twist.
+    // Move the ring along the curve without twist.
     side = Eigen::Quaternionf::FromTwoVectors(along, next) * side;
     along = next;
     const V other = along.cross(side);

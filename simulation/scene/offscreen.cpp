@@ -20,11 +20,11 @@ void requireSize(const char* name, int size) {
     throw BadParameter(std::string("picture's ") + name, std::to_string(size), "lie in 16 .. 8192 pixels");
 }
 
-/// OSMesa exports the same names as the system's OpenGL, so it is loaded apart from it and stays loaded.
+/// Loads OSMesa in a separate namespace, because it exports the same names as the system's OpenGL. It stays loaded.
 void* library() {
   for (const char* name : {"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"})
     if (void* found = dlopen(name, RTLD_NOW | RTLD_LOCAL)) return found;
-  throw SceneError("pictures without a display need OSMesa, which is not here; Debian: apt-get install libosmesa6");
+  throw SceneError("pictures without a display need OSMesa, which is not installed; Debian: apt-get install libosmesa6");
 }
 
 template <class Function>

@@ -1,4 +1,4 @@
-/// Pictures without a display, by OSMesa.
+/// Draws pictures without a display, with OSMesa.
 #pragma once
 
 #include <memory>
@@ -7,7 +7,7 @@
 
 namespace musclesim {
 
-/// A context of OpenGL in memory with a scene in it, for the thread that made it. OSMesa is looked for at run time.
+/// An OpenGL context in memory with a scene, for use in the thread that made it. OSMesa is loaded at run time.
 class Offscreen {
  public:
   /// Throws SceneError where there is no OSMesa, BadParameter for a size outside 16 .. 8192.

@@ -30,7 +30,7 @@ M moved(const V& by) {
   return m;
 }
 
-/// Takes the z axis from 0 to 1 to the line from one point to another, x and y scaled by a radius.
+/// Maps the z axis from 0 to 1 to the line from one point to another, and scales x and y by a radius.
 M between(const V& from, const V& to, float radius) {
   M m = M::Identity();
   const V along = to - from;
@@ -39,7 +39,7 @@ M between(const V& from, const V& to, float radius) {
   return m * scaled(radius, radius, along.norm());
 }
 
-/// The point of a curve at a distance from its beginning.
+/// The point of a curve at a given distance from its beginning.
 V pointAt(const std::vector<V>& curve, float distance) {
   for (std::size_t i = 0; i + 1 < curve.size(); ++i) {
     const float piece = (curve[i + 1] - curve[i]).norm();
@@ -49,7 +49,7 @@ V pointAt(const std::vector<V>& curve, float distance) {
   return curve.back();
 }
 
-/// A curve without a length at each end: what is hidden in the caps.
+/// A curve shortened by a length at each end, which the caps hide.
 std::vector<V> trimmed(const std::vector<V>& curve, float at_each_end) {
   float length = 0;
   for (std::size_t i = 0; i + 1 < curve.size(); ++i) length += (curve[i + 1] - curve[i]).norm();
@@ -80,7 +80,7 @@ Color tensionColor(double tension_N) {
   return {mixed.x(), mixed.y(), mixed.z(), ""};
 }
 
-/// One mesh in one place.
+/// A mesh with its pose and colour.
 struct Scene::Item {
   const GpuMesh* mesh;
   M model;
@@ -117,7 +117,7 @@ void Scene::addPart(std::vector<Item>& items, const DrawnPart& part, float alpha
   items.push_back({&cylinder_, part.pose * between(-half, half, s.x()), color, alpha});
 }
 
-/// A coloured sleeve over the hose's end, tapering to the attachment.
+/// A coloured sleeve over the end of a hose, which tapers to the attachment.
 void Scene::addCap(std::vector<Item>& items, const std::vector<V>& curve, const DrawnHose& hose) const {
   const V& tip = curve.front();
   const V end = pointAt(curve, cap_length_in_radii * hose.radius_mm);
@@ -165,14 +165,14 @@ void Scene::drawItem(const Item& item, const M& before) const {
   item.mesh->draw();
 }
 
-/// Shadows, flat and of one colour, then the grid over them.
+/// Draws flat shadows of one colour, then the grid over them.
 void Scene::drawFloor(const std::vector<Item>& items, const Camera& camera, float height_mm, float aspect_ratio) const {
   M flat = M::Identity();
   flat(1, 1) = 0;
   flat(1, 3) = height_mm;
   solid_.use();
   solid_.set("lit", 0.0F);
-  gl_.Disable(GL_CULL_FACE);  // flattened, half of the faces are seen from behind
+  gl_.Disable(GL_CULL_FACE);  // half of the flattened faces are seen from behind
   for (Item item : items) {
     item.color = shadow_color;
     item.alpha = 1;
@@ -195,7 +195,7 @@ void Scene::drawFloor(const std::vector<Item>& items, const Camera& camera, floa
   gl_.Disable(GL_BLEND);
 }
 
-/// A sphere; around it, where only the height counts, a thin disc.
+/// Draws the target as a sphere; if only its height counts, with a thin disc around it.
 void Scene::drawTarget(const DrawnTarget& target) const {
   if (target.is_height) {
     const Item level{&fine_sphere_, moved(target.point_mm) * scaled(level_radius_mm, 0.4F, level_radius_mm), target_color, 0.10F, 0};

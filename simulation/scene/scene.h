@@ -13,19 +13,19 @@ namespace musclesim {
 
 /// How a snapshot is drawn.
 struct SceneStyle {
-  int selected = -1;           ///< the muscle in red; none: -1
-  bool transparent = false;    ///< bones let the muscles behind them through
-  bool color_tension = false;  ///< hoses in the colour of their tension
-  bool frames = false;         ///< axes of joints and hand
+  int selected = -1;           ///< the muscle drawn in red; -1: none
+  bool transparent = false;    ///< bones are transparent, so that the muscles behind them are visible
+  bool color_tension = false;  ///< muscles have the colour of their tension
+  bool frames = false;         ///< show the axes of joints and hand
 };
 
-/// The colour of a tension, from dark at 0 over blue to yellow at 100 N and more.
+/// The colour of a tension: dark at 0, then blue, yellow at 100 N and more.
 Color tensionColor(double tension_N);
 
-/// Lives in one context of OpenGL and draws there.
+/// Draws in one OpenGL context, which must outlive it.
 class Scene {
  public:
-  /// Throws SceneError if this OpenGL cannot draw it.
+  /// Throws SceneError if this OpenGL cannot draw the scene.
   explicit Scene(const Gl& gl);
   ~Scene();
 

@@ -1,11 +1,11 @@
-/// What is thrown when there is nothing to draw with.
+/// The exception for missing means to draw.
 #pragma once
 
 #include "musclesim/base/error.h"
 
 namespace musclesim {
 
-/// No display, no OpenGL, or one that is too old. The message names the way out.
+/// There is no display, no OpenGL, or the OpenGL is too old. The message says what the user can do.
 class SceneError : public BadParameter {
   using BadParameter::BadParameter;
 };

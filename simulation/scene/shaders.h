@@ -17,7 +17,7 @@ void main() {
 }
 )";
 
-/// Sky and ground light from everywhere, a lamp that goes with the viewer, a highlight; `lit` 0 leaves the bare colour.
+/// Ambient light from sky and ground, a lamp at the viewer, and a highlight; with `lit` 0 only the plain colour.
 inline constexpr const char* solid_fragment = R"(#version 120
 uniform vec4 color;
 uniform vec3 eye, lamp;
@@ -34,7 +34,7 @@ void main() {
 }
 )";
 
-/// A grid of lines, every fifth stronger, that fades with the distance from a centre.
+/// A grid of lines, every fifth one stronger, that fades with the distance from a centre.
 inline constexpr const char* floor_fragment = R"(#version 120
 uniform vec3 center;
 uniform float spacing, reach;

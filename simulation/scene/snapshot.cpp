@@ -10,7 +10,7 @@ namespace musclesim {
 
 namespace {
 
-constexpr float line_radius_mm = 3;  ///< of massless muscles, which have none
+constexpr float line_radius_mm = 3;  ///< drawn radius of massless muscles, which have no radius
 
 Eigen::Matrix4f poseFrom(const Vector& position, const Eigen::Matrix3d& rotation) {
   Eigen::Matrix4f pose = Eigen::Matrix4f::Identity();
@@ -65,14 +65,14 @@ std::optional<Vector> anchorOf(const Joint& joint) {
   return fromOde(anchor);
 }
 
-/// The name of its angle, or that of the bone.
+/// The name of a joint: that of its angle, or else that of the bone.
 std::string labelOf(const Joint& joint, const Body& body, const Robot& robot) {
   for (const Robot::Angle& angle : robot.angles())
     if (angle.joint == &joint) return angle.name;
   return body.parts.empty() ? joint.name() : body.parts.front()->name();
 }
 
-/// The joints between bones with the axes of the bone that moves; those of muscles are left out.
+/// The joints between bones, with the axes of the moving bone. Joints of muscles are left out.
 std::vector<DrawnFrame> framesOf(Simulation& simulation) {
   std::vector<DrawnFrame> frames;
   for (const auto& body : simulation.world().bodies()) {
@@ -87,7 +87,7 @@ std::vector<DrawnFrame> framesOf(Simulation& simulation) {
   return frames;
 }
 
-/// The plane of --plane.
+/// The height of the ground plane (--plane).
 std::optional<float> floorOf(dSpaceID space) {
   for (int i = 0; i < dSpaceGetNumGeoms(space); ++i) {
     const dGeomID geom = dSpaceGetGeom(space, i);
@@ -106,7 +106,7 @@ SnapshotTaker::SnapshotTaker(Simulation& simulation) : simulation_(simulation) {
   for (int i = 0; i < simulation.robot().actuatorCount(); ++i) muscle_colors_.push_back(muscleColor(static_cast<std::size_t>(i), own));
 }
 
-/// A height has no place of its own: it is shown where the hand was at first.
+/// A target height has no horizontal position; it is shown where the hand was at first.
 std::optional<DrawnTarget> SnapshotTaker::target(const State& state) {
   if (!first_hand_mm_) first_hand_mm_ = state.hand_mm;
   const Controller* controller = simulation_.controller();

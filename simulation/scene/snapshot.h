@@ -1,4 +1,4 @@
-/// What there is to draw at one moment of a simulation.
+/// Everything to draw at one moment of a simulation.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,7 +12,7 @@
 
 namespace musclesim {
 
-/// A bone: its form and where it is.
+/// A bone: its shape and pose.
 struct DrawnPart {
   Shape::Kind kind;
   Eigen::Vector3f size_mm;
@@ -20,7 +20,7 @@ struct DrawnPart {
   Color color;
 };
 
-/// A muscle: the points its centre line is led by, the attachments first and last.
+/// A muscle: the control points of its centre line, from attachment to attachment.
 struct DrawnHose {
   std::vector<Eigen::Vector3f> points_mm;
   float radius_mm;
@@ -29,7 +29,7 @@ struct DrawnHose {
   double minimum_length_mm, maximum_length_mm;
 };
 
-/// A point with axes and a name: joints and the hand.
+/// A point with axes and a name: a joint or the hand.
 struct DrawnFrame {
   std::string name;
   Eigen::Matrix4f pose;
@@ -40,7 +40,7 @@ struct DrawnTarget {
   bool is_height;  ///< only the height counts
 };
 
-/// A value, taken between two steps; whoever draws it needs no simulation, and may be another thread.
+/// A copy of the state, taken between two steps. Drawing it needs no simulation, so another thread may draw it.
 struct Snapshot {
   State state;
   std::optional<double> activity;
@@ -51,7 +51,8 @@ struct Snapshot {
   std::optional<float> floor_mm;  ///< height of the ground plane, if there is one
 };
 
-/// Takes snapshots of one simulation. Nothing in the simulation changes by that, not even a random stream: readings come from the caller.
+/// Takes snapshots of one simulation without changing it. The caller passes the readings, since taking readings would advance random
+/// streams.
 class SnapshotTaker {
  public:
   explicit SnapshotTaker(Simulation& simulation);

@@ -32,13 +32,13 @@ fs::path findInPath(const std::string& program) {
   return {};
 }
 
-/// Makes sure the file can be made, and that no old one is taken for the new.
+/// Checks that the file can be created, and removes an old file that could be mistaken for the new one.
 void requireWritable(const std::string& file) {
   replaceFile(file, "");
   fs::remove(file);
 }
 
-/// A pipe that ends when its reader does must not end this process.
+/// Ignores SIGPIPE, so that this process survives if the reader of a pipe ends.
 class IgnoredPipeSignal {
  public:
   IgnoredPipeSignal() : before_(std::signal(SIGPIPE, SIG_IGN)) {}
@@ -64,8 +64,8 @@ VideoWriter::VideoWriter(const std::string& file, int width, int height, double 
   if (failure) throw IoError(result_ + ": cannot be made: " + failure.message());
 }
 
-/// Raw pictures go to ffmpeg's standard input; it is started by a list of arguments, without a shell, and in a process group of its own: a
-/// terminal sends Ctrl-C to a whole group, and only the end of the pictures may end the video.
+/// Starts ffmpeg, which reads raw pictures from its standard input. It is started without a shell and in a process group of its own,
+/// because a terminal sends Ctrl-C to a whole group, but only the end of the pictures may end the video.
 void VideoWriter::startFfmpeg(double frames_per_s) {
   const fs::path program = findInPath("ffmpeg");
   if (program.empty()) return;
@@ -74,7 +74,7 @@ void VideoWriter::startFfmpeg(double frames_per_s) {
   std::vector<std::string> arguments = {"ffmpeg", "-nostdin", "-loglevel", "error", "-y", "-f", "rawvideo", "-pixel_format", "rgb24",
                                         "-video_size", fmt::format("{}x{}", width_, height_), "-framerate", fmt::format("{}", frames_per_s),
                                         "-i", "pipe:0",
-                                        // Players want an even size and this form of colours.
+                                        // Players need an even size and this pixel format.
                                         "-vf", "crop=trunc(iw/2)*2:trunc(ih/2)*2", "-codec:v", "libx264", "-preset", "veryfast", "-crf",
                                         "20", "-pix_fmt", "yuv420p", "-movflags", "+faststart", "file:" + file_};
   std::vector<char*> pointers;

@@ -1,4 +1,4 @@
-/// Videos: pictures handed to ffmpeg one by one, or a folder of pictures where there is no ffmpeg.
+/// Videos: passes pictures to ffmpeg one by one or, without ffmpeg, writes them to a folder.
 #pragma once
 
 #include <sys/types.h>
@@ -9,13 +9,13 @@
 
 namespace musclesim {
 
-/// Takes frames of one size and makes FILE.mp4 of them. Where ffmpeg is not installed, or cannot make one, numbered pictures stay in the
-/// folder FILE-frames instead.
+/// Makes FILE.mp4 from frames of one size. If ffmpeg is not installed or fails, it writes numbered pictures to the folder FILE-frames
+/// instead.
 class VideoWriter {
  public:
   /// Throws BadParameter for a name that does not end in .mp4, IoError if nothing can be written.
   VideoWriter(const std::string& file, int width, int height, double frames_per_s);
-  /// Closes without a word if close() was not called.
+  /// Closes silently if close() was not called.
   ~VideoWriter();
   VideoWriter(const VideoWriter&) = delete;
   VideoWriter& operator=(const VideoWriter&) = delete;

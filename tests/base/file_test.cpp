@@ -6,7 +6,6 @@
 #include <set>
 
 #include "log/log_fixture.h"
-#include "musclesim/base/text.h"
 
 namespace musclesim {
 namespace {
@@ -68,15 +67,6 @@ TEST(File, ErrorsNameFileAndReason) {
 
 TEST(File, LargerThanAllowedIsRefused) {
   EXPECT_TRUE(hasWords(messageOf<BadFile>([] { readTextFile("/dev/zero", 1 << 20); }), {"/dev/zero", "1 MiB"}));
-}
-
-TEST(TextPlace, CountsFromOne) {
-  const std::string text = "ab\nc\n";
-  EXPECT_EQ(placeInText(text, 0).line, 1);
-  EXPECT_EQ(placeInText(text, 1).column, 2);
-  EXPECT_EQ(placeInText(text, 3).line, 2);
-  EXPECT_EQ(placeInText(text, 3).column, 1);
-  EXPECT_EQ(placeInText(text, 99).line, 3);
 }
 
 }  // namespace

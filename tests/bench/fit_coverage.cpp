@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "laboratory/law_families.h"
 #include "laboratory/planted.h"
 
 using namespace musclesim;

@@ -14,6 +14,7 @@
 
 #include "../../log/svg.h"
 #include "musclesim/base/file.h"
+#include "musclesim/controller/controller_registry.h"
 #include "musclesim/simulation/simulation.h"
 #include "study.h"
 
@@ -79,10 +80,10 @@ std::vector<Run> simulate(const Settings& settings, const std::string& name, int
   };
   ControllerRequest height = request("height"), reach = request("reach");
   std::vector<Near> near;
-  if (name != "aasm") near.emplace_back(settings, name, seed, *Controller::make("asm", height)->targetMm());
-  if (name == "random") near.emplace_back(settings, "random-reach", seed, *Controller::make("aasm", reach)->targetMm());
-  if (name == "aasm") near.emplace_back(settings, name, seed, *Controller::make("aasm", reach)->targetMm());
-  Controller& controller = simulation.control(Controller::make(name, name == "aasm" ? reach : height));
+  if (name != "aasm") near.emplace_back(settings, name, seed, *makeController("asm", height)->targetMm());
+  if (name == "random") near.emplace_back(settings, "random-reach", seed, *makeController("aasm", reach)->targetMm());
+  if (name == "aasm") near.emplace_back(settings, name, seed, *makeController("aasm", reach)->targetMm());
+  Controller& controller = simulation.control(makeController(name, name == "aasm" ? reach : height));
   try {
     while (simulation.time_s() < settings.duration_s - 1e-9) {
       robot.step(controller.output(robot.getState()));

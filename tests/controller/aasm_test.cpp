@@ -115,7 +115,7 @@ TEST(AasmController, ActionsStayInRangeForHostileStates) {
 TEST(AasmController, SaysWhenTheHandIsMissingOrLost) {
   Prepared prepared;
   AasmController controller(prepared.request);
-  EXPECT_TRUE(contains(messageOf<BadParameter>([&] { controller.output(State()); }), "reports its hand"));
+  EXPECT_TRUE(contains(messageOf<BadParameter>([&] { controller.output(State()); }), "reports the position of its hand"));
   EXPECT_THROW(controller.output(stateWithHand({std::nan(""), 0, 0})), Diverged);
 }
 

@@ -98,7 +98,7 @@ TEST(AsmController, ActionsStayInRangeForHostileStates) {
 TEST(AsmController, SaysWhenTheHandIsMissingOrLost) {
   Prepared prepared;
   AsmController controller(prepared.request);
-  EXPECT_TRUE(contains(messageOf<BadParameter>([&] { controller.output(State()); }), "reports its hand"));
+  EXPECT_TRUE(contains(messageOf<BadParameter>([&] { controller.output(State()); }), "reports the position of its hand"));
   AsmController other(prepared.request);
   EXPECT_THROW(other.output(stateAtHeight(std::nan(""))), Diverged);
 }

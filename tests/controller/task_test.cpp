@@ -79,7 +79,7 @@ TEST(Task, UnknownNameSuggestsTheNearest) {
 }
 
 TEST(ReportedHand, MustExistAndBeFinite) {
-  EXPECT_TRUE(contains(messageOf<BadParameter>([] { reportedHand(State()); }), "needs a robot that reports its hand"));
+  EXPECT_TRUE(contains(messageOf<BadParameter>([] { reportedHand(State()); }), "needs a robot that reports the position of its hand"));
   for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL, 1e300, std::numeric_limits<double>::lowest()}) {
     State state = stateWithHand({0, bad, 0}, 12.5);
     EXPECT_TRUE(contains(messageOf<Diverged>([&] { reportedHand(state); }), "hand"));

@@ -9,6 +9,7 @@
 #include "laboratory/cross_validation.h"
 #include "laboratory/fit_report.h"
 #include "laboratory/intervals.h"
+#include "laboratory/law_families.h"
 #include "laboratory/planted.h"
 #include "musclesim/base/error.h"
 #include "musclesim/robot/chou_hannaford.h"
@@ -103,7 +104,7 @@ TEST(LawFit, OutliersAreFoundLeftOutAndNamed) {
   points.points[98].force_N = 0;  // at full pressure and length: the point with the greatest influence
   markOutliers(points, specimenOf(points, std::nullopt));
   for (std::size_t i = 0; i < points.points.size(); ++i) EXPECT_EQ(points.points[i].outlier, i == 40 || i == 98) << i;
-  EXPECT_TRUE(contains(points.notes.back(), "2 points are further than"));
+  EXPECT_TRUE(contains(points.notes.back(), "2 points differ by more than"));
   EXPECT_TRUE(contains(points.notes.back(), "lines 42 ("));
   EXPECT_NEAR(constantOf(fitTo(points, "braun"), "c").value, before, 0.1);
 }

@@ -5,6 +5,8 @@
 #include <memory>
 
 #include "laboratory/fit_report.h"
+#include "laboratory/law_families.h"
+#include "laboratory/point_reader.h"
 #include "support/support.h"
 
 namespace musclesim {

@@ -100,7 +100,7 @@ TEST_F(ImportTest, RowsWithTheTimeOfTheRowBeforeAreLeftOutAndSaid) {
       import("t,u\n0,0\n0.001,0.1\n0.001,0.2\n0.002,0.3\n", std::string(head) + "[columns]\ntime_s = \"t\"\ncommand_0 = \"u\"\n");
   EXPECT_EQ(r.find("command_0")->values, (std::vector<double>{0, 0.1, 0.3}));
   ASSERT_FALSE(r.notes.empty());
-  EXPECT_TRUE(contains(r.notes.front(), "1 rows have the time of the row before"));
+  EXPECT_TRUE(contains(r.notes.front(), "1 rows have the same time as the row before and are left out"));
   const Recording other = import("t,u\n0,0\n0.001,0.1\n0.001,0.2\n0.002,0.3\n0.003,0.4\n",
                                  std::string(head) + "[columns]\ntime_s = \"t\"\ncommand_0 = \"u\"\n[rows]\nevery = 2\n");
   EXPECT_EQ(other.find("command_0")->values, (std::vector<double>{0, 0.3})) << "every second of those that are left";
@@ -109,7 +109,7 @@ TEST_F(ImportTest, RowsWithTheTimeOfTheRowBeforeAreLeftOutAndSaid) {
 TEST_F(ImportTest, RefusesWhatIsNoMapping) {
   const std::string table = "t,u\n0,0\n1,1\n";
   auto refused = [&](const std::string& mapping) { return messageOf<BadFile>([&] { import(table, head + mapping); }); };
-  EXPECT_TRUE(contains(refused(""), "no table [columns]"));
+  EXPECT_TRUE(contains(refused(""), "no section [columns]"));
   EXPECT_TRUE(contains(refused("[columns]\ncommand_0 = \"u\"\n"), "time_s is missing"));
   EXPECT_TRUE(contains(refused("[columns]\ntime_s = \"time\"\ncommand_0 = \"u\"\n"), "has no column \"time\""));
   EXPECT_TRUE(contains(refused("[columns]\ntime_s = \"t\"\ncommand_0 = { form = \"u\" }\n"), "did you mean \"from\""));

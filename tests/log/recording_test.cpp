@@ -107,7 +107,7 @@ TEST(Recording, NotesOfConversionsOddPressuresAndEmptyColumns) {
   EXPECT_TRUE(hasNote(recording, "converted from bar to fractions of 600 kPa: command_0_bar"));
   EXPECT_TRUE(hasNote(recording, "converted from m to mm: length_0_m"));
   EXPECT_TRUE(hasNote(recording, "pressure_0 reaches 250 of full scale"));
-  EXPECT_TRUE(hasNote(recording, "length_0_mm holds no value"));
+  EXPECT_TRUE(hasNote(recording, "length_0_mm has no value"));
 }
 
 TEST(Recording, IgnoredColumnsAreSkippedWhateverTheyHold) {

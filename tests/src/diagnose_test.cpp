@@ -77,7 +77,7 @@ TEST_F(DiagnoseCommand, WhatIsReadIsNotWrittenOver) {
     arguments.insert(arguments.end(), {"--out", "out"});
     const ProgramResult result = diagnose(arguments);
     EXPECT_EQ(result.status, 2) << options[1];
-    EXPECT_TRUE(contains(result.err, "is read and would be written over")) << result.err;
+    EXPECT_TRUE(contains(result.err, "is an input and would be overwritten")) << result.err;
   }
   EXPECT_TRUE(fs::exists(folder_ / "out" / "next.csv") && fs::exists(folder_ / "out" / "nominal.toml"));
 }

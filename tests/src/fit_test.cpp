@@ -93,7 +93,7 @@ TEST_F(FitCommand, BadDataGetAnExplanationAndNoFit) {
   expectRefused({"fit", "data.csv", "--law", "saros"}, 2, "did you mean \"sarosi\"?");
   expectRefused({"fit", "data.csv", "--columns", "length"}, 2, "name=value");
   expectRefused({"fit", "data.csv", "--minimum-length", "400"}, 2, "be below the maximum, 300 mm");
-  expectRefused({"fit", "data.csv", "--law", "sarosi", "--minimum-length", "100"}, 2, "they are of Eq. 1");
+  expectRefused({"fit", "data.csv", "--law", "sarosi", "--minimum-length", "100"}, 2, "only Eq. 1 has these lengths");
   expectRefused({"fit"}, 2, "data is required");
 }
 

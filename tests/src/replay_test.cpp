@@ -81,7 +81,7 @@ TEST_F(ReplayCommand, WritesOverNothingThatWasNotSimulated) {
   write("measured.json", R"({"format": "musclesim-recording-1", "robot": "elbow"})");
   const ProgramResult refused = runProgram({"replay", "measured.csv", "--out", "measured.csv"}, folder_);
   EXPECT_EQ(refused.status, 2);
-  EXPECT_NE(refused.err.find("would be written over"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("would be overwritten"), std::string::npos) << refused.err;
   EXPECT_EQ(runProgram({"--simple", "--robot", "elbow", "--duration", "0.1", "--record", "measured.csv"}, folder_).status, 2);
   EXPECT_EQ(runProgram({"replay", "run.csv", "--out", "run.csv"}, folder_).status, 2) << "what is read is not written over";
   EXPECT_EQ(runProgram({"replay", "run.csv", "--out", "sim.csv", "--quiet"}, folder_).status, 0);

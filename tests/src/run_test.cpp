@@ -112,8 +112,8 @@ TEST_F(RunCommand, CommandsThatChangeBetweenRowsAreWarnedOf) {
                        "--record-interval", interval_s, "--record", "random.csv"},
                       folder_);
   };
-  EXPECT_FALSE(contains(random("0.05").err, "commands change between the recorded rows"));
-  EXPECT_TRUE(contains(random("0.1").err, "commands change between the recorded rows, 0.1 s apart"));
+  EXPECT_FALSE(contains(random("0.05").err, "commands change between them"));
+  EXPECT_TRUE(contains(random("0.1").err, "the rows are recorded 0.1 s apart and commands change between them"));
 }
 
 TEST_F(RunCommand, PrintConfigIsAcceptedByConfig) {

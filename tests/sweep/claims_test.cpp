@@ -125,7 +125,7 @@ TEST_F(ClaimsOfRows, ThatCannotBeReadAreOfWorkersThatAreGone) {
     EXPECT_TRUE(history.free) << text;
     EXPECT_EQ(history.attempt_count, 1);
     EXPECT_EQ(history.kill_count, 1);
-    EXPECT_TRUE(contains(history.message, "000000.1: is not a claim")) << history.message;
+    EXPECT_TRUE(contains(history.message, "000000.1: is unreadable")) << history.message;
     EXPECT_TRUE(claims.claim(0, 2));
   }
 }

@@ -65,7 +65,7 @@ TEST_F(Collecting, NamesColumnsThatNoRowHas) {
   EXPECT_EQ(collected.unmet_columns, (std::vector<std::string>{"typo", "no.*"}));
   const ProgramResult program = runProgram({"collect", "sweep"}, folder_);
   EXPECT_EQ(program.status, 2);
-  EXPECT_TRUE(contains(program.err, "\"typo\": no row has a number of that name")) << program.err;
+  EXPECT_TRUE(contains(program.err, "\"typo\": no row has a number of this name")) << program.err;
 }
 
 TEST_F(Collecting, KeepsTimesOfTheMachineOnlyIfTheirNamesAreAskedFor) {

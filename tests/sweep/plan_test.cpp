@@ -55,7 +55,7 @@ TEST(Plan, RepeatsHaveSeedsThatDoNotDependOnTheOtherParameters) {
 
 TEST(Plan, RepeatsThatWouldBeTheSameRunAreRefused) {
   const std::string repeats = "[repeats]\ncount = 2\n";
-  EXPECT_TRUE(contains(refusal(head + repeats), "plan.toml:3:1: repeats: would all be the same run"));
+  EXPECT_TRUE(contains(refusal(head + repeats), "plan.toml:3:1: repeats: all would be the same run"));
   EXPECT_EQ(parsePlan("format = \"musclesim-sweep-1\"\ncommand = [\"run\", \"{repeat}\"]\n" + repeats, "p.toml").rows.size(), 2u);
 }
 
@@ -119,7 +119,7 @@ TEST(Plan, RefusesWhatItDoesNotUnderstandNamingThePlace) {
   EXPECT_TRUE(contains(refusal(head + "[random]\ncount = 2\na.x = {low = 0, high = 2, colour = 1}\n"), "a.x.colour"));
   EXPECT_TRUE(contains(refusal(head + "[grid]\na.x = [1]\n[list]\na.x = [1]\n"), "given twice"));
   for (const std::string name : {"out", "row", "repeat", "status", "message"})
-    EXPECT_TRUE(contains(refusal(head + "[grid]\n" + name + " = [1]\n"), name + ": is given twice, or a name that has a meaning"));
+    EXPECT_TRUE(contains(refusal(head + "[grid]\n" + name + " = [1]\n"), name + ": is given twice or is a reserved name"));
   EXPECT_TRUE(contains(refusal(head + "[random]\ncount = 100000\n[repeats]\ncount = 2\n"), "at most"));
   EXPECT_TRUE(contains(refusal(head + "files = [\"recording\"]\n"), "without a folder"));
   EXPECT_TRUE(contains(refusal(head + "[grid\n"), "plan.toml:3"));

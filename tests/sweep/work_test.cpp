@@ -186,7 +186,7 @@ TEST_F(Working, TakesOverAClaimThatAPowerFailureLeftEmptyAndSaysSo) {
   std::string said;
   options_.say = [&](const std::string& message) { said += message + "\n"; };
   EXPECT_EQ(workWith(script(good_end), sweep).done_count, 2u);
-  EXPECT_TRUE(contains(said, "row 0: taken over: " + sweep + "/claims/000000.1: is not a claim")) << said;
+  EXPECT_TRUE(contains(said, "row 0: taken over: " + sweep + "/claims/000000.1: is unreadable")) << said;
 }
 
 TEST_F(Working, FinishesWhatWasKilledBetweenTheOutputAndTheResult) {
@@ -207,7 +207,7 @@ TEST_F(Working, RefusesASweepOfAnotherModelOrWithChangedInputs) {
     return messageOf<BadFile>([&] { workWith(good, sweep); });
   };
   EXPECT_TRUE(contains(with("program", "musclesim 99"), "was planned by musclesim 99"));
-  EXPECT_TRUE(contains(with("robots_hash", "0"), "robots that differ"));
+  EXPECT_TRUE(contains(with("robots_hash", "0"), "with other robots than this program has"));
 
   Sweep second;
   writeFile(folder_ / "input.txt", "a");

@@ -13,7 +13,7 @@ struct Color {
   std::string name;
 };
 
-/// The colour of a muscle: the given one or, for muscles beyond `given`, one that differs well from the others.
+/// The colour of a muscle: from `given` or, if `given` is too short, a colour that is easy to tell from the others.
 Color muscleColor(std::size_t muscle, const std::vector<Color>& given);
 
 }  // namespace musclesim

@@ -1,4 +1,4 @@
-/// Everything that musclesim throws, one class per exit status of the program.
+/// The exceptions of musclesim: one class per exit status of the program.
 #pragma once
 
 #include <stdexcept>
@@ -11,7 +11,7 @@ class Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The caller's fault: an option, a parameter or a call that cannot be meant like this (exit status 2).
+/// The caller made a mistake: an option, a parameter or an argument is not allowed (exit status 2).
 class BadParameter : public Error {
  public:
   using Error::Error;
@@ -34,7 +34,7 @@ class BadFile : public Error {
   int line_, column_;
 };
 
-/// The simulation left the numbers that a physical system can have (exit status 4).
+/// The simulation diverged: a value is not finite or beyond what a physical system can have (exit status 4).
 class Diverged : public Error {
  public:
   Diverged(double time_s, const std::string& where, const std::string& what);
@@ -56,7 +56,7 @@ class IoError : public Error {
   using Error::Error;
 };
 
-/// ODE reported an internal error or a failed assertion; musclesim turns it into Diverged where it can name time and place.
+/// ODE reported an internal error or a failed assertion. Code that knows time and place rethrows it as Diverged.
 class OdeFault : public Error {
   using Error::Error;
 };

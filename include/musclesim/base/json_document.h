@@ -1,4 +1,4 @@
-/// JSON from a file, read strictly, with the places of its members for messages.
+/// Strict reader of JSON that knows the line and column of every member, for messages.
 #pragma once
 
 #include <map>
@@ -10,7 +10,7 @@
 
 namespace musclesim {
 
-/// One JSON object as it stands in a file. Refuses what plain JSON readers let pass: members given twice and nesting deeper than 64.
+/// One JSON object from a file. Unlike plain JSON readers it refuses members given twice and nesting deeper than 64.
 class JsonDocument {
  public:
   /// `file` is used in messages only. Throws BadFile with line and column if the text is not one JSON object.
@@ -19,7 +19,7 @@ class JsonDocument {
   const nlohmann::json& root() const { return root_; }
   /// The member of the outermost object, or null.
   const nlohmann::json* find(const std::string& member) const;
-  /// Throws BadFile at a member of the outermost object; at the file as a whole if there is no such member.
+  /// Throws BadFile with the place of a member of the outermost object, or without a place if there is no such member.
   [[noreturn]] void refuse(const std::string& member, const std::string& what) const;
 
  private:

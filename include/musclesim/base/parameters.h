@@ -1,4 +1,4 @@
-/// Named numbers of the model: declared where they are used, overridden by name from outside.
+/// Named parameters of the model. The code that uses a parameter declares it; users override it by name.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace musclesim {
 struct Parameter {
   using Value = std::variant<double, std::string>;
   std::string name;  ///< "group.name_unit", for example "muscle.bead_mass_g"
-  Value value;       ///< in force
+  Value value;       ///< the value that is used now
   Value default_value;
   std::string unit;  ///< empty for pure numbers and choices
   double minimum = 0, maximum = 0;
@@ -24,20 +24,20 @@ struct Parameter {
 ///
 /// A component declares and reads in one call, so name, unit, default, range and meaning stand in exactly one place:
 ///     bead_mass_g = parameters.number("muscle.bead_mass_g", 10, "g", 0.01, 1e4, "mass of one bead");
-/// Declaring the same name again returns the value already in force.
+/// Declaring the same name again returns the value that is used already.
 /// number, integer and choice throw BadParameter when the override is not a number, not finite, out of range or not among the choices.
 class Parameters {
  public:
   /// Overrides one parameter. `source` is named in errors ("--set", "model.toml:12").
   /// A later call replaces an earlier one. Throws BadParameter for an empty name or, once declared, for a value out of range.
   void set(const std::string& name, const Parameter::Value& value, const std::string& source);
-  /// The same from a line of a file (0: from the file as a whole): what is wrong with it is thrown as BadFile.
+  /// As set(), for a value from a line of a file (0: from the file as a whole). Throws BadFile instead of BadParameter.
   void setFromFile(const std::string& name, const Parameter::Value& value, const std::string& file, int line = 0);
-  /// All overrides of another set, each as with set().
+  /// Calls set() for every override of another set.
   void setAll(const Parameters& others);
-  /// "name=value" as given to --set; the value is a number where it reads as one. Throws BadParameter if there is no "=".
+  /// Overrides from text like "name=value" (--set). The value is a number if the text is one. Throws BadParameter if there is no "=".
   void setFromText(const std::string& assignment, const std::string& source);
-  /// All keys of a TOML file; tables become groups. Throws BadFile with line and column, IoError if it cannot be read.
+  /// Overrides from all keys of a TOML file; tables become groups. Throws BadFile with line and column, IoError if it cannot be read.
   void readToml(const std::string& file);
 
   double number(const std::string& name, double default_value, const std::string& unit, double minimum, double maximum,
@@ -48,7 +48,7 @@ class Parameters {
 
   /// All parameters declared so far, in order of declaration.
   const std::vector<Parameter>& declared() const { return declared_; }
-  /// Throws BadParameter naming the first override that nothing has declared, with the nearest declared name.
+  /// Throws BadParameter if an override has no declared parameter; the message gives its name and the nearest declared name.
   void requireAllKnown() const;
   /// The declared parameters as a TOML file that readToml accepts, with unit, range and meaning as comments.
   std::string toToml() const;

@@ -1,4 +1,4 @@
-/// Seeded random streams: one per owner, all derived from the run's seed, so that adding a consumer never changes another's numbers.
+/// Seeded random streams, one per owner, all derived from the run's seed: a new owner does not change the numbers of the others.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace musclesim {
 
-/// A stream of random numbers. Same seed and owner: same numbers, on every platform with IEEE doubles.
+/// A stream of random numbers. The same seed and owner give the same numbers on every platform with IEEE doubles.
 class RandomStream {
  public:
   /// `owner` names the consumer ("asm.attractors"); different owners of one seed get unrelated streams.

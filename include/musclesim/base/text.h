@@ -1,4 +1,4 @@
-/// Text of files in messages: where it stands, and how it is quoted.
+/// Places in a text, and quoting of text in messages.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@ struct TextPlace {
   int line = 1, column = 1;
 };
 
-/// The place of the byte at `offset`; of the text's end if the offset lies behind it.
+/// The place of the byte at `offset`, or of the end of the text if the offset lies behind it.
 inline TextPlace placeInText(std::string_view text, std::size_t offset) {
   const auto before = text.substr(0, std::min(offset, text.size()));
   const auto line_break = before.rfind('\n');
@@ -20,7 +20,7 @@ inline TextPlace placeInText(std::string_view text, std::size_t offset) {
   return {static_cast<int>(std::count(before.begin(), before.end(), '\n')) + 1, static_cast<int>(before.size() - line_begin) + 1};
 }
 
-/// Text from a file as it may stand in a message: shortened, and bytes that are not printable ASCII written as \xNN.
+/// Quotes text from a file for a message: shortens it and writes bytes that are not printable ASCII as \xNN.
 std::string inQuotes(std::string_view text);
 
 }  // namespace musclesim

@@ -1,12 +1,12 @@
-/// Names that nobody else has.
+/// Unique names.
 #pragma once
 
 #include <string>
 
 namespace musclesim {
 
-/// 16 hexadecimal digits from the system's source of randomness, for names of files and processes: ids of processes are the same in several
-/// containers that share a folder. Not for anything that a simulation computes.
+/// 16 hexadecimal digits from the system's source of randomness, to name files and processes: process ids are not unique, since several
+/// containers may share a folder. Do not use it in a simulation.
 std::string uniqueName();
 
 }  // namespace musclesim

@@ -1,4 +1,4 @@
-/// Every conversion of units, and the only file that holds such factors.
+/// All unit conversion factors. No other file holds any.
 ///
 /// The ODE world and the building API use mm, g, s and degrees; forces cross the API in N, pressures as fractions of full scale (0..1).
 #pragma once
@@ -19,7 +19,7 @@ inline constexpr double deg_per_rad = 180.0 / std::numbers::pi;
 
 /// Standard acceleration of a falling body as the original program rounds it.
 inline constexpr double gravity_m_per_s2 = 9.81;
-/// One kilogram-force in newton, in the same rounding: the loads of the paper's experiment are masses in kg.
+/// One kilogram-force in newton, rounded alike: the paper gives the loads of its experiment in kg.
 inline constexpr double newton_per_kgf = 9.81;
 
 /// 1 N in g mm/s^2: the unit of force of a world in mm, g, s.

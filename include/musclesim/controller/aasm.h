@@ -7,7 +7,7 @@
 
 namespace musclesim {
 
-/// Activity of AASM: rewards being nearer than in the past, and being at the target.
+/// Activity of AASM. It is high when the hand is nearer to the target than in the past, or at the target.
 ///     e = (d / length)^2,   a = 1 / (e + e_min)
 ///     activity = min(max(100 (a - mean a) + 25 exp(-e^2 / 2), 0), 100)
 /// d distance hand-target, mm; length in mm makes e a pure number; e_min keeps a finite. mean a is the discounted mean of the past
@@ -24,11 +24,11 @@ class AasmActivity {
   DiscountedMean mean_a_;
 };
 
-/// Attractors that are the centres of a Gaussian mixture and learn from the states visited.
+/// Attractors that learn: each moves towards the states that the controller visits near it.
 ///     m_i <- m_i + rate w N_i(x) (x - m_i)     at every update
 ///     xi_i <- m_i                              at every period-th update
 /// xi_i attractors, m_i running averages that start at them, N_i(x) responsibilities (Eq. 6), w weight of the visit in 0..1, rate in
-/// 0..1. Each new m_i lies between the old one and x, so all stay in [-1, 1]^n.
+/// 0..1. Each new m_i lies between the old m_i and x, so all stay in [-1, 1]^n.
 class AdaptiveAttractors {
  public:
   /// Throws BadParameter unless rate lies in 0..1 and period is at least 1.
@@ -45,14 +45,14 @@ class AdaptiveAttractors {
 
 /// AASM. The state x in [-1, 1]^n, one entry per muscle, follows the Langevin equation
 ///     time_constant dx/dt = activity f(x) + eta,   eta white with variance noise_variance per time constant
-/// discretised, per decision, in aasm.steps_per_decision steps with the activity of that moment,
+/// At each decision it takes aasm.steps_per_decision discrete steps with the activity held,
 ///     x <- clip(x + min(h activity / time_constant, 1) f(x) + sqrt(noise_variance h / time_constant) N(0, 1)),   h = aasm.step_ratio
 /// The command is p_i = (tanh(3 x_i) + 1) / 2, held until the next decision. Activity (AasmActivity) and attractors (AdaptiveAttractors,
-/// weight = activity / 100) are updated at every control step, because the arm follows a decision for seconds and its success belongs to
-/// the state that was held: a 300 s run has 50 decisions, but 30000 updates.
+/// weight = activity / 100) are updated at every control step, because the arm follows a decision for seconds and its success must be
+/// credited to the state held meanwhile: a 300 s run has 50 decisions, but 30000 updates.
 ///
-/// The structure is that of the published program; its numbers (e in mm^2, width 1/501, a replacement every 6000 s) never moved an
-/// attractor, so lengths are dimensionless here and width, rate, period, floor, step count and noise are this implementation's.
+/// The structure follows the published program, but its numbers (e in mm^2, width 1/501, a replacement every 6000 s) never moved an
+/// attractor. Therefore lengths are dimensionless here, and width, rate, period, floor, step count and noise are chosen anew.
 /// Declares aasm.attractor_count, _attractor_exponent, _width, _learning_rate, _update_period, _step_ratio, _time_constant,
 /// _noise_variance, _steps_per_decision, those of AasmActivity and the target of the task (either task). Streams "aasm.attractors" and
 /// "aasm.noise". output() throws BadParameter if the robot reports no hand, Diverged if that is not finite.  Source: Braun 2007, Section 5.
@@ -67,7 +67,7 @@ class AasmController final : public Controller {
 
   /// State x, n numbers in [-1, 1].
   const Eigen::VectorXd& x() const { return x_; }
-  /// n x k, the attractors now in force.
+  /// n x k matrix, the present attractors.
   const Eigen::MatrixXd& attractors() const { return adaptive_.mixture().attractors(); }
 
  private:

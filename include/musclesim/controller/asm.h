@@ -1,4 +1,4 @@
-/// The attractor selection model: pressures wander by fluctuation and settle on an attractor where the arm is active.
+/// The attractor selection model: fluctuation makes the pressures wander until an attractor gives high activity, where they stay.
 #pragma once
 
 #include <memory>
@@ -14,9 +14,9 @@ namespace musclesim {
 /// with the activity alpha of the task, the pull f(x) of random attractors (Eq. 6, AttractorMixture) and Gaussian white noise eta.
 /// Implemented form: asm.steps_per_decision steps
 ///     x <- clip(x + min(max(step alpha, 0), 1) f(x) + noise_std N(0, 1))
-/// with alpha held; all quantities are pure numbers. The command is p_i = (tanh(3 x_i) + 1) / 2, held until the next decision.
-/// With alpha at 0 the state walks freely by noise_std sqrt(steps) per decision; with step alpha near 1 it stays within about noise_std of
-/// an attractor. x starts at 0, all pressures at one half.
+/// with alpha constant during these steps; all quantities are pure numbers. The command is p_i = (tanh(3 x_i) + 1) / 2, held until the next
+/// decision. If alpha is 0, x does a random walk of noise_std sqrt(steps) per decision; if step alpha is near 1, x stays within about
+/// noise_std of an attractor. x starts at 0, where all pressures are one half.
 ///
 /// Declares asm.attractor_count, asm.attractor_exponent, asm.width, asm.step_ratio (step), asm.noise_std, asm.steps_per_decision and the
 /// parameters of the task. Streams "asm.attractors" and "asm.noise". output() throws BadParameter if the robot reports no hand, Diverged if
@@ -26,7 +26,7 @@ class AsmController final : public Controller {
   explicit AsmController(const ControllerRequest& request);
 
   Action output(const State& state) override;
-  /// Signed: negative values act as 0.
+  /// May be negative; a negative activity acts as 0.
   std::optional<double> activity() const override { return activity_; }
   std::optional<Vector> targetMm() const override { return task_->targetMm(); }
   bool targetIsHeight() const override { return task_->targetIsHeight(); }

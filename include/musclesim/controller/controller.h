@@ -2,20 +2,18 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "musclesim/base/parameters.h"
 #include "musclesim/robot/state.h"
 
 namespace musclesim {
 
-/// What a controller is built from. The controller keeps no reference to it.
+/// The arguments from which a controller is built. The controller keeps no reference to them.
 struct ControllerRequest {
-  Parameters& parameters;            ///< named numbers of the controller are declared here
+  Parameters& parameters;            ///< the controller declares its parameters here
   int muscle_count = 0;              ///< dimension of the action
   double step_s = 0.01;              ///< time between two calls of output()
   double decision_interval_s = 6.0;  ///< time between two decisions, rounded to whole steps, at least one
@@ -26,8 +24,8 @@ struct ControllerRequest {
 
 /// A controller is asked once per control step for the pressures of all muscles. It draws and logs nothing.
 ///
-/// A user's controller overrides output() and is registered by name:
-///     Controller::registerController("mine", "what it does", [](const ControllerRequest& r) { return std::make_unique<Mine>(r); });
+/// A user's controller overrides output() and is registered by name (controller_registry.h):
+///     registerController<Mine>("mine", "what it does");
 class Controller {
  public:
   virtual ~Controller() = default;
@@ -42,16 +40,6 @@ class Controller {
   /// True when only the height (y) of the target counts.
   virtual bool targetIsHeight() const { return false; }
 
-  using Factory = std::function<std::unique_ptr<Controller>(const ControllerRequest&)>;
-  /// Registers a controller under a name; a later registration of the same name replaces the earlier one.
-  static void registerController(const std::string& name, const std::string& description, Factory factory);
-  /// Builds a registered controller. Throws BadParameter with the nearest name if there is none of that name, or if
-  /// the request has no muscles or a target that is not finite; and whatever the controller's constructor throws.
-  static std::unique_ptr<Controller> make(const std::string& name, const ControllerRequest& request);
-  /// Names of all registered controllers, in alphabetical order.
-  static std::vector<std::string> names();
-  /// What the controller of that name does, in a few words. Throws as make.
-  static std::string description(const std::string& name);
   /// The controller of the calling thread's current simulation, as in the paper's run loop. Throws BadParameter if there is none.
   static Controller* getActiveController();
   /// The simulation says here which controller is the active one of its thread; null: none.

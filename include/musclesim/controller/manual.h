@@ -1,4 +1,4 @@
-/// Pressures set by hand.
+/// Manual control: a user sets the pressures.
 #pragma once
 
 #include <memory>
@@ -9,13 +9,13 @@
 
 namespace musclesim {
 
-/// Stands in front of another controller and passes its pressures on, until a hand takes over; then it commands what the hand sets.
+/// Wraps another controller and passes its pressures on until a user takes over; from then on it commands the pressures that the user sets.
 ///
-/// The other controller is not asked meanwhile, and goes on where it was when it is handed back. Taking over changes no pressure. While no
-/// hand has taken over, the run has the bits that it has without this class. Hands may be in another thread than the run.
+/// During manual control the other controller is not called; handBack() lets it continue from its old state. Taking over changes no
+/// pressure. Until a user takes over, the run is the same to the bit as without this class. The user may act from another thread.
 class ManualController final : public Controller {
  public:
-  /// Throws BadParameter for null or no muscles.
+  /// Throws BadParameter if `automatic` is null or there are no muscles.
   ManualController(std::unique_ptr<Controller> automatic, int muscle_count);
 
   Action output(const State& state) override;
@@ -30,10 +30,10 @@ class ManualController final : public Controller {
   void set(int muscle, double pressure_ratio);
   /// Takes over and vents all muscles.
   void reset();
-  /// What is commanded at present, by whomever.
+  /// The pressures that are commanded now, by the user or by the controller.
   Action pressures() const;
 
-  /// From when to when a hand commanded, s; the last end is that of the latest output.
+  /// An interval of manual control, s. The last interval ends at the latest call of output().
   struct Interval {
     double from_s, to_s;
   };

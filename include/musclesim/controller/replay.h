@@ -8,11 +8,11 @@
 
 namespace musclesim {
 
-/// Commands what was commanded in a recording, each row from its time until the time of the next (zero-order hold). Before the first row
-/// the first holds, after the last row the last. Time is that of State::time_s, s; a row counts as reached from 1 microsecond before its
-/// time, so that rounding in either time does not delay it by a control step. Rows are looked up by time: any order of calls is allowed.
+/// Repeats the commands of a recording: each row holds from its time until the time of the next row (zero-order hold); the first row also
+/// holds before its time. The clock is State::time_s. A row takes effect 1 microsecond before its time, so that rounding cannot delay it by
+/// a control step. Rows are looked up by time, so calls may come in any order.
 ///
-/// Not in the registry, since it is made from a recording. The recording is copied as far as needed.
+/// It is not in the registry, since it is built from a recording. It keeps a copy of the commands.
 class ReplayController final : public Controller {
  public:
   /// Throws BadFile unless the recording has rows at strictly increasing times and, in each, commands "command_0" to

@@ -1,4 +1,4 @@
-/// What the attractor controllers are to achieve: where the hand should be, and how active the arm is when it is there or not.
+/// Tasks of the attractor controllers: a target of the hand, and an activity that says how well the arm does.
 #pragma once
 
 #include <memory>
@@ -21,8 +21,8 @@ struct Target {
   double distanceMm(const State& state) const;
 
   /// The target of the request's task. "height": height_task.target_mm (0 mm). "reach": reach_task.target_x_mm, _y_mm, _z_mm
-  /// (-300, 0, 150 mm). request.target_mm, where given, replaces these parameters. Throws BadParameter for another task, naming the
-  /// nearest, and for coordinates out of range.
+  /// (-300, 0, 150 mm). If request.target_mm is given, it replaces these parameters. Throws BadParameter for an unknown task (the message
+  /// gives the nearest name) and for coordinates out of range.
   static Target make(const ControllerRequest& request);
 };
 
@@ -35,7 +35,7 @@ class Task {
   Vector targetMm() const { return target_.point_mm; }
   bool targetIsHeight() const { return target_.is_height; }
 
-  /// Throws BadParameter, with the nearest name, unless there is a task of that name.
+  /// Throws BadParameter if no task has this name; the message gives the nearest name.
   static void requireKnown(const std::string& task);
   /// The task named in the request. Throws as Target::make.
   static std::unique_ptr<Task> make(const ControllerRequest& request);
@@ -50,7 +50,7 @@ class Task {
 
 /// Lift the hand to a height: the activity is inversely proportional to the height error, regularised.
 ///     alpha = gain e0 / (d + e0),   d = |y_hand - y_target|
-/// d, e0 in mm; gain, alpha pure numbers. alpha lies in (0, gain], gain at the target, half of it at d = e0.
+/// d, e0 in mm; gain, alpha pure numbers. alpha lies in (0, gain]: it is gain at the target and gain / 2 at d = e0.
 /// Source: Braun 2007, Section 6 (inverse proportionality); e0 keeps it finite.
 class HeightTask final : public Task {
  public:
@@ -62,11 +62,11 @@ class HeightTask final : public Task {
   double gain_, e0_mm_;
 };
 
-/// Move the hand to a point: the hand is active while it is nearer to the target than it used to be.
+/// Move the hand to a point: the activity is positive while the hand is nearer to the target than its past mean.
 ///     alpha(t) = (mean d(t) - d(t)) / d_scale                                            (Eq. 7)
 ///     d(t) = |hand - target|                                                             (Eq. 8)
 ///     mean d(t) = sum_{k=1..t} gamma^k d(t-k) / sum_{k=1..t} gamma^k, recursively A / B   (Eq. 9, see DiscountedMean)
-/// d, d_scale in mm; t counts decisions. alpha has either sign and is 0 at the first decision, where the mean is d itself.
+/// d, d_scale in mm; t counts decisions. alpha can have either sign. It is 0 at the first decision, where mean d is d itself.
 /// Source: Braun 2007, Section 5, in the form written here; d_scale is the scale of this implementation.
 class ReachTask final : public Task {
  public:

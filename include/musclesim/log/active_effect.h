@@ -1,4 +1,4 @@
-/// An effect as it is asked for: in an effects file, in a recording's sidecar, in the options of a simulation.
+/// A request for an effect, as in an effects file, a recording's sidecar or the options of a simulation.
 #pragma once
 
 #include <map>
@@ -8,11 +8,11 @@
 
 namespace musclesim {
 
-/// Which effect, on which component, how strong. Parameters that are not named are neutral.
+/// The effect, the component it acts on, and its parameters. Parameters that are not given are neutral.
 struct ActiveEffect {
   std::string id;
   std::string component = "all";
-  std::map<std::string, Parameter::Value> parameters;  ///< numbers, infinity included, or words where the effect has choices
+  std::map<std::string, Parameter::Value> parameters;  ///< numbers (infinity is allowed), or words if the effect has choices
 
   bool operator==(const ActiveEffect&) const = default;
 };

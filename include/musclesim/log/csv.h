@@ -1,7 +1,7 @@
-/// The one CSV reader: strict, and every error names file, line and column.
+/// The project's only CSV reader. It is strict; every error names file, line and column.
 ///
-/// What it accepts: UTF-8 with or without byte order mark, lines ending in \n or \r\n, lines that begin with # before the header, one
-/// header row, then rows with as many cells as the header. Spaces around a cell do not count. No quotes, no NUL bytes.
+/// It accepts UTF-8 with or without byte order mark, lines ending in \n or \r\n, lines that begin with # before the header, one
+/// header row, then rows with as many cells as the header. Spaces around a cell are ignored. Quotes and NUL bytes are refused.
 #pragma once
 
 #include <cstddef>
@@ -11,23 +11,23 @@
 
 namespace musclesim {
 
-/// What a CSV file may hold at most; a file beyond a limit is refused, never read in part.
+/// Size limits of a CSV file. A file beyond a limit is refused, never read in part.
 struct CsvLimits {
   std::size_t file_bytes = std::size_t{512} << 20;
   std::size_t line_bytes = std::size_t{1} << 20;
   std::size_t row_count = 10'000'000;
   std::size_t column_count = 1000;
-  std::size_t cell_count = 100'000'000;  ///< rows times columns: bounds the memory that a small file of empty cells can ask for
+  std::size_t cell_count = 100'000'000;  ///< rows times columns: limits the memory that a small file of empty cells can need
 };
 
-/// One cell and where it stands. Lines and columns (in bytes, without the byte order mark) count from 1. The text lives as long as the text
-/// given to CsvReader.
+/// One cell and its place. Lines and columns (in bytes, without the byte order mark) count from 1. `text` points into the text given to
+/// CsvReader.
 struct CsvCell {
   std::string_view text;
   int line = 0, column = 0;
 };
 
-/// Goes through CSV text row by row. Every function throws BadFile for what it cannot accept.
+/// Reads CSV text row by row. Every function throws BadFile if it refuses the text.
 class CsvReader {
  public:
   /// `text` must outlive the reader; `file` is used in messages only. Reads up to and including the header row.
@@ -41,7 +41,7 @@ class CsvReader {
   /// The line that readRow read last (1 = first line of the file).
   int line() const { return line_; }
 
-  /// The cell's number; NaN for an empty cell or "nan". Throws BadFile for text, infinities and numbers no double can hold.
+  /// The cell's number; NaN for an empty cell or "nan". Throws BadFile for text, infinities and numbers that no double can hold.
   double number(const CsvCell& cell, std::string_view column_name) const;
   /// Throws BadFile at the cell.
   [[noreturn]] void refuse(const CsvCell& cell, const std::string& what) const;

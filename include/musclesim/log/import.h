@@ -1,4 +1,4 @@
-/// Foreign tables become recordings: a mapping says which column is what, in which unit and at which time.
+/// Turns measured tables into recordings. A mapping file says what each column means, in which unit and at which time.
 #pragma once
 
 #include <map>
@@ -10,7 +10,7 @@
 
 namespace musclesim {
 
-/// How one column of the recording comes about: value, or factor * x + offset with x from a column of a table, then limited.
+/// How one column of the recording is computed: constant `value`, or factor * x + offset with x from a column of a table; then clamped.
 struct ImportColumn {
   std::string name;             ///< column of the recording, with its unit: "command_0_MPa"
   std::string from;             ///< column of the table; empty: the constant `value`
@@ -18,7 +18,7 @@ struct ImportColumn {
   std::string time = "time_s";  ///< time column of that other table, s
   double factor = 1, offset = 0, value = 0;
   double minimum, maximum;
-  bool linear = true;  ///< between rows: straight line; otherwise the last value. Commands are held unless the mapping says otherwise
+  bool linear = true;  ///< false: hold the last value between rows (default for commands)
 };
 
 /// A mapping file, TOML:
@@ -29,11 +29,11 @@ struct ImportColumn {
 ///     command_1_MPa = { value = 0.1 }
 ///     angle_wrist_deg = { from = "angle", table = "other.csv", time = "t" }
 ///     [rows]
-///     settle_s = 0.6                   # no time: each row is what was read at the end of a step that was held that long
-///     step_s = 0.02                    # even steps in place of the table's times
-///     from_s = 4.0                     # rows from there on; that time becomes 0
-///     until_s = 7.6                    # rows up to there
-///     every = 5                        # every fifth row of the table, not counting rows that repeat a time (without step_s)
+///     settle_s = 0.6                   # the table has no time: each row was read at the end of a command held that long
+///     step_s = 0.02                    # resample at even steps
+///     from_s = 4.0                     # use rows from this time on; it becomes time 0
+///     until_s = 7.6                    # use rows up to this time
+///     every = 5                        # use every fifth row, not counting rows that repeat a time (only without step_s)
 ///     before_s = 1.0                   # before the first row the plant rested that long ...
 ///     before = { command_0_MPa = 0 }   # ... under these commands, the others as in the first row
 struct ImportMapping {
@@ -45,14 +45,14 @@ struct ImportMapping {
   int every = 1;
 };
 
-/// Throws BadFile with line and column for what is not such a mapping; IoError if it cannot be read.
+/// Reads a mapping file. Throws BadFile with line and column if it is not a valid mapping; IoError if it cannot be read.
 ImportMapping readImportMapping(const std::string& toml_file);
 
-/// The file of a column's own table, which lies relative to the first one.
+/// The path of the table that a column names; it is relative to the folder of the first table.
 std::string tableFile(const std::string& csv_file, const ImportColumn& column);
 
-/// The table as a recording. Rows whose time does not increase because the clock is coarse (the same time again) are left out with a note.
-/// Throws BadFile for a table without a column that the mapping names, and as readRecording for what is not a recording then.
+/// Turns the table into a recording. Rows that repeat the time of the row before (a coarse clock) are left out with a note.
+/// Throws BadFile if the table lacks a column that the mapping names; throws as readRecording if the result is not a valid recording.
 Recording importTable(const std::string& csv_file, const ImportMapping& mapping);
 
 }  // namespace musclesim

@@ -1,16 +1,13 @@
-/// Recordings: what was commanded and what was measured on one plant in one run, real or simulated.
+/// Recordings: the commands and measurements of one run of one plant, real or simulated.
 ///
 /// Two files with one stem: NAME.csv (one row per sample) and NAME.json (the sidecar). Format `musclesim-recording-1`.
 #pragma once
 
-#include <cstdint>
-#include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "musclesim/base/parameters.h"
-#include "musclesim/log/active_effect.h"
+#include "musclesim/log/recording_info.h"
+#include "musclesim/log/signal_unit.h"
 
 namespace musclesim {
 
@@ -20,30 +17,13 @@ struct Signal {
   std::vector<double> values;
 };
 
-/// The sidecar. Only `format` and `robot` are required in the file.
-struct RecordingInfo {
-  std::string robot;
-  std::optional<std::string> physics;                        ///< "si", "original" or "scaled"
-  std::optional<std::string> initial_state;                  ///< "settled" or "built"
-  std::map<std::string, Parameter::Value> robot_parameters;  ///< nested objects are flattened with a dot
-  std::string description, trial, repeat_of, program;
-  std::optional<double> pressure_full_scale_kPa, command_full_scale_V;
-  std::map<std::string, double> noise_std;
-  std::vector<ActiveEffect> active_effects;  ///< what the simulator must include when it replays the recording: model, not gap
-  std::optional<std::uint64_t> seed;
-  std::optional<double> step_s;
-  std::optional<bool> complete;  ///< false while a run is being recorded and after one that stopped early; absent: not known
-  /// Further members of the sidecar as JSON text, one object; kept when the recording is written again.
-  std::string extra_json = "{}";
-};
-
-/// A recording is a value; simulated and measured runs are the same type.
+/// A recording. Simulated and measured runs have the same type.
 struct Recording {
-  std::string file;  ///< where it came from, for messages; empty if it was made in memory
+  std::string file;  ///< the file it was read from, for messages; empty if it was made in memory
   RecordingInfo info;
   std::vector<double> time_s;      ///< strictly increasing
-  std::vector<Signal> signals;     ///< all of the length of time_s
-  std::vector<std::string> notes;  ///< what the reader converted, skipped or found odd, in words for the user
+  std::vector<Signal> signals;     ///< each has as many values as time_s
+  std::vector<std::string> notes;  ///< messages for the user: what the reader converted, skipped or found unusual
 
   /// Number of commanded muscles.
   int muscleCount() const;
@@ -55,24 +35,18 @@ struct ReadOptions {
   std::vector<std::string> ignore_columns;
 };
 
-/// Reads NAME.csv and, beside it, NAME.json. Strict: throws BadFile naming file, line, column and what is allowed (also if there is no
-/// sidecar); IoError if the CSV file cannot be read. Units named in the header are converted to the canonical ones (mm, deg, N, fraction of
-/// full scale). If the sidecar says "complete": false, a last line without line end is dropped with a note: its writer was stopped.
+/// Reads NAME.csv and NAME.json beside it, strictly: throws BadFile that names file, line, column and what is allowed (also if there is no
+/// sidecar); IoError if the CSV file cannot be read. Converts the units in the header to the canonical ones (mm, deg, N, fraction of full
+/// scale). If the sidecar says "complete": false, an unfinished last line (without line end) is dropped with a note.
 Recording readRecording(const std::string& csv_file, const ReadOptions& options = {});
 
-/// The same from text already in memory; the names are used in messages only.
+/// Like readRecording, from text in memory; the names are used in messages only.
 Recording parseRecording(const std::string& csv_text, const std::string& csv_name, const std::string& json_text,
                          const std::string& json_name, const ReadOptions& options = {});
 
-/// Writes both files, each to a temporary name first, then renamed; reading them again gives the same bits.
+/// Writes both files, each under a temporary name that is then renamed. Reading them again gives the same bits.
 /// Throws IoError; BadParameter, before anything is written, for a recording that readRecording would refuse.
 void writeRecording(const Recording& recording, const std::string& csv_file);
-
-/// The sidecar as indented JSON text. Throws BadParameter if its contents would be refused when read.
-std::string sidecarText(const RecordingInfo& info);
-
-/// The canonical unit of a signal: "s", "N", "mm", "deg"; empty for fractions, pure numbers and unknown names.
-std::string signalUnit(const std::string& signal_name);
 
 /// The sidecar's path for a recording's CSV path ("a/b.csv" -> "a/b.json").
 std::string sidecarPath(const std::string& csv_file);

@@ -1,4 +1,4 @@
-#include "musclesim/controller/controller.h"
+#include "musclesim/controller/controller_registry.h"
 
 #include <fmt/format.h>
 
@@ -19,7 +19,7 @@ namespace {
 
 struct Entry {
   std::string description;
-  Controller::Factory factory;
+  ControllerFactory factory;
 };
 
 template <typename T>
@@ -55,7 +55,7 @@ Entry entryOf(const std::string& name) {
     const std::lock_guard lock(mutex);
     if (const auto found = entries.find(name); found != entries.end()) return found->second;
   }
-  const auto known = Controller::names();
+  const auto known = registeredControllers();
   const std::string nearest = nearestName(name, known);
   throw BadParameter("controller", name,
                      fmt::format("be one of {}{}", fmt::join(known, ", "), nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?"));
@@ -63,20 +63,20 @@ Entry entryOf(const std::string& name) {
 
 }  // namespace
 
-void Controller::registerController(const std::string& name, const std::string& description, Factory factory) {
+void registerController(const std::string& name, const std::string& description, ControllerFactory factory) {
   if (name.empty() || !factory) throw BadParameter("a controller needs a name and a factory");
   auto& [mutex, entries] = registry();
   const std::lock_guard lock(mutex);
   entries[name] = {description, std::move(factory)};
 }
 
-std::unique_ptr<Controller> Controller::make(const std::string& name, const ControllerRequest& request) {
-  const Factory factory = entryOf(name).factory;
+std::unique_ptr<Controller> makeController(const std::string& name, const ControllerRequest& request) {
+  const ControllerFactory factory = entryOf(name).factory;
   requireUsable(request);
   return factory(request);
 }
 
-std::vector<std::string> Controller::names() {
+std::vector<std::string> registeredControllers() {
   auto& [mutex, entries] = registry();
   const std::lock_guard lock(mutex);
   std::vector<std::string> names;
@@ -84,7 +84,7 @@ std::vector<std::string> Controller::names() {
   return names;
 }
 
-std::string Controller::description(const std::string& name) {
+std::string controllerDescription(const std::string& name) {
   return entryOf(name).description;
 }
 

@@ -1,4 +1,4 @@
-#include "laboratory/static_points.h"
+#include "laboratory/point_reader.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -54,7 +54,7 @@ TEST(StaticPoints, MapsColumnsAndFiltersRows) {
   options.columns = {{"length", "L"}, {"pressure", "P"}, {"force", "pull_N"}};
   const StaticPoints plain = parseStaticPoints(table("P,L,pull_N"), "data.csv", options);
   EXPECT_EQ(plain.points[5].length_mm, parseStaticPoints(table("pressure,length_mm,force_N"), "data.csv").points[5].length_mm);
-  EXPECT_TRUE(contains(plain.notes.at(0), "no unit is given; taken to be: P in fractions of full scale, L in mm"));
+  EXPECT_TRUE(contains(plain.notes.at(0), "no unit is given; assumed: P in fractions of full scale, L in mm"));
   options.columns = {{"length", "L_kPa"}};
   EXPECT_TRUE(contains(messageOf<BadParameter>([&] { parseStaticPoints(table("pressure,L_kPa,force_N"), "data.csv", options); }),
                        "length=L_kPa: must be a column that ends like length_mm"));

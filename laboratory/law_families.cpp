@@ -1,4 +1,4 @@
-#include "law_model.h"
+#include "law_families.h"
 
 #include <fmt/format.h>
 
@@ -16,8 +16,8 @@ namespace {
 
 constexpr double unbounded = 1e12;
 
-/// Eq. 1. The fit moves c, b, the vented force at full length K = newton_per_kgf c a exp(b), and the lengths that are not held: a itself
-/// changes by powers of ten when b moves a little.
+/// Eq. 1. The fit adjusts c, b, K = newton_per_kgf c a exp(b) (the force at full length without pressure), and the free lengths. It uses K
+/// instead of a, because a changes by powers of ten for small changes of b.
 class BraunModel final : public LawModel {
  public:
   BraunModel(const Specimen& specimen, const BraunLengths& lengths) : specimen_(specimen), lengths_(lengths) {
@@ -117,11 +117,11 @@ class PlainModel : public LawModel {
   std::vector<LawConstant> constants_;
 };
 
-/// The exponents that fits of an exponential start from: it fades within 1/10 to 1/80 of the rest length.
+/// Initial exponents of an exponential: it decays within 1/10 to 1/80 of the rest length.
 constexpr double exponent_starts[] = {10, 30, 80};
 constexpr double largest_exponent = 300;
-/// Share of an exponential's force that counts as a residual. It moves a fit that the points determine by 1e-4 of that force at most;
-/// without points near the rest length they do not determine it, and it would be anything.
+/// Weight of the penalty on an exponential's force. Without points near the rest length the points do not determine this force; the penalty
+/// keeps it bounded. If the points determine it, the penalty changes it by at most 1e-4 of itself.
 constexpr double stretch_penalty = 3e-3;
 
 /// F = p (A s^2 - B) - D + E exp(beta (s - 1)).
