@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "comparison.h"
-#include "next_experiment.h"
+#include "contender.h"
 #include "odds.h"
 #include "refit.h"
 #include "screen.h"

@@ -16,7 +16,7 @@ Comparison::Comparison(const Plant& plant, std::vector<Stretch> stretches, Avera
       Cell cell{k, static_cast<int>(s), {}, size_, plant.signals()[s].floor.value};
       for (int row = stretches_[k].first_row; row < std::min(stretches_[k].end_row, static_cast<int>(y.size())); row += stretches_[k].every)
         if (std::isfinite(y[static_cast<std::size_t>(row)])) cell.rows.push_back(row);
-      if (cell.rows.size() < fewest_rows) continue;
+      if (cell.rows.size() < fewest_compared_rows) continue;
       size_ += static_cast<Eigen::Index>(cell.rows.size());
       cells_.push_back(std::move(cell));
     }

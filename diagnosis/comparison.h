@@ -19,7 +19,6 @@ double averagedShareOfFloor(const std::vector<double>& values);
 /// smaller, and what is weak but slow stands out.
 class Comparison {
  public:
-  static constexpr int fewest_rows = 10;  ///< a signal with fewer numbers in a stretch is not compared there
   struct Cell {
     std::size_t stretch;
     int signal;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "plant.h"
+#include "musclesim/log/recording.h"
 
 namespace musclesim {
 
@@ -29,8 +29,7 @@ bool isRepeat(const Recording& a, const Recording& b);
 /// Throws BadFile if one recording is another one again: what they differ by would pass for noise, and the held-out one would be known.
 void requireDifferentMeasurements(const std::vector<Recording>& recordings);
 
-/// Throws BadFile if a signal's size is about a thousand times that of the model's or a thousandth of it: m in place of mm, kPa in
-/// place of fractions.
-void requireUnits(const Plant& plant, int recording, const Prediction& prediction);
+/// Median of the sizes of all numbers; 0 if there are none.
+double medianSize(const std::vector<double>& values);
 
 }  // namespace musclesim

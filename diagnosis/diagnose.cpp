@@ -20,6 +20,7 @@
 #include "schedule.h"
 #include "shrink.h"
 #include "tune.h"
+#include "unit_check.h"
 
 namespace musclesim {
 

@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-#include "../simulation/scene/snapshot.h"
+#include "../simulation/snapshot.h"
 
 namespace musclesim {
 

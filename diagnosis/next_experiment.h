@@ -1,25 +1,14 @@
 /// Which commands would tell explanations apart that the recordings do not.
 #pragma once
 
-#include <Eigen/Core>
-#include <string>
 #include <vector>
 
+#include "contender.h"
 #include "musclesim/diagnosis/diagnosis.h"
 #include "plant.h"
 #include "screen.h"
 
 namespace musclesim {
-
-/// An explanation as fitted, with what is made of it so far and what its numbers can still take up.
-struct Contender {
-  std::string label;
-  Model model;
-  double probability;           ///< need not sum to 1
-  std::vector<Model> beside{};  ///< with one coordinate each moved by any step
-  Eigen::MatrixXd
-      slopes{};  ///< what those steps change in the recordings that it was fitted to, times the weights of the fit: [rows, steps]
-};
 
 /// Simulates contenders, the likeliest first, under the schedules of the bank and returns the one that is expected to tell most: the sum
 /// over pairs of the product of their probabilities and 1 - exp(-e), e = per_misfit / (recordings + 1) * mean of ln(RMS difference over

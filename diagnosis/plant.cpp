@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "../effect/components.h"
-#include "comparison.h"
 #include "data_checks.h"
 #include "drawing.h"
 #include "musclesim/base/error.h"
@@ -118,12 +117,12 @@ void Plant::requireNumbers(const std::vector<Stretch>& part) const {
   };
   for (const Stretch& stretch : part)
     for (std::size_t signal = 0; signal < signals_.size(); ++signal)
-      if (numbersIn(stretch, signal) >= Comparison::fewest_rows) return;
+      if (numbersIn(stretch, signal) >= fewest_compared_rows) return;
   const Stretch& stretch = part.front();
   throw BadFile(recordings_[static_cast<std::size_t>(stretch.recording)].file,
                 fmt::format("its rows {} to {}, {}, hold fewer than {} numbers of every signal that can be compared", stretch.first_row + 1,
                             stretch.end_row, &part == &split_.fit ? "which the effects are fitted to" : "on which the result is measured",
-                            Comparison::fewest_rows));
+                            fewest_compared_rows));
 }
 
 /// A sensor that shows one value throughout a recording in which commands change, but not in all: there it is dead.

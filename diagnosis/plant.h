@@ -23,6 +23,8 @@ struct ComparedSignal {
   NoiseFloor floor;
 };
 
+inline constexpr int fewest_compared_rows = 10;  ///< a signal with fewer numbers in a stretch is not compared there
+
 /// A stretch of one recording. Simulations always begin at the recording's first row; only rows of the stretch are compared, or every n-th
 /// of them.
 struct Stretch {

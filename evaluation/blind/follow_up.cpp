@@ -5,7 +5,8 @@
 
 #include "../../base/parallel.h"
 #include "../../diagnosis/schedule.h"
-#include "follow_up_score.h"
+#include "follow_up_files.h"
+#include "judge.h"
 #include "musclesim/base/error.h"
 #include "musclesim/diagnosis/diagnosis.h"
 #include "musclesim/effect/effects_file.h"
@@ -142,21 +143,7 @@ json origin(const FollowUpOptions& options) {
   return members;
 }
 
-/// SHA-256 of what is followed up on.
-std::string fingerprintOf(const fs::path& folder, const std::string& name) {
-  return sha256OfFiles(folder, {"answers/" + name + ".json"});
-}
-
 }  // namespace
-
-fs::path followUpFile(const fs::path& folder, const std::string& name) {
-  return folder / "follow_up" / (name + ".json");
-}
-
-bool isFollowed(const fs::path& folder, const std::string& name) {
-  const fs::path file = followUpFile(folder, name);
-  return fs::exists(file) && readObject(file).value("answer_sha256", "") == fingerprintOf(folder, name);
-}
 
 void followUp(const fs::path& folder, const fs::path& key_file, const FollowUpOptions& options) {
   score(folder, key_file);  // checks all fingerprints
@@ -177,7 +164,7 @@ void followUp(const fs::path& folder, const fs::path& key_file, const FollowUpOp
     auto result = followed(one, folder, options);
     if (!result) return;
     result->update(members);
-    (*result)["answer_sha256"] = fingerprintOf(folder, name);
+    (*result)["answer_sha256"] = answerFingerprint(folder, name);
     writeObject(*result, followUpFile(folder, name));
     const std::lock_guard lock(one_at_a_time);
     options.progress(++done, static_cast<int>(open.size()));

@@ -24,8 +24,4 @@ struct FollowUpOptions {
 /// were made by another program or with other candidates.
 void followUp(const std::filesystem::path& folder, const std::filesystem::path& key_file, const FollowUpOptions& options);
 
-std::filesystem::path followUpFile(const std::filesystem::path& folder, const std::string& name);
-/// There is a file, and it was made from the present answer.
-bool isFollowed(const std::filesystem::path& folder, const std::string& name);
-
 }  // namespace musclesim::blind

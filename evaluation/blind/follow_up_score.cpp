@@ -6,9 +6,8 @@
 #include <cmath>
 #include <functional>
 
-#include "follow_up.h"
+#include "follow_up_files.h"
 #include "look_alikes.h"
-#include "score.h"
 #include "seal.h"
 
 namespace musclesim::blind {
@@ -101,14 +100,6 @@ WithoutTruth withoutTruth(const Judgement& answer, const Judgement& with_truth) 
   if (confident_effect && !look_alike && !named_before) return class_mate ? WithoutTruth::class_mate : WithoutTruth::confidently_wrong;
   if (answer.verdict != "effects_found" || !answer.namesEffect()) return WithoutTruth::unexplained;
   return look_alike ? WithoutTruth::look_alike : named_before ? WithoutTruth::named_before : WithoutTruth::unsure;
-}
-
-bool namesTruth(const Judgement& answer) {
-  return answer.verdict == "effects_found" && answer.named.value_or(false);
-}
-
-bool isAmbiguous(const Judgement& answer) {
-  return answer.kind == "single" && answer.set_size.value_or(1) > 1 && answer.namesEffect();
 }
 
 std::vector<FollowUp> followUpsOf(const fs::path& folder, const json& cases) {

@@ -39,11 +39,6 @@ enum class WithoutTruth {
 };
 WithoutTruth withoutTruth(const Judgement& answer, const Judgement& with_truth);
 
-/// Whether the truth is the single best of an answer.
-bool namesTruth(const Judgement& answer);
-/// Several effects cannot be told apart; of single causes, where an effect is what was said.
-bool isAmbiguous(const Judgement& answer);
-
 /// Of the files of DIR/follow_up that belong to the present answers. `cases`: of the key.
 std::vector<FollowUp> followUpsOf(const std::filesystem::path& folder, const nlohmann::json& cases);
 /// Rates as in totalsOf(); empty if there is nothing to count.

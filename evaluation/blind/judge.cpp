@@ -180,4 +180,12 @@ Judgement judge(const std::string& name, const json& key, const json& answer) {
   return j;
 }
 
+bool namesTruth(const Judgement& answer) {
+  return answer.verdict == "effects_found" && answer.named.value_or(false);
+}
+
+bool isAmbiguous(const Judgement& answer) {
+  return answer.kind == "single" && answer.set_size.value_or(1) > 1 && answer.namesEffect();
+}
+
 }  // namespace musclesim::blind

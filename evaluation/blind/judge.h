@@ -50,4 +50,9 @@ struct Judgement {
 /// Key of one case as `blind make` wrote it, answer as diagnosis.json. Throws nlohmann::json::exception if members are missing in the key.
 Judgement judge(const std::string& name, const nlohmann::json& key, const nlohmann::json& answer);
 
+/// Whether the truth is the single best of an answer.
+bool namesTruth(const Judgement& answer);
+/// Whether an answer to a single cause names an effect and cannot tell it from others.
+bool isAmbiguous(const Judgement& answer);
+
 }  // namespace musclesim::blind

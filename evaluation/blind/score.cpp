@@ -155,10 +155,6 @@ std::vector<Claim> claimsOfOneCause(const Cases& cases) {
   return claimsOf(cases, [](const Judgement& j) { return j.kind == "single" || j.kind == "open"; });
 }
 
-json rateJson(const Rate& rate) {
-  return {{"hits", rate.hits}, {"count", rate.count}, {"value", rate.value()}, {"low", rate.low()}, {"high", rate.high()}};
-}
-
 json totalsOf(const Cases& cases) {
   json totals = {{"cases", cases.size()}};
   putRates(totals, cases);

@@ -21,10 +21,7 @@ struct Score {
 /// What was said of single and open causes.
 std::vector<Claim> claimsOfOneCause(const std::vector<Judgement>& cases);
 
-/// {"hits", "count", "value", "low", "high"}.
-nlohmann::json rateJson(const Rate& rate);
-
-/// Rates as {"hits", "count", "value", "low", "high"}, means and medians as numbers; what no case has is absent.
+/// Rates as in rateJson(), means and medians as numbers; what no case has is absent.
 nlohmann::json totalsOf(const std::vector<Judgement>& cases);
 
 /// Checks key, recordings and answers against their SHA-256, then judges every case. Throws BadFile if one differs or an answer is missing.

@@ -10,7 +10,7 @@
 #include "musclesim/controller/manual.h"
 #include "pace.h"
 #include "simulation/scene/camera.h"
-#include "simulation/scene/snapshot.h"
+#include "simulation/snapshot.h"
 
 namespace musclesim {
 
