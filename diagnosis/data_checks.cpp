@@ -18,7 +18,7 @@ namespace {
 constexpr double least_change = 0.02;
 constexpr double usual_steps = 10;  ///< a gap is longer than that many usual steps
 
-std::vector<std::string> gapNotes(const Recording& recording) {
+std::vector<std::string> dropoutNotes(const Recording& recording) {
   std::vector<double> steps;
   for (std::size_t row = 1; row < recording.time_s.size(); ++row) steps.push_back(recording.time_s[row] - recording.time_s[row - 1]);
   const double usual_s = medianSize(steps);
@@ -81,7 +81,7 @@ bool neverChanges(const std::vector<Recording>& recordings, const std::string& n
 std::vector<std::string> dataNotes(const std::vector<Recording>& recordings) {
   std::vector<std::string> notes;
   for (const Recording& recording : recordings) {
-    std::ranges::move(gapNotes(recording), std::back_inserter(notes));
+    std::ranges::move(dropoutNotes(recording), std::back_inserter(notes));
     std::map<std::ptrdiff_t, std::vector<std::string>> missing;  // signals by the number of rows without one
     for (const Signal& signal : recording.signals)
       missing[std::ranges::count_if(signal.values, [](double value) { return !std::isfinite(value); })].push_back(signal.name);

@@ -3,10 +3,10 @@
 
 #include <vector>
 
-#include "contender.h"
 #include "musclesim/diagnosis/diagnosis.h"
 #include "plant.h"
-#include "screen.h"
+#include "rival.h"
+#include "sensitivity.h"
 
 namespace musclesim {
 
@@ -19,7 +19,7 @@ namespace musclesim {
 /// smaller until every contender is predicted to keep about where the plant has been, and clear of the stops of joints and muscles, where
 /// small differences decide what happens next. Without commands if there are fewer than two contenders, or if nothing tells any of them
 /// apart.
-Experiment nextExperiment(const Plant& plant, const std::vector<Contender>& contenders, Fidelity fidelity, int job_count,
+Experiment nextExperiment(const Plant& plant, const std::vector<Rival>& rivals, Fidelity fidelity, int job_count,
                           const OnSimulation& on_simulation);
 
 }  // namespace musclesim

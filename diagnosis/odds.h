@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "comparison.h"
-#include "suspect.h"
+#include "hypothesis.h"
 
 namespace musclesim {
 
 /// A set of suspects with fitted strengths.
-struct Explanation {
-  std::vector<std::size_t> suspects;
+struct FittedHypothesis {
+  std::vector<std::size_t> members;
   Eigen::VectorXd z;  ///< coordinates of all of them, one after the other
   Eigen::VectorXd half_width;
   Eigen::VectorXd residual;  ///< on the stretches for fitting
@@ -20,10 +20,11 @@ struct Explanation {
   Eigen::VectorXd tuning = {};             ///< coordinates of the numbers of the model that are fitted together with the effects
   Eigen::VectorXd tuning_half_width = {};  ///< Plant::tunedAt tells the values
   bool fitted_to_all = false;              ///< not only to the first look
-  bool is_hollow = false;                  ///< as good with an effect at next to no strength: that is not what acts
-  Eigen::VectorXd unseen = {};  ///< residual where every stretch is predicted from a fit to the others; empty where that was not tried
+  bool is_inactive = false;                ///< as good with an effect at next to no strength: that is not what acts
+  Eigen::VectorXd cross_validated =
+      {};  ///< residual where every stretch is predicted from a fit to the others; empty where that was not tried
   /// What the explanation is judged by.
-  const Eigen::VectorXd& judged() const { return unseen.size() ? unseen : residual; }
+  const Eigen::VectorXd& validationResidual() const { return cross_validated.size() ? cross_validated : residual; }
 };
 
 /// How answers are weighed; docs/diagnosing.md says on which cases the numbers were found.
@@ -46,11 +47,11 @@ struct Weighing {
 class Odds {
  public:
   /// `nominal_residual` is what the model without effects leaves of `comparison`. References must outlive it.
-  Odds(const Comparison& comparison, const Eigen::VectorXd& nominal_residual, const std::vector<Suspect>& suspects)
-      : comparison_(comparison), nominal_residual_(nominal_residual), suspects_(suspects) {}
+  Odds(const Comparison& comparison, const Eigen::VectorXd& nominal_residual, const std::vector<Hypothesis>& hypotheses)
+      : comparison_(comparison), nominal_residual_(nominal_residual), hypotheses_(hypotheses) {}
 
   /// ln of the odds of an explanation, but for a constant; of a hollow one minus infinity.
-  double ofExplanation(const Explanation& explanation) const;
+  double ofHypothesis(const FittedHypothesis& fitted) const;
   /// ln of the odds by what is left, without what speaks against an explanation beforehand.
   double ofMisfit(const Eigen::VectorXd& residual) const;
   /// The same of no effect at all.
@@ -58,18 +59,18 @@ class Odds {
   /// The same of a cause that the catalogue does not hold, beside the likeliest of some explanations and no effect: a cause that the
   /// catalogue holds leaves a small share of the log misfit, what only resembles the cause a larger one or has many strengths. No more than
   /// the odds of a cause with one parameter that leaves nothing.
-  double ofNoneOfThese(const std::vector<Explanation>& explanations) const;
+  double ofNoneOfThese(const std::vector<FittedHypothesis>& fits) const;
   /// ln of the odds of one more effect that would leave nothing against the explanation without it.
-  double hopeBeyond(const Explanation& explanation) const;
+  double optimisticBound(const FittedHypothesis& fitted) const;
 
  private:
   double misfitBeyond(double mismatch, const Eigen::VectorXd& residual) const;
-  bool actsWhereOthersDo(const Explanation& explanation, std::size_t member) const;
-  double beforehand(const Explanation& explanation) const;
+  bool actsWhereOthersDo(const FittedHypothesis& fitted, std::size_t member) const;
+  double logPrior(const FittedHypothesis& fitted) const;
 
   const Comparison& comparison_;
   const Eigen::VectorXd& nominal_residual_;
-  const std::vector<Suspect>& suspects_;
+  const std::vector<Hypothesis>& hypotheses_;
   Weighing weighing_;
 };
 

@@ -107,26 +107,26 @@ Plant::Plant(std::vector<Recording> recordings, const DiagnosisOptions& options)
 }
 
 /// Enough of some signal in a part of the recordings.
-void Plant::requireNumbers(const std::vector<Stretch>& part) const {
-  const auto numbersIn = [&](const Stretch& stretch, std::size_t signal) {
-    const std::vector<double>& y = measured(stretch.recording, static_cast<int>(signal));
-    const auto end = std::min(static_cast<std::size_t>(stretch.end_row), y.size());
+void Plant::requireNumbers(const std::vector<Segment>& part) const {
+  const auto numbersIn = [&](const Segment& segment, std::size_t signal) {
+    const std::vector<double>& y = measured(segment.recording, static_cast<int>(signal));
+    const auto end = std::min(static_cast<std::size_t>(segment.end_row), y.size());
     int count = 0;
-    for (auto row = static_cast<std::size_t>(stretch.first_row); row < end; ++row) count += std::isfinite(y[row]) ? 1 : 0;
+    for (auto row = static_cast<std::size_t>(segment.first_row); row < end; ++row) count += std::isfinite(y[row]) ? 1 : 0;
     return count;
   };
-  for (const Stretch& stretch : part)
+  for (const Segment& segment : part)
     for (std::size_t signal = 0; signal < signals_.size(); ++signal)
-      if (numbersIn(stretch, signal) >= fewest_compared_rows) return;
-  const Stretch& stretch = part.front();
-  throw BadFile(recordings_[static_cast<std::size_t>(stretch.recording)].file,
-                fmt::format("its rows {} to {}, {}, hold fewer than {} numbers of every signal that can be compared", stretch.first_row + 1,
-                            stretch.end_row, &part == &split_.fit ? "which the effects are fitted to" : "on which the result is measured",
+      if (numbersIn(segment, signal) >= fewest_compared_rows) return;
+  const Segment& segment = part.front();
+  throw BadFile(recordings_[static_cast<std::size_t>(segment.recording)].file,
+                fmt::format("its rows {} to {}, {}, hold fewer than {} numbers of every signal that can be compared", segment.first_row + 1,
+                            segment.end_row, &part == &split_.fit ? "which the effects are fitted to" : "on which the result is measured",
                             fewest_compared_rows));
 }
 
 /// A sensor that shows one value throughout a recording in which commands change, but not in all: there it is dead.
-void Plant::dropDeadStretches() {
+void Plant::dropDeadSegments() {
   for (Recording& recording : recordings_) {
     const std::vector<Recording> one = {recording};
     if (!commandsMove(one)) continue;
@@ -143,7 +143,7 @@ void Plant::dropDeadStretches() {
 void Plant::compareSignals() {
   measured_.resize(recordings_.size());
   notes_ = dataNotes(recordings_);
-  dropDeadStretches();
+  dropDeadSegments();
   const bool moves = commandsMove(recordings_);
   for (const std::string& name : reference_->robot().signalNames()) {
     if (name.starts_with("command_")) continue;
@@ -156,7 +156,7 @@ void Plant::compareSignals() {
       notes_.push_back(name + " has the same value in every row although commands change: a dead sensor, left out");
       continue;
     }
-    signals_.push_back({name, noiseFloor(recordings_, name)});
+    signals_.push_back({name, noiseSigma(recordings_, name)});
     for (std::size_t i = 0; i < recordings_.size(); ++i) {
       const Signal* found = recordings_[i].find(name);
       measured_[i].push_back(found ? found->values : std::vector<double>{});
@@ -174,25 +174,25 @@ const std::vector<double>& Plant::measured(int recording, int signal) const {
   return measured_[static_cast<std::size_t>(recording)][static_cast<std::size_t>(signal)];
 }
 
-std::vector<Stretch> Plant::lookStretches() const {
+std::vector<Segment> Plant::screeningSegments() const {
   constexpr std::size_t most_recordings = 3;
   constexpr int row_count = 1200;
   constexpr double duration_s = 12, rounding_s = 1e-9;
-  std::vector<Stretch> result;
-  auto recordingOf = [&](const Stretch& s) -> const Recording& { return recordings_[static_cast<std::size_t>(s.recording)]; };
-  for (const Stretch& stretch : split_.fit) {
+  std::vector<Segment> result;
+  auto recordingOf = [&](const Segment& s) -> const Recording& { return recordings_[static_cast<std::size_t>(s.recording)]; };
+  for (const Segment& segment : split_.fit) {
     const bool repeated =
-        std::ranges::any_of(result, [&](const Stretch& other) { return isRepeat(recordingOf(stretch), recordingOf(other)); });
-    if (!repeated && result.size() < most_recordings) result.push_back(stretch);
+        std::ranges::any_of(result, [&](const Segment& other) { return isRepeat(recordingOf(segment), recordingOf(other)); });
+    if (!repeated && result.size() < most_recordings) result.push_back(segment);
   }
   const auto count = static_cast<int>(result.size());
-  for (Stretch& stretch : result) {
-    const std::vector<double>& time_s = recordingOf(stretch).time_s;
-    const int from = firstChange(recordingOf(stretch));
+  for (Segment& segment : result) {
+    const std::vector<double>& time_s = recordingOf(segment).time_s;
+    const int from = firstChange(recordingOf(segment));
     const double until_s = time_s[static_cast<std::size_t>(from)] + duration_s / count - rounding_s;
     const auto in_time = static_cast<int>(std::ranges::lower_bound(time_s, until_s) - time_s.begin());
-    stretch.end_row = std::min(stretch.end_row, std::max(from + row_count / count, in_time));
-    stretch.every = std::max(1, (stretch.end_row - from) * count / row_count);
+    segment.end_row = std::min(segment.end_row, std::max(from + row_count / count, in_time));
+    segment.every = std::max(1, (segment.end_row - from) * count / row_count);
   }
   return result;
 }

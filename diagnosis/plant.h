@@ -12,7 +12,7 @@
 #include "musclesim/diagnosis/diagnosis.h"
 #include "musclesim/effect/catalogue.h"
 #include "musclesim/simulation/replay.h"
-#include "noise_floor.h"
+#include "noise_sigma.h"
 #include "prediction_store.h"
 
 namespace musclesim {
@@ -20,14 +20,14 @@ namespace musclesim {
 /// One signal that both the recordings and the model have.
 struct ComparedSignal {
   std::string name;
-  NoiseFloor floor;
+  NoiseSigma sigma;
 };
 
 inline constexpr int fewest_compared_rows = 10;  ///< a signal with fewer numbers in a stretch is not compared there
 
 /// A stretch of one recording. Simulations always begin at the recording's first row; only rows of the stretch are compared, or every n-th
 /// of them.
-struct Stretch {
+struct Segment {
   int recording = 0;
   int first_row = 0, end_row = 0;
   int every = 1;
@@ -35,7 +35,7 @@ struct Stretch {
 
 /// Which stretches parameters are fitted to and explanations are chosen on, and which only measure the result.
 struct Split {
-  std::vector<Stretch> fit, held_out;
+  std::vector<Segment> fit, held_out;
   std::string held_out_words;
 };
 
@@ -62,7 +62,7 @@ class Plant {
   /// Stretches that a first look is content with: of up to three recordings with different commands, from the beginning to 4 s after the
   /// commands first change (12 s of one recording, 6 s of two) and 400 rows after that at least (1200, 600); of rows that follow more
   /// closely than 100 per second only as many.
-  std::vector<Stretch> lookStretches() const;
+  std::vector<Segment> screeningSegments() const;
   const std::string& robot() const { return recordings_.front().info.robot; }
   int muscleCount() const { return recordings_.front().muscleCount(); }
   /// Whether the model holds effects of a stage beforehand, by options or by a sidecar.
@@ -115,9 +115,9 @@ class Plant {
  private:
   static constexpr double farthest_tuning = 4;  ///< bound of |ln(value / value in force)|
 
-  void dropDeadStretches();
+  void dropDeadSegments();
   void compareSignals();
-  void requireNumbers(const std::vector<Stretch>& part) const;
+  void requireNumbers(const std::vector<Segment>& part) const;
   Parameter numberNamed(const std::string& name) const;
   Fidelity possible(Fidelity fidelity) const;
   void count(double simulated_s) const;

@@ -17,6 +17,12 @@ constexpr double normal_95 = 1.96;
 /// the way to go.
 constexpr double wide = 0.2, narrow = 0.05;
 
+/// z with one coordinate moved by `difference` times its size, or times 1 where that is more.
+Eigen::VectorXd movedBy(Eigen::VectorXd z, Eigen::Index coordinate, double difference) {
+  z[coordinate] += difference * std::max(1.0, std::abs(z[coordinate]));
+  return z;
+}
+
 struct Point {
   Eigen::VectorXd z, residual;
   double log_misfit = std::numeric_limits<double>::infinity();
@@ -35,8 +41,7 @@ Eigen::MatrixXd derivatives(const Comparison& comparison, const FitProblem& prob
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(comparison.size(), at.z.size());
   parallelFor(static_cast<int>(at.z.size()), comparison.plant().jobCount(), [&](int i) {
     for (const double side : {1.0, -1.0}) {
-      Eigen::VectorXd z = at.z;
-      z[i] += side * difference * std::max(1.0, std::abs(z[i]));
+      const Eigen::VectorXd z = movedBy(at.z, i, side * difference);
       if (problem.clamped(z)[i] == at.z[i]) continue;  // at a bound
       const Point beside = evaluate(comparison, problem, z);
       if (!beside.residual.size()) continue;
@@ -50,12 +55,12 @@ Eigen::MatrixXd derivatives(const Comparison& comparison, const FitProblem& prob
 /// Samples per independent sample, from the autocorrelation up to its first zero, averaged over cells.
 double samplesPerIndependent(const Comparison& comparison, const Eigen::VectorXd& residual) {
   double sum = 0;
-  int cell_count = 0;
-  for (const Comparison::Cell& cell : comparison.cells()) {
-    if (cell.block > 0) continue;
-    ++cell_count;
-    const Eigen::Index count = cell.count();
-    const Eigen::VectorXd r = residual.segment(cell.first, count);
+  int block_count = 0;
+  for (const Comparison::Block& block : comparison.blocks()) {
+    if (block.averaged_rows > 0) continue;
+    ++block_count;
+    const Eigen::Index count = block.count();
+    const Eigen::VectorXd r = residual.segment(block.first, count);
     const double power = std::max(r.squaredNorm(), 1e-300);
     double correlation_length = 1;
     for (Eigen::Index lag = 1; lag < count / 4; ++lag) {
@@ -65,7 +70,7 @@ double samplesPerIndependent(const Comparison& comparison, const Eigen::VectorXd
     }
     sum += correlation_length;
   }
-  return sum / cell_count;
+  return sum / block_count;
 }
 
 /// Half of the 95 % interval of every coordinate; infinite where the data do not determine it, alone or beside the others.
@@ -73,8 +78,8 @@ Eigen::VectorXd halfWidths(const Comparison& comparison, const Point& point, con
   constexpr double nothing = 1e-12, flat = 1e-8, takes_part = 0.1;
   // Weighted residuals have mean square 1 / rows per cell where the misfit is the residual's own size.
   Eigen::VectorXd per_sample = comparison.weights(point.residual);
-  for (const Comparison::Cell& cell : comparison.cells())
-    per_sample.segment(cell.first, cell.count()) *= cell.block > 0 ? 0 : std::sqrt(static_cast<double>(cell.count()));
+  for (const Comparison::Block& block : comparison.blocks())
+    per_sample.segment(block.first, block.count()) *= block.averaged_rows > 0 ? 0 : std::sqrt(static_cast<double>(block.count()));
   const Eigen::MatrixXd weighted = per_sample.asDiagonal() * jacobian;
   const Eigen::MatrixXd information = weighted.transpose() * weighted / samplesPerIndependent(comparison, point.residual);
   const Eigen::ArrayXd size = information.diagonal().array().max(0).sqrt();
@@ -125,6 +130,12 @@ void update(Eigen::MatrixXd& jacobian, const Point& from, const Point& to) {
 }
 
 }  // namespace
+
+double stepOf(const FitProblem& problem, const Eigen::VectorXd& z, Eigen::Index coordinate) {
+  for (const double side : {1.0, -1.0})
+    if (const double step = problem.clamped(movedBy(z, coordinate, side * wide))[coordinate] - z[coordinate]; step != 0) return step;
+  return 0;
+}
 
 Eigen::MatrixXd derivatives(const Comparison& comparison, const FitProblem& problem, const Eigen::VectorXd& z) {
   const Point at = evaluate(comparison, problem, z);

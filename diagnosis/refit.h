@@ -28,6 +28,9 @@ struct FitResult {
 /// where it does on neither.
 Eigen::MatrixXd derivatives(const Comparison& comparison, const FitProblem& problem, const Eigen::VectorXd& z);
 
+/// The step of one coordinate with which derivatives() begins, to the side where there is room; 0 between two bounds.
+double stepOf(const FitProblem& problem, const Eigen::VectorXd& z, Eigen::Index coordinate);
+
 /// Minimises Comparison::logMisfit with Levenberg and Marquardt's method on residuals that are weighted anew in every round (Marquardt
 /// 1963); the response may have kinks, so the differences for derivatives are not small. They are found anew when a step
 /// gains nothing, otherwise carried on by rank-one updates (Broyden 1965), since simulations are what a fit costs.

@@ -12,6 +12,7 @@
 #include "musclesim/diagnosis/diagnosis.h"
 #include "musclesim/effect/catalogue.h"
 #include "musclesim/version.h"
+#include "noise_sigma.h"
 #include "report_figures.h"
 #include "sentences.h"
 
@@ -119,11 +120,11 @@ std::string parameterRows(const FoundEffect& effect) {
 
 /// Where effects act together, what is likely is a set of them.
 std::string togetherWords(const Diagnosis& d) {
-  if (std::ranges::none_of(d.explanations, [](const auto& explanation) { return explanation.effects.size() > 1; })) return "";
+  if (std::ranges::none_of(d.explanations, [](const auto& fitted) { return fitted.effects.size() > 1; })) return "";
   std::vector<std::string> words;
-  for (const ExplanationProbability& explanation : d.explanations)
-    if (!explanation.effects.empty())
-      words.push_back(fmt::format("{} {}", fmt::join(explanation.effects, " + "), probabilityWords(explanation.probability)));
+  for (const ExplanationProbability& fitted : d.explanations)
+    if (!fitted.effects.empty())
+      words.push_back(fmt::format("{} {}", fmt::join(fitted.effects, " + "), probabilityWords(fitted.probability)));
   return fmt::format(" By explanation: {}.", fmt::join(words, ", "));
 }
 
@@ -133,7 +134,7 @@ std::string which(const Diagnosis& d) {
   for (const FoundEffect& effect : d.effects)
     rows += fmt::format("<tr><td>{}</td><td class=number>{}</td><td>{}</td><td class=number>{}</td></tr>\n", breakableCode(effect.label()),
                         probabilityWords(effect.probability), parameterRows(effect),
-                        triedAlone(d, effect) ? percentWords(effect.shrink_percent) : "not tried alone");
+                        triedAlone(d, effect) ? percentWords(effect.reduction_percent) : "not tried alone");
   rows += fmt::format("<tr><td>none of these</td><td class=number>{}</td><td></td><td></td></tr>\n", probabilityWords(d.none_of_these));
   std::string text = heading("Which") + sliding(
                                             "<table><tr><th>effect</th><th class=number>probability</th><th>parameters (95 % interval)</th>"
@@ -158,13 +159,13 @@ bool hasAfter(const Diagnosis& d) {
 
 std::string signalTable(const Diagnosis& d) {
   const auto cell = [](double value) { return fmt::format("<td class=number>{:.3g}</td>", value); };
-  const auto pair = [&](const SignalGap& gap) { return cell(gap.rmse) + fmt::format("<td class=number>{:.2f}</td>", overFloor(gap)); };
+  const auto pair = [&](const SignalGap& gap) { return cell(gap.rmse) + fmt::format("<td class=number>{:.2f}</td>", overNoise(gap)); };
   std::string rows;
   const Gap& gap_after = d.attempt.effects.empty() ? d.after : d.attempt.after;
   for (const auto& [name, before] : d.before.per_signal) {
     const auto found = gap_after.per_signal.find(name);
     const SignalGap& after = hasAfter(d) && found != gap_after.per_signal.end() ? found->second : before;
-    rows += "<tr><td>" + breakableCode(name) + "</td>" + cell(before.noise_floor) + pair(before) + (hasAfter(d) ? pair(after) : "") +
+    rows += "<tr><td>" + breakableCode(name) + "</td>" + cell(before.noise_sigma) + pair(before) + (hasAfter(d) ? pair(after) : "") +
             "<td>" + shapeOfRest(d, name) + "</td></tr>\n";
   }
   const auto heads = [](const std::string& when) {
@@ -175,31 +176,31 @@ std::string signalTable(const Diagnosis& d) {
 }
 
 /// What an explanation gains beside what gains nothing in understanding.
-std::string shrinkFigure(const Diagnosis& d) {
+std::string reductionFigure(const Diagnosis& d) {
   std::vector<Bar> all;
   auto add = [&](const std::string& label, double left_percent, bool strong) {
     all.push_back({label, left_percent, leftWords(left_percent), strong});
   };
   add("gap before", 100, false);
-  add("after re-tuning the model (nominal refit)", 100 - d.nominal_refit_shrink_percent, false);
-  add("after a sham disturbance", 100 - d.sham_shrink_percent, false);
+  add("after re-tuning the model (nominal refit)", 100 - d.nominal_refit_percent, false);
+  add("after a sham disturbance", 100 - d.negative_control_percent, false);
   if (d.attempt.effects.empty())
     add("after adding what was found", d.unexplained_percent, true);
   else
-    add("after adding what comes nearest", 100 - d.attempt.shrink_percent, true);
-  return barsFigure("What is left of the gap", all, std::max({100.0, 100 - d.nominal_refit_shrink_percent, 100 - d.sham_shrink_percent})) +
+    add("after adding what comes nearest", 100 - d.attempt.reduction_percent, true);
+  return barsFigure("What is left of the gap", all, std::max({100.0, 100 - d.nominal_refit_percent, 100 - d.negative_control_percent})) +
          small(fmt::format("The nominal refit re-tunes numbers of the model without any effect ({}); the sham is a disturbance without "
                            "physical meaning with as many parameters.",
                            fmt::join(d.refitted, ", ")));
 }
 
-std::string regimeFigure(const Diagnosis& d) {
+std::string phaseFigure(const Diagnosis& d) {
   std::vector<Bar> all;
   double full = 1;
-  for (const RegimeGap& regime : d.regimes) {
-    full = std::max({full, regime.before, regime.after});
-    all.push_back({"while " + regime.regime + (hasAfter(d) ? ", before" : ""), regime.before, fmt::format("{:.3g}", regime.before), false});
-    if (hasAfter(d) && regime.after > 0) all.push_back({"after", regime.after, fmt::format("{:.3g}", regime.after), true});
+  for (const PhaseGap& phase : d.phases) {
+    full = std::max({full, phase.before, phase.after});
+    all.push_back({"while " + phase.phase + (hasAfter(d) ? ", before" : ""), phase.before, fmt::format("{:.3g}", phase.before), false});
+    if (hasAfter(d) && phase.after > 0) all.push_back({"after", phase.after, fmt::format("{:.3g}", phase.after), true});
   }
   if (all.empty()) return "";
   return lead(
@@ -233,7 +234,7 @@ std::vector<const Trace*> tracesByGap(const Diagnosis& d) {
   for (const Trace& trace : d.traces) traces.push_back(&trace);
   std::ranges::stable_sort(traces, std::greater{}, [&](const Trace* trace) {
     const auto gap = d.before.per_signal.find(trace->signal);
-    return gap == d.before.per_signal.end() ? 0 : overFloor(gap->second);
+    return gap == d.before.per_signal.end() ? 0 : overNoise(gap->second);
   });
   return traces;
 }
@@ -245,21 +246,23 @@ std::string howFar(const Diagnosis& d) {
                              : fmt::format("Looked at: all {} recordings; what follows is of {}.", d.recordings.size(),
                                            std::filesystem::path(d.recordings.back()).filename().string()));
   if (!d.chosen.empty())
-    text += shrinkFigure(d) + paragraph(fmt::format("Normalised gap (0 is the noise floor) before {:.3g}, after {:.3g}: {} removed. {}",
-                                                    d.before.normalised, d.after.normalised, percentWords(d.shrink_percent),
-                                                    elsewhereSentence({d.shrink_percent, d.shrink_low_percent, d.shrink_high_percent})));
+    text += reductionFigure(d) +
+            paragraph(fmt::format("Normalised gap (0 is the noise floor) before {:.3g}, after {:.3g}: {} removed. {}", d.before.normalised,
+                                  d.after.normalised, percentWords(d.reduction_percent),
+                                  elsewhereSentence({d.reduction_percent, d.reduction_low_percent, d.reduction_high_percent})));
   if (!d.attempt.effects.empty())
-    text += shrinkFigure(d) +
+    text += reductionFigure(d) +
             paragraph(fmt::format(
                 "Nothing was found that deserves belief. What comes nearest: {}. Normalised gap (0 is the noise floor) before {:.3g}, with "
                 "it {:.3g}: {} removed. {} \"After\" below means: with this.",
-                attemptWords(d.attempt), d.before.normalised, d.attempt.after.normalised, percentWords(d.attempt.shrink_percent),
-                elsewhereSentence({d.attempt.shrink_percent, d.attempt.shrink_low_percent, d.attempt.shrink_high_percent})));
-  text += regimeFigure(d) + signalTable(d);
+                attemptWords(d.attempt), d.before.normalised, d.attempt.after.normalised, percentWords(d.attempt.reduction_percent),
+                elsewhereSentence({d.attempt.reduction_percent, d.attempt.reduction_low_percent, d.attempt.reduction_high_percent})));
+  text += phaseFigure(d) + signalTable(d);
   if (!searched)
     text += paragraph(
-        "A signal agrees up to 1.15 times its floor, 1.3 times where the floor was estimated from quiet rows. What is smaller "
-        "stays unseen, and so does what these commands did not bring out: no effect was fitted.");
+        fmt::format("A signal agrees up to {} times its noise floor, {} times where the floor was estimated from quiet rows. A smaller "
+                    "difference is not seen, nor is an effect that these commands do not excite: no effect was fitted.",
+                    out_of_noise, out_of_estimated_noise));
   if (!d.traces.empty())
     text +=
         "<p class=screen>Drag over a plot to zoom all of them in time; double click, or <button type=button id=whole>show "
@@ -289,24 +292,25 @@ std::string tuned(const Diagnosis& d) {
 }
 
 /// What each effect alone could remove by the first look: the strongest, and what was chosen wherever it stood.
-std::string looks(const Diagnosis& d) {
+std::string screenings(const Diagnosis& d) {
   constexpr std::size_t shown = 12;
-  std::vector<std::pair<FirstLook, std::size_t>> places;  // the best variant of each label, with its rank
-  for (const FirstLook& look : d.looks)
-    if (std::ranges::none_of(places, [&](const auto& place) { return place.first.effect == look.effect; }))
-      places.emplace_back(look, places.size() + 1);
+  std::vector<std::pair<Screening, std::size_t>> places;  // the best variant of each label, with its rank
+  for (const Screening& screening : d.screenings)
+    if (std::ranges::none_of(places, [&](const auto& place) { return place.first.effect == screening.effect; }))
+      places.emplace_back(screening, places.size() + 1);
   if (places.empty()) return "";
   std::vector<Bar> all;
   bool some_not_fitted = false;
   for (const auto& place : places) {
-    const FirstLook& look = place.first;
+    const Screening& screening = place.first;
     const std::size_t rank = place.second;
-    const bool chosen = std::ranges::find(d.chosen, look.effect) != d.chosen.end();
+    const bool chosen = std::ranges::find(d.chosen, screening.effect) != d.chosen.end();
     if (rank > shown && !chosen) continue;
     const bool fitted = std::ranges::any_of(
-        d.trials, [&](const Trial& trial) { return std::ranges::find(trial.effects, look.effect) != trial.effects.end(); });
+        d.trials, [&](const Trial& trial) { return std::ranges::find(trial.effects, screening.effect) != trial.effects.end(); });
     some_not_fitted |= !fitted;
-    all.push_back({fmt::format("{}. {}", rank, look.effect), look.removed, fmt::format("{:.0f} %", 100 * look.removed), fitted});
+    all.push_back(
+        {fmt::format("{}. {}", rank, screening.effect), screening.removed, fmt::format("{:.0f} %", 100 * screening.removed), fitted});
   }
   const std::string which = places.size() <= shown ? "" : fmt::format("; these are the first {} and what was chosen", shown);
   return lead(fmt::format("{} looked at{}. How much of the logarithm of the gap each would remove if its response "
@@ -357,7 +361,7 @@ std::string whatElse(const Diagnosis& d) {
   text += heading("How it was computed") +
           paragraph(fmt::format("musclesim {}; robot {}; recordings {}; {} simulations of {:.0f} s in all, {:.0f} s on the clock.",
                                 MUSCLESIM_VERSION, d.robot, fmt::join(d.recordings, ", "), d.simulation_count, d.simulated_s, d.wall_s));
-  text += looks(d);
+  text += screenings(d);
   if (d.notes.empty()) return text;
   text += "<p>Notes:</p><ul>\n";
   for (const std::string& note : d.notes) text += "<li>" + escapedXml(note) + "</li>\n";

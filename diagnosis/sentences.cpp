@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "musclesim/effect/catalogue.h"
+#include "noise_sigma.h"
 #include "residual_shape.h"
 
 namespace musclesim {
@@ -15,7 +16,6 @@ namespace musclesim {
 namespace {
 
 constexpr double stands_out = 2;      ///< floors
-constexpr double no_gap = 1.15;       ///< floors up to which there is none
 constexpr double nearly_all = 99.95;  ///< percent; what is above must not read as 100.0
 
 /// "a = 1.0 (0.9 to 1.1), b = 2 (1 to 3)", without what the data left out.
@@ -71,11 +71,12 @@ std::string probabilityWords(double probability) {
   return probability < 1 - nearly_certain ? "under 1 %" : fmt::format("{:.0f} %", 100 * probability);
 }
 
-std::string elsewhereSentence(const Estimate& shrink_percent) {
-  if (shrink_percent.low > nearly_all) return "On another recording of this plant as much is expected.";
+std::string elsewhereSentence(const Estimate& reduction_percent) {
+  if (reduction_percent.low > nearly_all) return "On another recording of this plant as much is expected.";
   // An interval that reaches below 0 tells of the recordings, not of the effect.
-  if (shrink_percent.low < 0) return "The recordings are too few or differ too much to say how much it would be on another one.";
-  return fmt::format("On another recording of this plant {:.1f} to {:.1f} % are expected (95 %).", shrink_percent.low, shrink_percent.high);
+  if (reduction_percent.low < 0) return "The recordings are too few or differ too much to say how much it would be on another one.";
+  return fmt::format("On another recording of this plant {:.1f} to {:.1f} % are expected (95 %).", reduction_percent.low,
+                     reduction_percent.high);
 }
 
 std::string componentWords(const std::string& component) {
@@ -85,16 +86,16 @@ std::string componentWords(const std::string& component) {
   return words;
 }
 
-double overFloor(const SignalGap& gap) {
-  return gap.noise_floor > 0 ? gap.rmse / gap.noise_floor : 0;
+double overNoise(const SignalGap& gap) {
+  return gap.noise_sigma > 0 ? gap.rmse / gap.noise_sigma : 0;
 }
 
 std::string shapeOfRest(const Diagnosis& d, const std::string& signal) {
   const Gap& rest = d.attempt.effects.empty() ? d.after : d.attempt.after;
   const auto gap = rest.per_signal.find(signal);
   const auto trace = std::ranges::find(d.traces, signal, &Trace::signal);
-  if (gap == rest.per_signal.end() || trace == d.traces.end() || overFloor(gap->second) < stands_out) return "";
-  return wordsFor(lookOf(trace->time_s, trace->measured, trace->after.empty() ? trace->before : trace->after));
+  if (gap == rest.per_signal.end() || trace == d.traces.end() || overNoise(gap->second) < stands_out) return "";
+  return wordsFor(describeResidual(trace->time_s, trace->measured, trace->after.empty() ? trace->before : trace->after));
 }
 
 bool isTold(const std::vector<Place>& where) {
@@ -133,42 +134,42 @@ bool mayBeAt(const std::vector<Place>& where, const std::string& stage) {
 namespace {
 
 /// ", mostly while venting" where the data held back, of which the page shows bars, say so as well.
-std::string regimeWords(const Diagnosis& d) {
-  const std::string& regime = d.where.front().regime;
-  const auto largest = std::ranges::max_element(d.regimes, {}, &RegimeGap::before);
-  if (regime.empty() || (largest != d.regimes.end() && largest->regime != regime)) return "";
-  return ", mostly while " + regime;
+std::string phaseWords(const Diagnosis& d) {
+  const std::string& phase = d.where.front().phase;
+  const auto largest = std::ranges::max_element(d.phases, {}, &PhaseGap::before);
+  if (phase.empty() || (largest != d.phases.end() && largest->phase != phase)) return "";
+  return ", mostly while " + phase;
 }
 
 }  // namespace
 
 std::string whereSentence(const Diagnosis& d) {
   const Place& place = d.where.front();
-  const std::string regime = regimeWords(d), component = componentWords(place.component);
+  const std::string phase = phaseWords(d), component = componentWords(place.component);
   const double percent = 100 * place.share;
   if (!isTold(d.where) && d.where.size() > 1) {
     const Place& next = d.where[1];
     return fmt::format("These signals do not tell at which stage the gap arises: {} ({}, {:.0f} %) or {} ({}, {:.0f} %) come nearest{}",
-                       place.stage, component, percent, next.stage, componentWords(next.component), 100 * next.share, regime);
+                       place.stage, component, percent, next.stage, componentWords(next.component), 100 * next.share, phase);
   }
   const std::vector<std::string> others = othersPossible(d.where);
   if (isLocated(d.where) && others.empty())
-    return fmt::format("The gap arises in the {} stage ({}, {} likely){}", place.stage, component, probabilityWords(place.share), regime);
+    return fmt::format("The gap arises in the {} stage ({}, {} likely){}", place.stage, component, probabilityWords(place.share), phase);
   if (isLocated(d.where))
     return fmt::format("The gap arises before the force, in command or pressure ({}; by its shape rather {}, {} likely){}", component,
-                       place.stage, probabilityWords(place.share), regime);
+                       place.stage, probabilityWords(place.share), phase);
   constexpr std::size_t all_others = 4;
   const std::string against = place.is_ruled_out ? ", though what the signals say of each other speaks against it" : "";
   return fmt::format("By its shape the gap is of the {} stage ({}, {:.0f} %){}{}; these signals do not rule out {}", place.stage, component,
-                     percent, regime, against, others.size() == all_others ? "any other" : fmt::format("{}", fmt::join(others, " or ")));
+                     percent, phase, against, others.size() == all_others ? "any other" : fmt::format("{}", fmt::join(others, " or ")));
 }
 
 namespace {
 
 /// " (94.0 to 97.5)", where the recordings tell how much is to be expected elsewhere.
 std::string intervalWords(const Diagnosis& d) {
-  if (d.shrink_low_percent > nearly_all || d.shrink_low_percent < 0) return "";
-  return fmt::format(" ({:.1f} to {:.1f})", d.shrink_low_percent, d.shrink_high_percent);
+  if (d.reduction_low_percent > nearly_all || d.reduction_low_percent < 0) return "";
+  return fmt::format(" ({:.1f} to {:.1f})", d.reduction_low_percent, d.reduction_high_percent);
 }
 
 constexpr double likely = 0.5;  ///< probability from which a candidate must have failed on data held back
@@ -204,12 +205,12 @@ std::string chosenWords(const Diagnosis& d) {
 
 /// What no explanation should hide: a rest that stands far out of the noise. RMS / floor = sqrt(1 + normalised gap).
 std::string remainder(const Gap& after) {
-  const double over_floor = std::sqrt(1 + after.normalised);
-  if (over_floor < stands_out) return "";
-  const auto most = std::ranges::max_element(after.per_signal, {}, [](const auto& entry) { return overFloor(entry.second); });
+  const double over_noise = std::sqrt(1 + after.normalised);
+  if (over_noise < stands_out) return "";
+  const auto most = std::ranges::max_element(after.per_signal, {}, [](const auto& entry) { return overNoise(entry.second); });
   const std::string where =
-      most == after.per_signal.end() ? "" : fmt::format(" ({:.1f} times in {})", overFloor(most->second), most->first);
-  return fmt::format("What is left is still {:.1f} times the noise{}: something else acts too, or acts by another law.", over_floor, where);
+      most == after.per_signal.end() ? "" : fmt::format(" ({:.1f} times in {})", overNoise(most->second), most->first);
+  return fmt::format("What is left is still {:.1f} times the noise{}: something else acts too, or acts by another law.", over_noise, where);
 }
 
 /// "valve lag on muscle 1 together with payload on hand" of "valve_lag@muscle_1 + payload@hand".
@@ -259,7 +260,7 @@ std::string unsteadyWords(const Unsteady& unsteady) {
       "Under these commands the model does not repeat itself: internal steps twice as long move {} by {:.0f} times the noise, {:.0f} % of "
       "the "
       "gap, as after impacts on stops. Such motions hardly tell causes apart; record gentler ones.",
-      unsteady.signal, unsteady.in_floors, 100 * unsteady.share_of_gap);
+      unsteady.signal, unsteady.in_sigmas, 100 * unsteady.share_of_gap);
 }
 
 /// Where that the catalogue holds the cause is not taken for granted.
@@ -286,9 +287,9 @@ std::string notConfirmed(const Diagnosis& d) {
       ": the best candidate, {}, fits the data that it was fitted to ({} likely without that), but on data held back it removes {} of the "
       "gap",
       labelWords(first.label()), probabilityWords(first.probability),
-      first.shrink_percent > 0 ? percentWords(first.shrink_percent) : "nothing");
-  if (d.nominal_refit_shrink_percent > 0)
-    text += fmt::format("; re-tuning the model without any effect removes {}", percentWords(d.nominal_refit_shrink_percent));
+      first.reduction_percent > 0 ? percentWords(first.reduction_percent) : "nothing");
+  if (d.nominal_refit_percent > 0)
+    text += fmt::format("; re-tuning the model without any effect removes {}", percentWords(d.nominal_refit_percent));
   return text;
 }
 
@@ -301,8 +302,8 @@ std::string shape(const Diagnosis& d) {
   std::string words;
   double most = 0;
   for (const auto& [signal, gap] : d.before.per_signal)
-    if (const std::string shape = shapeOfRest(d, signal); !shape.empty() && overFloor(gap) > most) {
-      most = overFloor(gap);
+    if (const std::string shape = shapeOfRest(d, signal); !shape.empty() && overNoise(gap) > most) {
+      most = overNoise(gap);
       words = fmt::format("In {} it is {}.", signal, shape);
     }
   return words;
@@ -310,7 +311,7 @@ std::string shape(const Diagnosis& d) {
 
 std::vector<std::string> unexplainedSentences(const Diagnosis& d) {
   if (d.partial) return {"There is a gap; the search for its cause was interrupted."};
-  const bool is_small = std::ranges::all_of(d.before.per_signal, [](const auto& entry) { return overFloor(entry.second) < no_gap; });
+  const bool is_small = std::ranges::all_of(d.before.per_signal, [](const auto& entry) { return overNoise(entry.second) < out_of_noise; });
   if (is_small && !d.before.per_signal.empty()) {
     std::vector<std::string> sentences = {
         "I cannot tell: there is a gap in the recordings that were fitted, but none in the data held back, so no cause can be confirmed "
@@ -325,7 +326,7 @@ std::vector<std::string> unexplainedSentences(const Diagnosis& d) {
   sentences.push_back(fmt::format(
       "What comes nearest, {}, removes {} of the gap on data that neither fitting nor choosing had seen; attempt.json holds it, to build "
       "on, not to believe.",
-      listWords(d.attempt.effects), percentWords(d.attempt.shrink_percent)));
+      listWords(d.attempt.effects), percentWords(d.attempt.reduction_percent)));
   sentences.push_back(remainder(d.attempt.after));
   return sentences;
 }
@@ -336,7 +337,7 @@ std::vector<std::string> foundSentences(const Diagnosis& d) {
           fmt::format("The best explanation ({} likely) is {}; adding {} removes {}{} of the gap on data that neither fitting nor choosing "
                       "had seen.",
                       probabilityWords(best == d.explanations.end() ? 0 : best->probability), chosenWords(d),
-                      d.chosen.size() > 1 ? "them" : "it", percentWords(d.shrink_percent), intervalWords(d)),
+                      d.chosen.size() > 1 ? "them" : "it", percentWords(d.reduction_percent), intervalWords(d)),
           remainder(d.after), noneWords(d), otherwise(d)};
 }
 

@@ -31,14 +31,14 @@ bool isLeftOut(const Estimate& estimate);
 /// "mostly a ripple of 4.6 Hz": what a signal's residual looks like on the data held back, where it stands out; empty otherwise.
 std::string shapeOfRest(const Diagnosis& diagnosis, const std::string& signal);
 /// RMS residual over the noise floor; 0 without a floor.
-double overFloor(const SignalGap& gap);
+double overNoise(const SignalGap& gap);
 
 /// "1 number", "2 numbers".
 std::string counted(std::size_t count, const std::string& one, const std::string& several = "");
 /// "96.2 %"; "more than 99.9 %" rather than 100 % of what is nearly all.
 std::string percentWords(double percent);
 /// "On another recording of this plant 94.0 to 97.5 % are expected (95 %)."
-std::string elsewhereSentence(const Estimate& shrink_percent);
+std::string elsewhereSentence(const Estimate& reduction_percent);
 /// "3.8 %"; "less than 0.1 %" of what is nearly nothing.
 std::string leftWords(double percent);
 /// "93 %"; "over 99 %": nothing is certain.

@@ -14,7 +14,7 @@ inline constexpr double agrees = 1.2;     ///< RMS over floor up to which someth
 inline constexpr double disagrees = 1.5;  ///< from which on it counts as not
 
 /// Number of a compared signal; -1 if it is not compared.
-int signalNumber(const Plant& plant, const std::string& name);
+int signalIndex(const Plant& plant, const std::string& name);
 
 /// RMS over floor of all cells of signals whose name begins with a word; nothing if there are none.
 std::optional<double> ratioOf(const Comparison& comparison, const Eigen::VectorXd& residual, const std::string& beginning);

@@ -16,7 +16,7 @@ constexpr double thousand_low = 300, thousand_high = 3000;
 void requireUnits(const Plant& plant, int recording, const Prediction& prediction) {
   for (std::size_t i = 0; i < plant.signals().size(); ++i) {
     const double measured = medianSize(plant.measured(recording, static_cast<int>(i))), predicted = medianSize(prediction.values[i]);
-    if (measured <= 0 || predicted <= plant.signals()[i].floor.value) continue;
+    if (measured <= 0 || predicted <= plant.signals()[i].sigma.value) continue;
     const double ratio = measured / predicted;
     for (const double factor : {ratio, 1 / ratio})
       if (factor > thousand_low && factor < thousand_high)

@@ -88,11 +88,11 @@ json experimented(const Answered& one, const FollowUpOptions& options) {
   return diagnosed(std::move(recordings), oneThread(options));
 }
 
-double meanSquareOverFloor(const Recording& measured, const Recording& simulated, const json& floors) {
+double meanSquareOverNoise(const Recording& measured, const Recording& simulated, const json& sigmas) {
   double sum = 0;
   for (const SignalError& error : compareSignals(measured, simulated)) {
-    const double floor = floors.value(error.name, 0.0);
-    if (floor > 0) sum += std::max(0.0, error.rmse * error.rmse / (floor * floor) - 1);
+    const double sigma = sigmas.value(error.name, 0.0);
+    if (sigma > 0) sum += std::max(0.0, error.rmse * error.rmse / (sigma * sigma) - 1);
   }
   return sum;
 }
@@ -106,13 +106,13 @@ Recording backwards(const Recording& recording) {
 }
 
 /// On a motion that the diagnosis has not seen, of the same kind as what was held out.
-json freshShrink(const Answered& one, const fs::path& effects_file) {
+json freshReduction(const Answered& one, const fs::path& effects_file) {
   const Recording measured = measuredUnder(backwards(one.recordings.back()), one, "fresh.csv", 2);
   ReplayOptions with;
   with.effects = readEffects(effects_file.string());
   const ReplayResult without = replayRecording(measured), added = replayRecording(measured, with);
-  const double before = meanSquareOverFloor(measured, without.simulated, one.key.at("noise_std")),
-               after = meanSquareOverFloor(measured, added.simulated, one.key.at("noise_std"));
+  const double before = meanSquareOverNoise(measured, without.simulated, one.key.at("noise_std")),
+               after = meanSquareOverNoise(measured, added.simulated, one.key.at("noise_std"));
   if (before <= 0) return nullptr;
   const json& gap = one.answer.at("gap");
   return {{"shrink_percent", 100 * (1 - after / before)},
@@ -131,7 +131,7 @@ std::optional<json> followed(const Answered& one, const fs::path& folder, const 
   };
   if (kind == "single" || kind == "double") put("left_out", leftOut(one, options));
   if (isAmbiguous(judge(one.name, one.key, one.answer))) put("experiment", experimented(one, options));
-  if (one.answer.value("verdict", "") == "effects_found") put("fresh", freshShrink(one, effectsOf(folder, one.name)));
+  if (one.answer.value("verdict", "") == "effects_found") put("fresh", freshReduction(one, effectsOf(folder, one.name)));
   if (options.interrupted()) return std::nullopt;
   return result;
 }

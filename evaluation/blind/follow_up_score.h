@@ -12,10 +12,10 @@
 namespace musclesim::blind {
 
 /// Shrink by an answer's effects on a recording of the same plant that was not there, and what the answer promised.
-struct FreshShrink {
-  double shrink_percent = 0, reported_percent = 0, low_percent = 0, high_percent = 0;
+struct FreshReduction {
+  double reduction_percent = 0, reported_percent = 0, low_percent = 0, high_percent = 0;
   bool diverged = false;  ///< the model with the effects did
-  bool isWithin() const { return !diverged && shrink_percent >= low_percent && shrink_percent <= high_percent; }
+  bool isWithin() const { return !diverged && reduction_percent >= low_percent && reduction_percent <= high_percent; }
   double width() const { return high_percent - low_percent; }
 };
 
@@ -24,7 +24,7 @@ struct FollowUp {
   Judgement answer;
   std::optional<Judgement> left_out;    ///< without the true effects among the candidates
   std::optional<Judgement> experiment;  ///< with the proposed schedule recorded; failed where none was proposed
-  std::optional<FreshShrink> fresh;
+  std::optional<FreshReduction> fresh;
 };
 
 /// What the answer turns to without the true effect, the first that applies.

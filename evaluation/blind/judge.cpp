@@ -14,7 +14,7 @@ namespace {
 /// A candidate of an answer.
 struct Answer {
   std::string label;
-  double probability = 0, shrink_percent = 0;
+  double probability = 0, reduction_percent = 0;
 };
 
 std::vector<Answer> candidatesOf(const json& answer) {
@@ -66,16 +66,16 @@ void judgeRanking(Judgement& j, const std::vector<Answer>& candidates, const Pat
   j.probability_of_acceptable = probabilityOf(candidates, accepted);
 }
 
-void judgeShrink(Judgement& j, const json& answer, const std::vector<Answer>& candidates, const std::vector<std::string>& truth) {
+void judgeReduction(Judgement& j, const json& answer, const std::vector<Answer>& candidates, const std::vector<std::string>& truth) {
   const json gap = answer.value("gap", json::object());
-  j.shrink_percent = gap.value("shrink_percent", 0.0);
+  j.reduction_percent = gap.value("shrink_percent", 0.0);
   j.nominal_refit_percent = gap.value("nominal_refit_shrink_percent", 0.0);
   if (j.kind != "single") return;
   constexpr double everything_percent = 100;
   const auto listed = std::ranges::find_if(
-      candidates, [&](const Answer& candidate) { return fitsAny(candidate.label, truth) && candidate.shrink_percent > 0; });
+      candidates, [&](const Answer& candidate) { return fitsAny(candidate.label, truth) && candidate.reduction_percent > 0; });
   j.oracle_listed = listed != candidates.end();
-  j.oracle_share = *j.shrink_percent / (j.oracle_listed ? listed->shrink_percent : everything_percent);
+  j.oracle_share = *j.reduction_percent / (j.oracle_listed ? listed->reduction_percent : everything_percent);
 }
 
 /// Of the explanations that hold all of them.
@@ -120,7 +120,7 @@ void judgeFound(Judgement& j, const json& key, const json& answer, const std::ve
   const auto acceptable = key.at("acceptable").get<Patterns>();
   const Patterns truths = truthsOf(j.true_ids, acceptable);
   judgeRanking(j, candidates, acceptable, flat(truths));
-  judgeShrink(j, answer, candidates, flat(truths));
+  judgeReduction(j, answer, candidates, flat(truths));
   judgeSets(j, answer, acceptable, truths);
   j.claim = claimOf(j, *j.acceptable);
 }

@@ -35,8 +35,8 @@ struct Judgement {
   std::optional<bool> false_alarm;             ///< null: a gap was seen
   std::optional<double> probability_of_truth;  ///< of doubles that of explanations that hold both
   std::optional<double> probability_of_acceptable, set_size;
-  std::optional<double> shrink_percent, nominal_refit_percent;  ///< single and double
-  std::optional<double> oracle_share;                           ///< single: shrink over that of the true effect's best fit
+  std::optional<double> reduction_percent, nominal_refit_percent;  ///< single and double
+  std::optional<double> oracle_share;                              ///< single: shrink over that of the true effect's best fit
   bool oracle_listed = false;  ///< that fit is in the answer; otherwise the true effect is taken to remove everything
   std::optional<Claim> claim;  ///< the likeliest of the first effect, none of these and no gap; of doubles right for either cause
   double seconds = 0;

@@ -179,14 +179,14 @@ json keyOf(const Plan& plan, const std::vector<Cause>& causes, const Robot& robo
 }
 
 /// A plan and its plant.
-struct Plant {
+struct DrawnPlant {
   Plan plan;
   Truth truth;
 };
 
 /// Drawn anew while a finer step alone makes more than half the noise: what remains of that is not the cause's.
-Plant drawPlant(const std::string& name, const std::string& robot_name, const Robot& robot, const MakeOptions& options,
-                RandomStream& random) {
+DrawnPlant drawPlant(const std::string& name, const std::string& robot_name, const Robot& robot, const MakeOptions& options,
+                     RandomStream& random) {
   constexpr double most_over_noise = 0.5;
   constexpr int most_draws = 20;
   for (int draw = 0; draw < most_draws; ++draw) {

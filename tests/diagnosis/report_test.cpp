@@ -17,7 +17,7 @@ Diagnosis answer(Verdict verdict) {
   d.after = d.before;
   d.where = {{"pressure", "muscle_0", "", 0.6}, {"command", "muscle_0", "", 0.4}, {"force", "all", "", 0, true}};
   d.traces = {{"fast.csv", "length_0_mm", {0, 1}, {1, 2}, {1, 3}, {}}, {"fast.csv", "pressure_0", {0, 1}, {0, 1}, {0, 0}, {}}};
-  d.looks = {{"leak@muscle_0", 0.5}, {"leak@muscle_0", 0.4}};
+  d.screenings = {{"leak@muscle_0", 0.5}, {"leak@muscle_0", 0.4}};
   return d;
 }
 
@@ -100,8 +100,8 @@ TEST(Report, ListsEveryLookOnceAndWhatWasChosen) {
   Diagnosis d = answer(Verdict::effects_found);
   d.effects = {{"creep", "muscle_0", 0.9, {}, 84}};
   d.chosen = {"creep@muscle_0"};
-  for (int muscle = 1; muscle < 20; ++muscle) d.looks.push_back({"leak@muscle_" + std::to_string(muscle), 0.3});
-  d.looks.push_back({"creep@muscle_0", 0.1});
+  for (int muscle = 1; muscle < 20; ++muscle) d.screenings.push_back({"leak@muscle_" + std::to_string(muscle), 0.3});
+  d.screenings.push_back({"creep@muscle_0", 0.1});
   const std::string page = diagnosisReport(d);
   EXPECT_TRUE(contains(page, "1. leak@muscle_0"));
   EXPECT_FALSE(contains(page, "2. leak@muscle_0"));

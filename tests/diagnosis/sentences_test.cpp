@@ -30,9 +30,9 @@ Diagnosis lagFound() {
   d.chosen = {"valve_lag@muscle_1"};
   d.explanations = {{d.chosen, 0.931}};
   d.ambiguity_set = d.alternatives = {"valve_lag@muscle_1", "flow_limit@muscle_1"};
-  d.shrink_percent = 96.2;
-  d.shrink_low_percent = 94;
-  d.shrink_high_percent = 97.5;
+  d.reduction_percent = 96.2;
+  d.reduction_low_percent = 94;
+  d.reduction_high_percent = 97.5;
   return d;
 }
 
@@ -93,9 +93,9 @@ TEST(VerdictSentence, TellsWhatSignalsShowFromWhatTheGapLooksLike) {
 
 TEST(VerdictSentence, NamesARegimeOnlyWhereTheDataHeldBackSaySoToo) {
   Diagnosis d = lagFound();
-  d.regimes = {{"filling", 5, 1}, {"venting", 9, 1}};
+  d.phases = {{"filling", 5, 1}, {"venting", 9, 1}};
   EXPECT_TRUE(contains(whereSentence(d), "mostly while venting"));
-  d.regimes[0].before = 10;
+  d.phases[0].before = 10;
   EXPECT_FALSE(contains(whereSentence(d), "mostly while"));
 }
 
@@ -112,9 +112,9 @@ TEST(Words, AnEstimateHasTheDecimalsThatItsIntervalBears) {
 TEST(VerdictSentence, LeavesOutWhatSaysNothing) {
   Diagnosis d = lagFound();
   d.effects.front().parameters["fill_time_constant_s"] = {};
-  d.shrink_percent = 99.99;
-  d.shrink_low_percent = 99.97;
-  d.shrink_high_percent = 100;
+  d.reduction_percent = 99.99;
+  d.reduction_low_percent = 99.97;
+  d.reduction_high_percent = 100;
   const std::string text = verdictSentence(d);
   EXPECT_FALSE(contains(text, "fill_time_constant_s")) << text;
   EXPECT_TRUE(contains(text, "more than 99.9 % of the gap")) << text;
@@ -125,7 +125,7 @@ TEST(VerdictSentence, LeavesOutWhatSaysNothing) {
 
 TEST(VerdictSentence, GivesNoIntervalThatTellsNothing) {
   Diagnosis d = lagFound();
-  d.shrink_low_percent = -1093;
+  d.reduction_low_percent = -1093;
   EXPECT_FALSE(contains(verdictSentence(d), "-1093"));
   EXPECT_TRUE(contains(verdictSentence(d), "removes 96.2 % of the gap"));
   EXPECT_EQ(elsewhereSentence({96.2, -1093, 100}),
@@ -237,10 +237,10 @@ TEST(VerdictSentence, AdmitsWhatItCannotTell) {
   d.effects.front().probability = 0.21;
   EXPECT_TRUE(contains(verdictSentence(d), "valve lag on muscle 1, has a probability of 21 %"));
   d.effects.front().probability = 0.98;
-  d.effects.front().shrink_percent = -45;
+  d.effects.front().reduction_percent = -45;
   EXPECT_TRUE(contains(verdictSentence(d),
                        "fits the data that it was fitted to (98 % likely without that), but on data held back it removes nothing"));
-  d.nominal_refit_shrink_percent = 71;
+  d.nominal_refit_percent = 71;
   EXPECT_TRUE(contains(verdictSentence(d), "without any effect removes 71.0 %"));
 }
 

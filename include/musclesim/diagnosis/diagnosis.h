@@ -46,7 +46,7 @@ struct Estimate {
 };
 
 struct Place {
-  std::string stage, component, regime;
+  std::string stage, component, phase;
   double share = 0;           ///< of the gap
   bool is_ruled_out = false;  ///< the signals speak against this stage; among the others the share is likeness alone
 };
@@ -55,7 +55,7 @@ struct FoundEffect {
   std::string id, component;
   double probability = 0;
   std::map<std::string, Estimate> parameters;
-  double shrink_percent = 0;                        ///< of the gap on the held-out data, by this effect alone
+  double reduction_percent = 0;                     ///< of the gap on the held-out data, by this effect alone
   std::map<std::string, std::string> choices = {};  ///< parameters that are words: which end of a muscle, which side of a wall
   std::string label() const { return id + "@" + component; }
 };
@@ -66,7 +66,7 @@ struct ExplanationProbability {
 };
 
 struct SignalGap {
-  double rmse = 0, noise_floor = 0;
+  double rmse = 0, noise_sigma = 0;
 };
 
 /// normalised = mean over signals of max(0, RMSE^2 - floor^2) / floor^2, signals and floors pooled over the recordings.
@@ -78,7 +78,7 @@ struct Gap {
 /// A motion that the model itself does not repeat in internal steps twice as long, as after an impact on a stop.
 struct Unsteady {
   std::string signal;                      ///< that this moves most; empty: steady
-  double in_floors = 0, share_of_gap = 0;  ///< RMS over the noise floor, and over that of the gap
+  double in_sigmas = 0, share_of_gap = 0;  ///< RMS over the noise floor, and over that of the gap
 };
 
 struct Experiment {
@@ -92,9 +92,9 @@ struct Experiment {
 };
 
 /// One signal of one recording (or part of one) that explanations are fitted to.
-struct FittedCell {
+struct FittedBlock {
   std::string recording, signal;
-  double floor = 0, rms_before = 0;
+  double sigma = 0, rms_before = 0;
   int averaged_rows = 0;  ///< rows per block of the averaged signal; 0: as recorded
 };
 
@@ -103,19 +103,20 @@ struct Trial {
   std::vector<std::string> effects;
   int parameter_count = 0;
   std::vector<double> rms;
-  std::vector<double> rms_unseen;  ///< the same with every recording predicted from a fit to the others; empty where that was not tried
+  std::vector<double>
+      rms_cross_validated;  ///< the same with every recording predicted from a fit to the others; empty where that was not tried
   std::vector<std::map<std::string, double>> values;  ///< parameters of every effect
 };
 
 /// How much of the log misfit one effect would remove by the first look, of what there is, 0..1.
-struct FirstLook {
+struct Screening {
   std::string effect;
   double removed = 0;
 };
 
 /// RMS residual over the floor, pooled over all signals of the held-out data, while commands rise, fall or rest.
-struct RegimeGap {
-  std::string regime;
+struct PhaseGap {
+  std::string phase;
   double before = 0, after = 0;  ///< after: 0 if nothing was chosen
 };
 
@@ -153,7 +154,7 @@ struct Attempt {
   std::vector<std::string> effects;          ///< "id@component"
   std::vector<ActiveEffect> active_effects;  ///< with the fitted parameters
   Gap after;
-  double shrink_percent = 0, shrink_low_percent = 0, shrink_high_percent = 0;
+  double reduction_percent = 0, reduction_low_percent = 0, reduction_high_percent = 0;
 };
 
 struct Diagnosis {
@@ -171,20 +172,20 @@ struct Diagnosis {
   Gap before, after;
   Attempt attempt;       ///< of the verdict `unexplained`; without effects if there was nothing to try
   std::string held_out;  ///< what the gap was measured on, in words
-  double shrink_percent = 0, shrink_low_percent = 0, shrink_high_percent = 0;
+  double reduction_percent = 0, reduction_low_percent = 0, reduction_high_percent = 0;
   std::vector<std::string> alternatives;  ///< where explanations cannot be told apart: of each, what the others do not hold
   std::string model_options;              ///< of the program, for the robot of the recordings: "--robot rig --set rig.load_kg=2"
   std::vector<std::string> refitted;      ///< numbers of the model that the nominal refit re-tunes
-  double nominal_refit_shrink_percent = 0, sham_shrink_percent = 0, unexplained_percent = 0;
+  double nominal_refit_percent = 0, negative_control_percent = 0, unexplained_percent = 0;
   std::vector<TunedParameter> tuned;     ///< of DiagnosisOptions::tune; before and after are gaps of the model with these
   std::vector<std::string> not_excited;  ///< effects that these recordings could not have shown
   std::vector<std::string> notes;        ///< what the user should know about data and answer
   Unsteady unsteady;
   Experiment next_experiment;
-  std::vector<FirstLook> looks;  ///< best first
-  std::vector<FittedCell> cells;
+  std::vector<Screening> screenings;  ///< best first
+  std::vector<FittedBlock> blocks;
   std::vector<Trial> trials;  ///< best first
-  std::vector<RegimeGap> regimes;
+  std::vector<PhaseGap> phases;
   RobotDrawing drawing;
   std::vector<Trace> traces;
   bool partial = false;

@@ -1,4 +1,4 @@
-#include "screen.h"
+#include "sensitivity.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -21,32 +21,32 @@ constexpr double late = 3;            ///< typical strengths at which delays and
 struct Probe {
   Model model;
   struct Target {
-    std::size_t suspect, strength;
+    std::size_t hypothesis, strength;
     int signal;  ///< the only one that it concerns; -1: all
   };
   std::vector<Target> targets;
 };
 
-int signalOf(const Comparison& comparison, const Suspect& suspect) {
+int signalOf(const Comparison& comparison, const Hypothesis& hypothesis) {
   const auto& signals = comparison.plant().signals();
   for (std::size_t i = 0; i < signals.size(); ++i)
-    if (comparison.plant().isComponentOf(suspect.component(), signals[i].name)) return static_cast<int>(i);
+    if (comparison.plant().isComponentOf(hypothesis.component(), signals[i].name)) return static_cast<int>(i);
   return -1;
 }
 
-std::vector<Probe> probes(const Comparison& comparison, const std::vector<Suspect>& suspects) {
+std::vector<Probe> probes(const Comparison& comparison, const std::vector<Hypothesis>& hypotheses) {
   std::vector<Probe> result;
   std::map<std::pair<std::string, std::size_t>, std::size_t> shared;  // sensor effects by id and strength
-  for (std::size_t s = 0; s < suspects.size(); ++s)
-    for (std::size_t k = 0; k < suspects[s].strengths().size() || (k == 0 && suspects[s].strengths().empty()); ++k) {
-      const Suspect& suspect = suspects[s];
-      Eigen::VectorXd z = Eigen::VectorXd::Zero(suspect.coordinateCount());
-      if (!suspect.strengths().empty()) z[suspect.strengths()[k]] = 1;
-      const ActiveEffect effect = suspect.at(z);
-      const bool sensor = suspect.info().stage == Stage::sensor && suspect.component() != "all";
-      const int signal = sensor ? signalOf(comparison, suspect) : -1;
+  for (std::size_t s = 0; s < hypotheses.size(); ++s)
+    for (std::size_t k = 0; k < hypotheses[s].strengths().size() || (k == 0 && hypotheses[s].strengths().empty()); ++k) {
+      const Hypothesis& hypothesis = hypotheses[s];
+      Eigen::VectorXd z = Eigen::VectorXd::Zero(hypothesis.coordinateCount());
+      if (!hypothesis.strengths().empty()) z[hypothesis.strengths()[k]] = 1;
+      const ActiveEffect effect = hypothesis.at(z);
+      const bool sensor = hypothesis.info().stage == Stage::sensor && hypothesis.component() != "all";
+      const int signal = sensor ? signalOf(comparison, hypothesis) : -1;
       std::size_t index = result.size();
-      if (sensor) index = shared.try_emplace({suspect.info().id, k}, index).first->second;
+      if (sensor) index = shared.try_emplace({hypothesis.info().id, k}, index).first->second;
       if (index == result.size()) result.push_back({});
       Probe& probe = result[index];
       probe.model.effects.push_back(effect);
@@ -59,9 +59,9 @@ std::vector<Probe> probes(const Comparison& comparison, const std::vector<Suspec
 Eigen::VectorXd only(const Comparison& comparison, const Eigen::VectorXd& values, int signal) {
   if (signal < 0) return values;
   Eigen::VectorXd result = Eigen::VectorXd::Zero(values.size());
-  for (const Comparison::Cell& cell : comparison.cells())
-    if (cell.signal == signal) {
-      result.segment(cell.first, cell.count()) = values.segment(cell.first, cell.count());
+  for (const Comparison::Block& block : comparison.blocks())
+    if (block.signal == signal) {
+      result.segment(block.first, block.count()) = values.segment(block.first, block.count());
     }
   return result;
 }
@@ -79,27 +79,27 @@ Eigen::VectorXd boundedSolution(const Eigen::MatrixXd& normal, const Eigen::Vect
 
 }  // namespace
 
-double excitationOf(const Comparison& comparison, const std::vector<Eigen::VectorXd>& changes) {
+double excitationRatio(const Comparison& comparison, const std::vector<Eigen::VectorXd>& changes) {
   double largest = 0;
   for (const Eigen::VectorXd& change : changes)
     if (change.size())
-      for (const Comparison::Cell& cell : comparison.cells())
-        if (cell.block == 0) largest = std::max(largest, std::sqrt(comparison.meanSquare(cell, change)) / cell.floor);
+      for (const Comparison::Block& block : comparison.blocks())
+        if (block.averaged_rows == 0) largest = std::max(largest, std::sqrt(comparison.meanSquare(block, change)) / block.sigma);
   return largest;
 }
 
-void explain(const Comparison& comparison, const Suspect& suspect, const Eigen::VectorXd& residual, Signature& signature) {
-  const auto count = static_cast<Eigen::Index>(signature.per_strength.size());
-  signature.amount = Eigen::VectorXd::Zero(count);
-  signature.log_misfit = comparison.logMisfit(residual);
+void fitLinearly(const Comparison& comparison, const Hypothesis& hypothesis, const Eigen::VectorXd& residual, Sensitivity& sensitivity) {
+  const auto count = static_cast<Eigen::Index>(sensitivity.per_strength.size());
+  sensitivity.amount = Eigen::VectorXd::Zero(count);
+  sensitivity.log_misfit = comparison.logMisfit(residual);
   Eigen::MatrixXd columns(residual.size(), count);
   for (Eigen::Index i = 0; i < count; ++i) {
-    if (!signature.per_strength[static_cast<std::size_t>(i)].size()) return;
-    columns.col(i) = signature.per_strength[static_cast<std::size_t>(i)];
+    if (!sensitivity.per_strength[static_cast<std::size_t>(i)].size()) return;
+    columns.col(i) = sensitivity.per_strength[static_cast<std::size_t>(i)];
   }
   Eigen::VectorXd least = Eigen::VectorXd::Zero(count);
-  for (std::size_t k = 0; k < suspect.strengths().size(); ++k)
-    if (suspect.isSigned(suspect.strengths()[k])) least[static_cast<Eigen::Index>(k)] = -largest_amount;
+  for (std::size_t k = 0; k < hypothesis.strengths().size(); ++k)
+    if (hypothesis.isSigned(hypothesis.strengths()[k])) least[static_cast<Eigen::Index>(k)] = -largest_amount;
   Eigen::VectorXd left = residual;
   for (int round = 0; round < 3; ++round) {
     const Eigen::VectorXd weights = comparison.weights(left);
@@ -107,14 +107,14 @@ void explain(const Comparison& comparison, const Suspect& suspect, const Eigen::
     Eigen::MatrixXd normal = weighted.transpose() * weighted;
     normal.diagonal().array() += 1e-12 + 1e-9 * normal.diagonal().maxCoeff();
     // An effect without parameters is there or not.
-    const Eigen::VectorXd amount = suspect.strengths().empty()
+    const Eigen::VectorXd amount = hypothesis.strengths().empty()
                                        ? Eigen::VectorXd(Eigen::VectorXd::Ones(count))
                                        : boundedSolution(normal, weighted.transpose() * weights.cwiseProduct(residual), least);
     left = residual - columns * amount;
     const double misfit = comparison.logMisfit(left);
-    if (misfit < signature.log_misfit || suspect.strengths().empty()) {
-      signature.log_misfit = misfit;
-      signature.amount = amount;
+    if (misfit < sensitivity.log_misfit || hypothesis.strengths().empty()) {
+      sensitivity.log_misfit = misfit;
+      sensitivity.amount = amount;
     }
   }
 }
@@ -138,24 +138,24 @@ std::vector<Eigen::VectorXd> changesBy(const Comparison& comparison, const std::
 }
 
 /// Whether a strength changes something at its typical value.
-bool shows(const Comparison& comparison, const Suspect& suspect, std::size_t strength, const Signature& look) {
-  const double least = suspect.isSigned(suspect.strengths()[strength]) ? nothing : 1;
-  return excitationOf(comparison, {look.per_strength[strength]}) >= least;
+bool shows(const Comparison& comparison, const Hypothesis& hypothesis, std::size_t strength, const Sensitivity& look) {
+  const double least = hypothesis.isSigned(hypothesis.strengths()[strength]) ? nothing : 1;
+  return excitationRatio(comparison, {look.per_strength[strength]}) >= least;
 }
 
 /// Strengths that change nothing at their typical value, though they would if they were stronger: limits that nothing reaches. `direction`
 /// -1: those that may have either sign.
-std::vector<Probe> strongerProbes(const Comparison& comparison, const std::vector<Suspect>& suspects, const std::vector<Signature>& looks,
-                                  int direction) {
+std::vector<Probe> strongerProbes(const Comparison& comparison, const std::vector<Hypothesis>& hypotheses,
+                                  const std::vector<Sensitivity>& sensitivities, int direction) {
   std::vector<Probe> result;
-  for (std::size_t s = 0; s < suspects.size(); ++s) {
-    if (suspects[s].info().stage == Stage::sensor) continue;
-    for (std::size_t k = 0; k < suspects[s].strengths().size(); ++k) {
-      const int coordinate = suspects[s].strengths()[k];
-      if ((direction < 0 && !suspects[s].isSigned(coordinate)) || shows(comparison, suspects[s], k, looks[s])) continue;
-      Eigen::VectorXd z = Eigen::VectorXd::Zero(suspects[s].coordinateCount());
+  for (std::size_t s = 0; s < hypotheses.size(); ++s) {
+    if (hypotheses[s].info().stage == Stage::sensor) continue;
+    for (std::size_t k = 0; k < hypotheses[s].strengths().size(); ++k) {
+      const int coordinate = hypotheses[s].strengths()[k];
+      if ((direction < 0 && !hypotheses[s].isSigned(coordinate)) || shows(comparison, hypotheses[s], k, sensitivities[s])) continue;
+      Eigen::VectorXd z = Eigen::VectorXd::Zero(hypotheses[s].coordinateCount());
       z[coordinate] = direction * strong;
-      result.push_back({{{suspects[s].at(z)}, {}}, {{s, k, -1}}});
+      result.push_back({{{hypotheses[s].at(z)}, {}}, {{s, k, -1}}});
     }
   }
   return result;
@@ -165,28 +165,28 @@ std::vector<Probe> strongerProbes(const Comparison& comparison, const std::vecto
 /// right strength.
 double sizeOver(const Comparison& comparison, const Eigen::VectorXd& residual, const Eigen::VectorXd& change) {
   double largest = 0;
-  for (const Comparison::Cell& cell : comparison.cells())
-    largest = std::max(
-        largest, std::sqrt(comparison.meanSquare(cell, change)) / std::max(cell.floor, std::sqrt(comparison.meanSquare(cell, residual))));
+  for (const Comparison::Block& block : comparison.blocks())
+    largest = std::max(largest, std::sqrt(comparison.meanSquare(block, change)) /
+                                    std::max(block.sigma, std::sqrt(comparison.meanSquare(block, residual))));
   return largest;
 }
 
 /// Weakens the strengths that change much more than there is to explain, or with which the model diverges. Returns their probes.
-std::vector<Probe> weakerProbes(const Comparison& comparison, std::vector<Suspect>& suspects, const std::vector<Signature>& looks,
-                                const Eigen::VectorXd& residual) {
+std::vector<Probe> weakerProbes(const Comparison& comparison, std::vector<Hypothesis>& hypotheses,
+                                const std::vector<Sensitivity>& sensitivities, const Eigen::VectorXd& residual) {
   constexpr double too_much = 3, after_divergence = 0.1;
   std::vector<Probe> result;
-  for (std::size_t s = 0; s < suspects.size(); ++s) {
-    if (suspects[s].info().stage == Stage::sensor || looks[s].from_threshold) continue;
-    for (std::size_t k = 0; k < suspects[s].strengths().size(); ++k) {
-      const Eigen::VectorXd& change = looks[s].per_strength[k];
+  for (std::size_t s = 0; s < hypotheses.size(); ++s) {
+    if (hypotheses[s].info().stage == Stage::sensor || sensitivities[s].from_threshold) continue;
+    for (std::size_t k = 0; k < hypotheses[s].strengths().size(); ++k) {
+      const Eigen::VectorXd& change = sensitivities[s].per_strength[k];
       const double size = change.size() ? sizeOver(comparison, residual, change) : 1 / after_divergence;
       if (size < too_much) continue;
-      const int coordinate = suspects[s].strengths()[k];
-      suspects[s].rescale(coordinate, 1 / size);
-      Eigen::VectorXd z = Eigen::VectorXd::Zero(suspects[s].coordinateCount());
+      const int coordinate = hypotheses[s].strengths()[k];
+      hypotheses[s].rescale(coordinate, 1 / size);
+      Eigen::VectorXd z = Eigen::VectorXd::Zero(hypotheses[s].coordinateCount());
       z[coordinate] = 1;
-      result.push_back({{{suspects[s].at(z)}, {}}, {{s, k, -1}}});
+      result.push_back({{{hypotheses[s].at(z)}, {}}, {{s, k, -1}}});
     }
   }
   return result;
@@ -196,16 +196,21 @@ std::vector<Probe> weakerProbes(const Comparison& comparison, std::vector<Suspec
 class OnlyStrength {
  public:
   OnlyStrength(const Comparison& comparison, const Eigen::VectorXd& nominal, const Model& base, const OnSimulation& on_simulation,
-               Suspect& suspect, Signature& look)
-      : comparison_(comparison), nominal_(nominal), base_(base), on_simulation_(on_simulation), suspect_(suspect), look_(look) {}
+               Hypothesis& hypothesis, Sensitivity& look)
+      : comparison_(comparison),
+        nominal_(nominal),
+        base_(base),
+        on_simulation_(on_simulation),
+        hypothesis_(hypothesis),
+        sensitivity_(look) {}
 
   /// Where the typical strength shows nothing: stronger and stronger until it does, to either side where that is possible, then closer to
   /// where it begins to, and about the one that leaves least. That one is typical from here on. Beside a threshold derivatives tell little.
-  void lookFromThreshold() {
+  void searchThreshold() {
     constexpr double growth = 4;
     constexpr int halvings = 3;
     for (const double side : {1.0, -1.0}) {
-      if (side < 0 && !suspect_.isSigned(coordinate())) continue;
+      if (side < 0 && !hypothesis_.isSigned(coordinate())) continue;
       double hidden = side, visible = side * growth;
       for (; showing(visible) == Showing::none && !isBound(visible); visible *= growth) hidden = visible;
       if (showing(visible) == Showing::none) continue;
@@ -218,21 +223,21 @@ class OnlyStrength {
     }
     if (best_.strength != 0 && best_.log_misfit < worth_refining * comparison_.logMisfit(residual())) refine();
     if (best_.strength == 0) return;
-    look_.per_strength = {changeAt(best_.strength)};
-    look_.from_threshold = true;
-    suspect_.rescale(coordinate(), best_.strength);
+    sensitivity_.per_strength = {changeAt(best_.strength)};
+    sensitivity_.from_threshold = true;
+    hypothesis_.rescale(coordinate(), best_.strength);
   }
 
   /// Where as much as a straight line may tell is called for: from there on again, while that leaves less.
-  void lookFarther() {
-    while (std::abs(look_.amount[0]) >= largest_amount && !isBound(look_.amount[0])) {
-      Signature farther = look_;
-      farther.per_strength = {changeAt(look_.amount[0])};
+  void relinearise() {
+    while (std::abs(sensitivity_.amount[0]) >= largest_amount && !isBound(sensitivity_.amount[0])) {
+      Sensitivity farther = sensitivity_;
+      farther.per_strength = {changeAt(sensitivity_.amount[0])};
       if (!farther.per_strength.front().size()) return;
-      explain(comparison_, suspect_, residual(), farther);
-      if (!(farther.log_misfit < look_.log_misfit)) return;
-      suspect_.rescale(coordinate(), look_.amount[0]);
-      look_ = std::move(farther);
+      fitLinearly(comparison_, hypothesis_, residual(), farther);
+      if (!(farther.log_misfit < sensitivity_.log_misfit)) return;
+      hypothesis_.rescale(coordinate(), sensitivity_.amount[0]);
+      sensitivity_ = std::move(farther);
     }
   }
 
@@ -242,20 +247,20 @@ class OnlyStrength {
   };
   enum class Showing { none, some, diverged };
   static constexpr double worth_refining = 0.97;  ///< of the misfit without the effect
-  int coordinate() const { return suspect_.strengths().front(); }
+  int coordinate() const { return hypothesis_.strengths().front(); }
   Eigen::VectorXd residual() const { return comparison_.measured() - nominal_; }
   Eigen::VectorXd at(double strength) const {
-    Eigen::VectorXd z = Eigen::VectorXd::Zero(suspect_.coordinateCount());
+    Eigen::VectorXd z = Eigen::VectorXd::Zero(hypothesis_.coordinateCount());
     z[coordinate()] = strength;
     return z;
   }
-  double possible(double strength) const { return suspect_.clamped(at(strength))[coordinate()]; }
+  double possible(double strength) const { return hypothesis_.clamped(at(strength))[coordinate()]; }
   bool isBound(double strength) const { return possible(strength) != strength; }
   /// Empty where the model diverges, and once interrupted.
   Eigen::VectorXd changeAt(double strength) const {
     if (comparison_.plant().interrupted()) return {};
     Model model = base_;
-    model.effects.push_back(suspect_.at(at(possible(strength))));
+    model.effects.push_back(hypothesis_.at(at(possible(strength))));
     const Eigen::VectorXd predicted = comparison_.predicted(model);
     on_simulation_();
     if (predicted.size() != nominal_.size() || !predicted.allFinite()) return {};
@@ -265,7 +270,7 @@ class OnlyStrength {
   Showing showing(double strength) const {
     const Eigen::VectorXd change = changeAt(strength);
     if (!change.size()) return Showing::diverged;
-    return excitationOf(comparison_, {change}) >= 1 ? Showing::some : Showing::none;
+    return excitationRatio(comparison_, {change}) >= 1 ? Showing::some : Showing::none;
   }
   void keepIfNearer(double strength) {
     if (showing(strength) != Showing::some) return;
@@ -284,8 +289,8 @@ class OnlyStrength {
   const Eigen::VectorXd& nominal_;
   const Model& base_;
   const OnSimulation& on_simulation_;
-  Suspect& suspect_;
-  Signature& look_;
+  Hypothesis& hypothesis_;
+  Sensitivity& sensitivity_;
   Found best_;
 };
 
@@ -297,82 +302,84 @@ bool actAlike(const Eigen::VectorXd& one, const Eigen::VectorXd& other) {
 
 /// Leaves out the strengths of either sign that change everything by a small share of what another one of the suspect does, both of usual
 /// size, and those that change the same as another one: the recordings cannot tell them, and a fit would drive them anywhere.
-void leaveOutIdle(const Comparison& comparison, Suspect& suspect, Signature& look) {
+void leaveOutIdle(const Comparison& comparison, Hypothesis& hypothesis, Sensitivity& look) {
   constexpr double small_share = 0.1;
   std::vector<double> excitation;
   for (const Eigen::VectorXd& change : look.per_strength)
-    excitation.push_back(change.size() ? excitationOf(comparison, {change}) : std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t k = suspect.strengths().size(); k-- > 0;) {
-    const int coordinate = suspect.strengths()[k];
+    excitation.push_back(change.size() ? excitationRatio(comparison, {change}) : std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t k = hypothesis.strengths().size(); k-- > 0;) {
+    const int coordinate = hypothesis.strengths()[k];
     const bool idle = std::ranges::any_of(excitation, [&](double other) { return excitation[k] < small_share * other; });
     const auto before_k = look.per_strength.begin() + static_cast<std::ptrdiff_t>(k);
     const bool double_of_another =
         std::any_of(look.per_strength.begin(), before_k, [&](const Eigen::VectorXd& other) { return actAlike(*before_k, other); });
-    if (!(idle || double_of_another) || !suspect.isSigned(coordinate)) continue;
-    suspect.leaveOut(coordinate);
+    if (!(idle || double_of_another) || !hypothesis.isSigned(coordinate)) continue;
+    hypothesis.leaveOut(coordinate);
     look.per_strength.erase(look.per_strength.begin() + static_cast<std::ptrdiff_t>(k));
     excitation.erase(excitation.begin() + static_cast<std::ptrdiff_t>(k));
   }
 }
 
 /// Delays and time constants: what they do is not proportional to them.
-std::vector<Probe> lateProbes(const std::vector<Suspect>& suspects) {
+std::vector<Probe> lateProbes(const std::vector<Hypothesis>& hypotheses) {
   std::vector<Probe> result;
-  for (std::size_t s = 0; s < suspects.size(); ++s)
-    for (std::size_t k = 0; k < suspects[s].strengths().size(); ++k) {
-      const int coordinate = suspects[s].strengths()[k];
-      if (suspects[s].info().stage == Stage::sensor || !suspects[s].isTime(coordinate)) continue;
-      Eigen::VectorXd z = Eigen::VectorXd::Zero(suspects[s].coordinateCount());
+  for (std::size_t s = 0; s < hypotheses.size(); ++s)
+    for (std::size_t k = 0; k < hypotheses[s].strengths().size(); ++k) {
+      const int coordinate = hypotheses[s].strengths()[k];
+      if (hypotheses[s].info().stage == Stage::sensor || !hypotheses[s].isTime(coordinate)) continue;
+      Eigen::VectorXd z = Eigen::VectorXd::Zero(hypotheses[s].coordinateCount());
       z[coordinate] = late;
-      result.push_back({{{suspects[s].at(z)}, {}}, {{s, k, -1}}});
+      result.push_back({{{hypotheses[s].at(z)}, {}}, {{s, k, -1}}});
     }
   return result;
 }
 
 }  // namespace
 
-std::vector<Signature> screen(const Comparison& comparison, std::vector<Suspect>& suspects, const Eigen::VectorXd& nominal,
-                              const Model& base, Strengths strengths, int job_count, const OnSimulation& on_simulation) {
-  std::vector<Signature> result(suspects.size());
-  for (std::size_t s = 0; s < suspects.size(); ++s) result[s].per_strength.resize(std::max<std::size_t>(1, suspects[s].strengths().size()));
-  auto lookInto = [&](std::vector<Signature>& signatures, const std::vector<Probe>& probes, double strength) {
+std::vector<Sensitivity> sensitivitiesOf(const Comparison& comparison, std::vector<Hypothesis>& hypotheses, const Eigen::VectorXd& nominal,
+                                         const Model& base, Strengths strengths, int job_count, const OnSimulation& on_simulation) {
+  std::vector<Sensitivity> result(hypotheses.size());
+  for (std::size_t s = 0; s < hypotheses.size(); ++s)
+    result[s].per_strength.resize(std::max<std::size_t>(1, hypotheses[s].strengths().size()));
+  auto probeInto = [&](std::vector<Sensitivity>& sensitivities, const std::vector<Probe>& probes, double strength) {
     const std::vector<Eigen::VectorXd> changes = changesBy(comparison, probes, nominal, base, job_count, on_simulation);
     for (std::size_t i = 0; i < probes.size(); ++i)
       for (const Probe::Target& target : probes[i].targets)
         if (changes[i].size())
-          signatures[target.suspect].per_strength[target.strength] = only(comparison, changes[i] / strength, target.signal);
+          sensitivities[target.hypothesis].per_strength[target.strength] = only(comparison, changes[i] / strength, target.signal);
   };
-  auto look = [&](const std::vector<Probe>& probes, double strength) { lookInto(result, probes, strength); };
-  look(probes(comparison, suspects), 1);
-  for (Signature& signature : result)
-    if (std::ranges::all_of(signature.per_strength, [](const Eigen::VectorXd& change) { return change.size() > 0; }))
-      signature.excitation_ratio = excitationOf(comparison, signature.per_strength);
+  auto look = [&](const std::vector<Probe>& probes, double strength) { probeInto(result, probes, strength); };
+  look(probes(comparison, hypotheses), 1);
+  for (Sensitivity& sensitivity : result)
+    if (std::ranges::all_of(sensitivity.per_strength, [](const Eigen::VectorXd& change) { return change.size() > 0; }))
+      sensitivity.excitation_ratio = excitationRatio(comparison, sensitivity.per_strength);
   const Eigen::VectorXd residual = comparison.measured() - nominal;
   const bool adapt = strengths == Strengths::adapted;
   auto adaptOnlyStrengths = [&](const std::function<bool(std::size_t)>& chosen, const std::function<void(OnlyStrength&)>& adapted) {
     std::vector<std::size_t> those;
-    for (std::size_t s = 0; adapt && s < suspects.size(); ++s)
-      if (suspects[s].info().stage != Stage::sensor && suspects[s].strengths().size() == 1 && chosen(s)) those.push_back(s);
+    for (std::size_t s = 0; adapt && s < hypotheses.size(); ++s)
+      if (hypotheses[s].info().stage != Stage::sensor && hypotheses[s].strengths().size() == 1 && chosen(s)) those.push_back(s);
     parallelFor(static_cast<int>(those.size()), job_count, [&](int i) {
       const std::size_t s = those[static_cast<std::size_t>(i)];
-      OnlyStrength only_strength(comparison, nominal, base, on_simulation, suspects[s], result[s]);
+      OnlyStrength only_strength(comparison, nominal, base, on_simulation, hypotheses[s], result[s]);
       adapted(only_strength);
     });
   };
-  adaptOnlyStrengths([&](std::size_t s) { return result[s].per_strength.front().size() && !shows(comparison, suspects[s], 0, result[s]); },
-                     [](OnlyStrength& it) { it.lookFromThreshold(); });
-  for (const int direction : {1, -1}) look(strongerProbes(comparison, suspects, result, direction), direction * strong);
-  for (std::size_t s = 0; adapt && s < suspects.size(); ++s) leaveOutIdle(comparison, suspects[s], result[s]);
+  adaptOnlyStrengths(
+      [&](std::size_t s) { return result[s].per_strength.front().size() && !shows(comparison, hypotheses[s], 0, result[s]); },
+      [](OnlyStrength& it) { it.searchThreshold(); });
+  for (const int direction : {1, -1}) look(strongerProbes(comparison, hypotheses, result, direction), direction * strong);
+  for (std::size_t s = 0; adapt && s < hypotheses.size(); ++s) leaveOutIdle(comparison, hypotheses[s], result[s]);
   const int weakenings = adapt ? 3 : 0;
-  for (int i = 0; i < weakenings; ++i) look(weakerProbes(comparison, suspects, result, residual), 1);
-  std::vector<Signature> lately = result;
-  lookInto(lately, lateProbes(suspects), late);
-  for (std::size_t s = 0; s < suspects.size(); ++s) {
-    explain(comparison, suspects[s], residual, result[s]);
-    explain(comparison, suspects[s], residual, lately[s]);
+  for (int i = 0; i < weakenings; ++i) look(weakerProbes(comparison, hypotheses, result, residual), 1);
+  std::vector<Sensitivity> lately = result;
+  probeInto(lately, lateProbes(hypotheses), late);
+  for (std::size_t s = 0; s < hypotheses.size(); ++s) {
+    fitLinearly(comparison, hypotheses[s], residual, result[s]);
+    fitLinearly(comparison, hypotheses[s], residual, lately[s]);
     if (lately[s].log_misfit < result[s].log_misfit) result[s] = std::move(lately[s]);
   }
-  adaptOnlyStrengths([](std::size_t) { return true; }, [](OnlyStrength& it) { it.lookFarther(); });
+  adaptOnlyStrengths([](std::size_t) { return true; }, [](OnlyStrength& it) { it.relinearise(); });
   return result;
 }
 

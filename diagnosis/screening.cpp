@@ -14,15 +14,15 @@ namespace musclesim {
 
 namespace {
 
-constexpr std::size_t many_suspects = 240;   ///< with more, most are looked at on the first stretch of the look only
-constexpr std::size_t nearest_count = 80;    ///< suspects that are looked at on all of it then
-constexpr std::size_t per_effect_count = 3;  ///< and at least so many of every effect
+constexpr std::size_t many_hypotheses = 240;  ///< with more, most are looked at on the first stretch of the look only
+constexpr std::size_t nearest_count = 80;     ///< suspects that are looked at on all of it then
+constexpr std::size_t per_effect_count = 3;   ///< and at least so many of every effect
 
 }  // namespace
 
-Comparison Attributor::firstOfLook() const {
-  Comparison result(plant_, {look_.stretches().front()}, Comparison::Averages::with);
-  result.goCoarse(result.predicted(Model{}), Comparison::Purpose::looking);
+Comparison Attributor::firstScreeningSegment() const {
+  Comparison result(plant_, {screening_.segments().front()}, Comparison::Averages::with);
+  result.goCoarse(result.predicted(Model{}), Comparison::Purpose::screening);
   return result;
 }
 
@@ -30,12 +30,12 @@ Comparison Attributor::firstOfLook() const {
 /// least on its first stretch, and what does as well as the sixth: simulating all of them on all of it would take as long as everything
 /// else, and one stretch alone may hardly tell them.
 void Attributor::keepNearestVariants() {
-  keepNearestVariants(firstOfLook(), 6, Ties::kept);
-  keepNearestVariants(look_, 2, Ties::dropped);
+  keepNearestVariants(firstScreeningSegment(), 6, Ties::kept);
+  keepNearestVariants(screening_, 2, Ties::dropped);
 }
 
 void Attributor::keepNearestVariants(const Comparison& comparison, std::size_t kept, Ties ties) {
-  std::vector<Suspect>& all = result_.suspects;
+  std::vector<Hypothesis>& all = result_.hypotheses;
   std::map<std::string, std::vector<std::size_t>> variants;
   for (std::size_t i = 0; i < all.size(); ++i)
     if (all[i].coordinateCount() == 0) variants[all[i].label()].push_back(i);
@@ -61,7 +61,7 @@ void Attributor::keepNearestVariants(const Comparison& comparison, std::size_t k
     dropped.insert(end, members.end());
     result_.thinned.insert(label);
   }
-  std::vector<Suspect> rest;
+  std::vector<Hypothesis> rest;
   for (std::size_t i = 0; i < all.size(); ++i)
     if (!dropped.contains(i)) rest.push_back(std::move(all[i]));
   all = std::move(rest);
@@ -69,16 +69,16 @@ void Attributor::keepNearestVariants(const Comparison& comparison, std::size_t k
 
 /// The suspects that are looked at on all of the look. Where there are many - ten muscles have ten of most kinds - those that explain most
 /// of its first stretch, and some of every effect. That does not depend on what may be an answer: nor does where the gap lies.
-std::vector<std::size_t> Attributor::worthLookingAt() const {
-  const std::vector<Suspect>& all = result_.suspects;
+std::vector<std::size_t> Attributor::worthScreening() const {
+  const std::vector<Hypothesis>& all = result_.hypotheses;
   std::vector<std::size_t> order(all.size());
   std::iota(order.begin(), order.end(), 0);
-  if (all.size() <= many_suspects || look_.stretches().size() < 2) return order;
-  const Comparison brief = firstOfLook();
-  std::vector<Suspect> suspects = all;
-  const std::vector<Signature> looks =
-      screen(brief, suspects, brief.predicted(Model{}), Model{}, Strengths::adapted, options_.job_count, on_simulation_);
-  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return looks[i].log_misfit; });
+  if (all.size() <= many_hypotheses || screening_.segments().size() < 2) return order;
+  const Comparison brief = firstScreeningSegment();
+  std::vector<Hypothesis> hypotheses = all;
+  const std::vector<Sensitivity> sensitivities =
+      sensitivitiesOf(brief, hypotheses, brief.predicted(Model{}), Model{}, Strengths::adapted, options_.job_count, on_simulation_);
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return sensitivities[i].log_misfit; });
   std::map<std::string, std::size_t> per_effect;
   std::vector<std::size_t> chosen;
   for (std::size_t rank = 0; rank < order.size(); ++rank) {
@@ -89,58 +89,59 @@ std::vector<std::size_t> Attributor::worthLookingAt() const {
   return chosen;
 }
 
-void Attributor::lookAtSuspects(const Eigen::VectorXd& nominal) {
-  const std::vector<std::size_t> chosen = worthLookingAt();
-  std::vector<Suspect> suspects;
-  for (const std::size_t i : chosen) suspects.push_back(result_.suspects[i]);
-  std::vector<Signature> looks = screen(look_, suspects, nominal, Model{}, Strengths::adapted, options_.job_count, on_simulation_);
-  for (const Suspect& suspect : result_.suspects) {
-    Signature unknown;
-    unknown.per_strength.resize(std::max<std::size_t>(1, suspect.strengths().size()));
-    explain(look_, suspect, look_residual_, unknown);
-    result_.signatures.push_back(std::move(unknown));
+void Attributor::screenHypotheses(const Eigen::VectorXd& nominal) {
+  const std::vector<std::size_t> chosen = worthScreening();
+  std::vector<Hypothesis> hypotheses;
+  for (const std::size_t i : chosen) hypotheses.push_back(result_.hypotheses[i]);
+  std::vector<Sensitivity> sensitivities =
+      sensitivitiesOf(screening_, hypotheses, nominal, Model{}, Strengths::adapted, options_.job_count, on_simulation_);
+  for (const Hypothesis& hypothesis : result_.hypotheses) {
+    Sensitivity unknown;
+    unknown.per_strength.resize(std::max<std::size_t>(1, hypothesis.strengths().size()));
+    fitLinearly(screening_, hypothesis, screening_residual_, unknown);
+    result_.sensitivities.push_back(std::move(unknown));
   }
   for (std::size_t k = 0; k < chosen.size(); ++k) {
-    result_.suspects[chosen[k]] = std::move(suspects[k]);
-    result_.signatures[chosen[k]] = std::move(looks[k]);
+    result_.hypotheses[chosen[k]] = std::move(hypotheses[k]);
+    result_.sensitivities[chosen[k]] = std::move(sensitivities[k]);
   }
-  result_.looked_at_count = chosen.size();
+  result_.screened_count = chosen.size();
 }
 
 /// What shows nothing in the stretches of the look may show in the rest of the recordings.
-void Attributor::lookForExcitation(const std::vector<Suspect>& typical) {
-  const std::vector<Stretch>&looked = look_.stretches(), &fitted = fit_.stretches();
-  const bool is_all = looked.size() == fitted.size() && std::ranges::equal(looked, fitted, {}, &Stretch::end_row, &Stretch::end_row);
+void Attributor::checkExcitation(const std::vector<Hypothesis>& typical) {
+  const std::vector<Segment>&screened = screening_.segments(), &fitted = fit_.segments();
+  const bool is_all = screened.size() == fitted.size() && std::ranges::equal(screened, fitted, {}, &Segment::end_row, &Segment::end_row);
   if (is_all) return;
   const Eigen::VectorXd nominal = fit_.measured() - nominal_residual_;
   std::vector<std::size_t> hidden;
   for (std::size_t i = 0; i < typical.size(); ++i)
-    if (result_.allowed[i] && result_.signatures[i].excitation_ratio.value_or(1) < 1) hidden.push_back(i);
+    if (result_.allowed[i] && result_.sensitivities[i].excitation_ratio.value_or(1) < 1) hidden.push_back(i);
   parallelFor(static_cast<int>(hidden.size()), options_.job_count, [&](int i) {
     const std::size_t index = hidden[static_cast<std::size_t>(i)];
     if (plant_.interrupted()) return;
-    const Suspect& suspect = typical[index];
-    const Eigen::VectorXd predicted = fit_.predicted(Model{{suspect.at(suspect.typical())}, {}});
+    const Hypothesis& hypothesis = typical[index];
+    const Eigen::VectorXd predicted = fit_.predicted(Model{{hypothesis.at(hypothesis.typical())}, {}});
     if (predicted.size() == nominal.size() && predicted.allFinite())
-      result_.signatures[index].excitation_ratio = excitationOf(fit_, {predicted - nominal});
+      result_.sensitivities[index].excitation_ratio = excitationRatio(fit_, {predicted - nominal});
     on_simulation_();
   });
 }
 
-void Attributor::look() {
-  const Eigen::VectorXd nominal = look_.predicted(Model{});
+void Attributor::screen() {
+  const Eigen::VectorXd nominal = screening_.predicted(Model{});
   if (!nominal.size()) throw Diverged(0, plant_.robot(), "the model without further effects cannot follow the recordings");
-  look_residual_ = look_.measured() - nominal;
+  screening_residual_ = screening_.measured() - nominal;
   const Eigen::VectorXd everywhere = fit_.predicted(Model{});
   nominal_residual_ = fit_.measured() - everywhere;
-  look_.goCoarse(nominal, Comparison::Purpose::looking);
+  screening_.goCoarse(nominal, Comparison::Purpose::screening);
   fit_.goCoarse(everywhere);
-  result_.suspects = suspects(plant_, DiagnosisOptions{});
+  result_.hypotheses = hypotheses(plant_, DiagnosisOptions{});
   keepNearestVariants();
-  for (const Suspect& suspect : result_.suspects) result_.allowed.push_back(allows(options_, suspect.info().id));
-  const std::vector<Suspect> typical = result_.suspects;
-  lookAtSuspects(nominal);
-  lookForExcitation(typical);
+  for (const Hypothesis& hypothesis : result_.hypotheses) result_.allowed.push_back(allows(options_, hypothesis.info().id));
+  const std::vector<Hypothesis> typical = result_.hypotheses;
+  screenHypotheses(nominal);
+  checkExcitation(typical);
 }
 
 }  // namespace musclesim

@@ -18,9 +18,9 @@ namespace musclesim {
 ///   shape parameters          value = typical * exp(z), or typical + z * half the usual range where that has both signs
 /// z = 0 is neutral for the first two and usual for the third; z = 1 is a typical strength, or what the first look took in its place (see
 /// rescale). Values are clamped to their range.
-class Suspect {
+class Hypothesis {
  public:
-  Suspect(EffectInfo info, std::string component, const Plant& plant);
+  Hypothesis(EffectInfo info, std::string component, const Plant& plant);
 
   const EffectInfo& info() const { return info_; }
   const std::string& component() const { return component_; }
@@ -54,7 +54,7 @@ class Suspect {
   Eigen::VectorXd typical() const;
   /// The suspect once for each choice that no fit can reach from another one: a wall on either side of each axis, a
   /// number of bits, either end of a muscle, a law with a share of something and without.
-  std::vector<Suspect> variants(const Plant& plant) const;
+  std::vector<Hypothesis> variants(const Plant& plant) const;
 
  private:
   static constexpr double strongest = 25;  ///< times the usual extent: bound of strengths
@@ -69,11 +69,11 @@ class Suspect {
   double coordinateOf(const Coordinate& coordinate, double value) const;
   void useCorrectedLaw(const Plant& plant);
   void countHeld(const Plant& plant);
-  std::vector<Suspect> numbersOfBits() const;
-  std::vector<Suspect> smallAndLarge() const;
-  std::vector<Suspect> withAndWithoutShares() const;
-  std::vector<Suspect> ends(const Plant& plant) const;
-  std::vector<Suspect> togetherAndAlone() const;
+  std::vector<Hypothesis> numbersOfBits() const;
+  std::vector<Hypothesis> smallAndLarge() const;
+  std::vector<Hypothesis> withAndWithoutShares() const;
+  std::vector<Hypothesis> ends(const Plant& plant) const;
+  std::vector<Hypothesis> togetherAndAlone() const;
 
   EffectInfo info_;
   std::string component_;
@@ -85,6 +85,6 @@ class Suspect {
 /// Whether the options' candidates and exclude let an effect be an answer.
 bool allows(const DiagnosisOptions& options, const std::string& id);
 /// All suspects that the options allow on this plant.
-std::vector<Suspect> suspects(const Plant& plant, const DiagnosisOptions& options);
+std::vector<Hypothesis> hypotheses(const Plant& plant, const DiagnosisOptions& options);
 
 }  // namespace musclesim

@@ -8,16 +8,16 @@
 
 namespace musclesim {
 
-enum class Regime { filling, venting, holding };
-constexpr std::size_t regime_count = 3;
-std::string nameOf(Regime regime);
+enum class ActuationPhase { filling, venting, holding };
+constexpr std::size_t phase_count = 3;
+std::string nameOf(ActuationPhase phase);
 
 /// Mean square of residual over floor and number of rows while some command rises, while it falls, and while none has changed for a tenth
 /// of a second; of several commands the one that changes most decides.
-struct RegimeSums {
-  std::array<double, regime_count> square{}, rows{};
-  double meanSquare(Regime regime) const;
+struct PhaseSums {
+  std::array<double, phase_count> square{}, rows{};
+  double meanSquare(ActuationPhase phase) const;
 };
-RegimeSums regimeSums(const Comparison& comparison, const Eigen::VectorXd& residual);
+PhaseSums phaseSums(const Comparison& comparison, const Eigen::VectorXd& residual);
 
 }  // namespace musclesim

@@ -10,7 +10,7 @@
 namespace musclesim {
 
 /// An explanation as fitted, with what is made of it so far and what its numbers can still take up.
-struct Contender {
+struct Rival {
   std::string label;
   Model model;
   double probability;           ///< need not sum to 1

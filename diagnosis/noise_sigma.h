@@ -15,14 +15,17 @@ namespace musclesim {
 ///                that differ from the row before, where most repeat its value (a sensor that is read less often than it is logged)
 ///   range        a thousandth of the range of all values: what can be told of fewer than 21 readings per recording, or without noise
 /// and never less than the step of the lattice on which the values lie / sqrt(12). Never the residual of a fit.
-struct NoiseFloor {
+struct NoiseSigma {
   double value = 0;
   enum class Source { repeats, sidecar, quiet_rows, range } source = Source::quiet_rows;
   /// Neither repeats nor a sidecar tell it.
   bool isEstimated() const { return source == Source::quiet_rows || source == Source::range; }
 };
 
-NoiseFloor noiseFloor(const std::vector<Recording>& recordings, const std::string& signal_name);
+/// RMS over sigma from which on a residual counts as a gap, where sigma is known and where it is estimated.
+inline constexpr double out_of_noise = 1.15, out_of_estimated_noise = 1.3;
+
+NoiseSigma noiseSigma(const std::vector<Recording>& recordings, const std::string& signal_name);
 
 /// The smallest step between different values, if all steps are multiples of it; 0 if the values lie on no lattice or are fewer than eight.
 double latticeStep(const std::vector<double>& values);

@@ -1,4 +1,4 @@
-#include "noise_floor.h"
+#include "noise_sigma.h"
 
 #include <algorithm>
 #include <cmath>
@@ -79,15 +79,15 @@ std::optional<double> fromSidecars(const std::vector<Recording>& recordings, con
 /// Second differences of the rows whose neighbourhood moves least: a straight line leaves only the noise. Rows without a number are passed
 /// over: a signal may have been read less often than others. So are, if that is asked, rows that repeat the value before.
 std::vector<double> quietSecondDifferences(const Recording& recording, const std::string& name, bool without_held) {
-  constexpr std::size_t reach = 10;
+  constexpr std::size_t half_window = 10;
   const Signal* signal = recording.find(name);
   if (!signal) return {};
   std::vector<double> y = signal->values;
   std::erase_if(y, [](double value) { return !std::isfinite(value); });
   if (without_held) y.erase(std::unique(y.begin(), y.end()), y.end());
   std::vector<std::pair<double, double>> by_speed;
-  for (std::size_t i = reach; i + reach < y.size(); ++i) {
-    const double difference = y[i - 1] - 2 * y[i] + y[i + 1], speed = std::abs(y[i + reach] - y[i - reach]);
+  for (std::size_t i = half_window; i + half_window < y.size(); ++i) {
+    const double difference = y[i - 1] - 2 * y[i] + y[i + 1], speed = std::abs(y[i + half_window] - y[i - half_window]);
     by_speed.emplace_back(speed, difference);
   }
   std::sort(by_speed.begin(), by_speed.end());
@@ -159,18 +159,18 @@ double latticeStep(const std::vector<double>& values) {
   return step;
 }
 
-NoiseFloor noiseFloor(const std::vector<Recording>& recordings, const std::string& name) {
+NoiseSigma noiseSigma(const std::vector<Recording>& recordings, const std::string& name) {
   constexpr double imperceptible = 1e-9, usual_share = 1e-3;
   constexpr double held_by_chance = 0.1, fine_lattice = 4;  // noise of four steps of a lattice makes 7 % of neighbours equal
   const double least = std::max(finestLattice(recordings, name) / std::sqrt(12.0), imperceptible);
-  if (const auto repeats = fromRepeats(recordings, name)) return {std::max(*repeats, least), NoiseFloor::Source::repeats};
-  if (const auto sidecar = fromSidecars(recordings, name)) return {std::max(*sidecar, least), NoiseFloor::Source::sidecar};
+  if (const auto repeats = fromRepeats(recordings, name)) return {std::max(*repeats, least), NoiseSigma::Source::repeats};
+  if (const auto sidecar = fromSidecars(recordings, name)) return {std::max(*sidecar, least), NoiseSigma::Source::sidecar};
   const double quiet = std::max(fromQuietRows(recordings, name, false), least), changed = fromQuietRows(recordings, name, true);
   // Rows that repeat the value before, though chance makes few values equal, are of a sensor that is read less often than it is logged.
   const bool is_held = heldShare(recordings, name) > held_by_chance && changed > fine_lattice * finestLattice(recordings, name);
-  if (!is_held && quiet > imperceptible) return {quiet, NoiseFloor::Source::quiet_rows};
-  if (changed > imperceptible) return {std::max(changed, least), NoiseFloor::Source::quiet_rows};
-  return {std::max(usual_share * rangeOf(recordings, name), least), NoiseFloor::Source::range};
+  if (!is_held && quiet > imperceptible) return {quiet, NoiseSigma::Source::quiet_rows};
+  if (changed > imperceptible) return {std::max(changed, least), NoiseSigma::Source::quiet_rows};
+  return {std::max(usual_share * rangeOf(recordings, name), least), NoiseSigma::Source::range};
 }
 
 }  // namespace musclesim

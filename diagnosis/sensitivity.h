@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "comparison.h"
-#include "suspect.h"
+#include "hypothesis.h"
 
 namespace musclesim {
 
 /// What one suspect does to the predictions, and how far a multiple of that goes.
-struct Signature {
+struct Sensitivity {
   /// Change of the prediction by each strength alone, at z = 1; empty columns where the model diverged.
   std::vector<Eigen::VectorXd> per_strength;
   Eigen::VectorXd amount;       ///< multiple of each that removes most
@@ -33,14 +33,14 @@ enum class Strengths { adapted, kept };
 /// act beside another one of their suspect are left out (a force across the plane in which an elbow moves), those that change a signal by
 /// much more than what is to be explained are weakened, since what they do need not be proportional to them, and a suspect's only strength
 /// is made stronger where it shows nothing (a dead band below all commands), or where more of it than a straight line tells is called for.
-std::vector<Signature> screen(const Comparison& comparison, std::vector<Suspect>& suspects, const Eigen::VectorXd& nominal,
-                              const Model& base, Strengths strengths, int job_count, const OnSimulation& on_simulation);
+std::vector<Sensitivity> sensitivitiesOf(const Comparison& comparison, std::vector<Hypothesis>& hypotheses, const Eigen::VectorXd& nominal,
+                                         const Model& base, Strengths strengths, int job_count, const OnSimulation& on_simulation);
 
 /// The largest RMS of some changes in any cell, over that cell's floor.
-double excitationOf(const Comparison& comparison, const std::vector<Eigen::VectorXd>& changes);
+double excitationRatio(const Comparison& comparison, const std::vector<Eigen::VectorXd>& changes);
 
 /// The amounts of a signature that remove most of a residual, by least squares weighted anew three times. Amounts of unsigned strengths
 /// stay positive. Sets amount and log_misfit.
-void explain(const Comparison& comparison, const Suspect& suspect, const Eigen::VectorXd& residual, Signature& signature);
+void fitLinearly(const Comparison& comparison, const Hypothesis& hypothesis, const Eigen::VectorXd& residual, Sensitivity& sensitivity);
 
 }  // namespace musclesim

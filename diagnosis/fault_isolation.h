@@ -5,12 +5,12 @@
 #include <vector>
 
 #include "comparison.h"
-#include "screen.h"
-#include "suspect.h"
+#include "hypothesis.h"
+#include "sensitivity.h"
 
 namespace musclesim {
 
-struct Location {
+struct FaultIsolation {
   std::vector<Place> places;  ///< largest share first; shares sum to 1
   std::string method;         ///< which signals decided, in words
 };
@@ -20,7 +20,8 @@ struct Location {
 ///   measured pressure and length into the force law, against the measured tension: force stage
 /// on all that is fitted (`whole`), and, for what substitution leaves open, by how well a small typical disturbance of each stage
 /// (`signatures`) resembles the residual on the first look.
-Location locate(const Comparison& whole, const Eigen::VectorXd& residual_of_all, const Comparison& look,
-                const std::vector<Suspect>& suspects, const std::vector<Signature>& signatures, const Eigen::VectorXd& residual_of_look);
+FaultIsolation isolateFault(const Comparison& whole, const Eigen::VectorXd& residual_of_all, const Comparison& screening,
+                            const std::vector<Hypothesis>& hypotheses, const std::vector<Sensitivity>& sensitivities,
+                            const Eigen::VectorXd& screening_residual);
 
 }  // namespace musclesim
