@@ -161,7 +161,7 @@ class Run {
 
   /// What the recordings could not have shown is told whatever the verdict: that there is no gap does not mean that there is no effect.
   void screen() {
-    monitor_.phase("looking at every effect once", static_cast<long>(hypotheses(plant_, DiagnosisOptions{}).size()));
+    monitor_.phase("screening all effects", static_cast<long>(hypotheses(plant_, DiagnosisOptions{}).size()));
     attributor_.screen();
     diagnosis_.unsteady = attributor_.fitComparison().unsteady();
     listNotExcited();
@@ -178,7 +178,7 @@ class Run {
                      attribution.sensitivities, attributor_.screeningResidual());
     diagnosis_.where = isolation.places;
     diagnosis_.where_method = isolation.method;
-    monitor_.phase("fitting the likely ones", 600);
+    monitor_.phase("fitting the likely effects", 600);
     attributor_.decide();
     if (!plant_.interrupted()) choose();
     list();
@@ -208,7 +208,7 @@ class Run {
     if (!predicted.size()) return;
     const Eigen::VectorXd after = held_out_.measured() - predicted;
     const Gap gap_after = held_out_.gap(after);
-    monitor_.phase("asking what simpler changes would gain", 60);
+    monitor_.phase("measuring what the controls gain", 60);
     auto count = [this] { monitor_.count(); };
     const Comparison& comparison = attributor_.fitComparison();
     Eigen::VectorXd nominal, negative_control;

@@ -132,15 +132,15 @@ std::string diagnosisJson(const Diagnosis& d, const std::string& schedule_file) 
 
 std::string diagnosisSummary(const Diagnosis& d) {
   std::string text = verdictSentence(d) + "\n";
-  if (d.partial) text = "Interrupted: what follows is only what was known by then.\n" + text;
-  if (!d.tuned.empty()) text += fmt::format("tuned     {} of the model first, see nominal.toml\n", counted(d.tuned.size(), "number"));
+  if (d.partial) text = "Interrupted: these are only the results up to the interruption.\n" + text;
+  if (!d.tuned.empty()) text += fmt::format("tuned     {} of the model first, see nominal.toml\n", counted(d.tuned.size(), "parameter"));
   if (!d.where.empty()) text += fmt::format("where     {}\n", whereSentence(d));
   for (std::size_t i = 0; i < std::min<std::size_t>(3, d.effects.size()); ++i)
     text +=
         fmt::format("{:<9} {:>11}  {}\n", i == 0 ? "which" : "", probabilityWords(d.effects[i].probability), effectSentence(d.effects[i]));
   if (d.none_of_these > 0) text += fmt::format("{:<9} {:>11}  none of these\n", "", probabilityWords(d.none_of_these));
   if (!d.chosen.empty())
-    text += fmt::format("how far   {} of the gap on {}; nominal refit {:.1f} %, sham {:.1f} %\n          {}\n",
+    text += fmt::format("how far   {} of the gap on {}; nominal refit {:.1f} %, negative control {:.1f} %\n          {}\n",
                         percentWords(d.reduction_percent), d.held_out, d.nominal_refit_percent, d.negative_control_percent,
                         elsewhereSentence({d.reduction_percent, d.reduction_low_percent, d.reduction_high_percent}));
   if (!d.next_experiment.commands.empty()) text += fmt::format("next      record next.csv, {}\n", d.next_experiment.why);

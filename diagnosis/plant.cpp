@@ -56,7 +56,7 @@ Split splitOf(const std::vector<Recording>& recordings) {
   }
   for (int i = 0; i + 1 < count; ++i) split.fit.push_back({i, 0, rows(i)});
   split.held_out = {{count - 1, 0, rows(count - 1)}};
-  split.held_out_words = fmt::format("{}, which neither fitting nor choosing has seen", nameOf(recordings.back()));
+  split.held_out_words = fmt::format("{}, held out from fitting and choosing", nameOf(recordings.back()));
   return split;
 }
 

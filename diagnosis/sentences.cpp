@@ -72,11 +72,11 @@ std::string probabilityWords(double probability) {
 }
 
 std::string elsewhereSentence(const Estimate& reduction_percent) {
-  if (reduction_percent.low > nearly_all) return "On another recording of this plant as much is expected.";
+  if (reduction_percent.low > nearly_all) return "On another recording of this plant the same is expected.";
   // An interval that reaches below 0 tells of the recordings, not of the effect.
-  if (reduction_percent.low < 0) return "The recordings are too few or differ too much to say how much it would be on another one.";
-  return fmt::format("On another recording of this plant {:.1f} to {:.1f} % are expected (95 %).", reduction_percent.low,
-                     reduction_percent.high);
+  if (reduction_percent.low < 0) return "The recordings are too few or too different to predict how much is removed on another one.";
+  return fmt::format("On another recording of this plant, {:.1f} to {:.1f} % is expected to be removed (95 % interval).",
+                     reduction_percent.low, reduction_percent.high);
 }
 
 std::string componentWords(const std::string& component) {
@@ -149,19 +149,21 @@ std::string whereSentence(const Diagnosis& d) {
   const double percent = 100 * place.share;
   if (!isTold(d.where) && d.where.size() > 1) {
     const Place& next = d.where[1];
-    return fmt::format("These signals do not tell at which stage the gap arises: {} ({}, {:.0f} %) or {} ({}, {:.0f} %) come nearest{}",
-                       place.stage, component, percent, next.stage, componentWords(next.component), 100 * next.share, phase);
+    return fmt::format(
+        "These signals do not show at which stage the gap arises; the most likely are {} ({}, {:.0f} %) and {} ({}, {:.0f} %){}",
+        place.stage, component, percent, next.stage, componentWords(next.component), 100 * next.share, phase);
   }
   const std::vector<std::string> others = othersPossible(d.where);
   if (isLocated(d.where) && others.empty())
     return fmt::format("The gap arises in the {} stage ({}, {} likely){}", place.stage, component, probabilityWords(place.share), phase);
   if (isLocated(d.where))
-    return fmt::format("The gap arises before the force, in command or pressure ({}; by its shape rather {}, {} likely){}", component,
+    return fmt::format("The gap arises before the force stage, in command or pressure ({}; its shape favours {}, {} likely){}", component,
                        place.stage, probabilityWords(place.share), phase);
   constexpr std::size_t all_others = 4;
-  const std::string against = place.is_ruled_out ? ", though what the signals say of each other speaks against it" : "";
-  return fmt::format("By its shape the gap is of the {} stage ({}, {:.0f} %){}{}; these signals do not rule out {}", place.stage, component,
-                     percent, phase, against, others.size() == all_others ? "any other" : fmt::format("{}", fmt::join(others, " or ")));
+  const std::string against = place.is_ruled_out ? ", although the signals contradict it" : "";
+  return fmt::format("The shape of the gap favours the {} stage ({}, {:.0f} %){}{}; the signals do not rule out {}", place.stage, component,
+                     percent, phase, against,
+                     others.size() == all_others ? "any other stage" : fmt::format("{}", fmt::join(others, " or ")));
 }
 
 namespace {
@@ -210,7 +212,8 @@ std::string remainder(const Gap& after) {
   const auto most = std::ranges::max_element(after.per_signal, {}, [](const auto& entry) { return overNoise(entry.second); });
   const std::string where =
       most == after.per_signal.end() ? "" : fmt::format(" ({:.1f} times in {})", overNoise(most->second), most->first);
-  return fmt::format("What is left is still {:.1f} times the noise{}: something else acts too, or acts by another law.", over_noise, where);
+  return fmt::format("The residual is still {:.1f} times the noise{}: another effect acts as well, or this one follows another law.",
+                     over_noise, where);
 }
 
 /// "valve lag on muscle 1 together with payload on hand" of "valve_lag@muscle_1 + payload@hand".
@@ -234,8 +237,8 @@ std::string separatedWords(const Diagnosis& d) {
     words = fmt::format("{} from {}", explanationWords(separates.front()), fmt::join(others, " and "));
   }
   if (d.next_experiment.difference < 1)
-    words += fmt::format(", though even there {} differ by only {:.1f} times the noise",
-                         separates.size() > 2 ? "the two most alike" : "they", d.next_experiment.difference);
+    words += fmt::format(", although even then {} differ by only {:.1f} times the noise",
+                         separates.size() > 2 ? "the two most similar" : "they", d.next_experiment.difference);
   return words;
 }
 
@@ -249,7 +252,7 @@ std::string otherwise(const Diagnosis& d) {
   const bool pairs = std::ranges::any_of(d.alternatives, [](const std::string& labels) { return labels.find(" + ") != std::string::npos; });
   std::string experiment;
   if (!d.next_experiment.commands.empty()) experiment = "; record the schedule in next.csv to tell " + separatedWords(d);
-  return fmt::format("{} would explain it as well{}{}.", fmt::join(others, pairs ? "; or " : " or "), place, experiment);
+  return fmt::format("{} would explain the gap as well{}{}.", fmt::join(others, pairs ? "; or " : " or "), place, experiment);
 }
 
 /// Where a hair's difference in a cause changes the motion as much as the cause does, a free rollout hardly tells causes.
@@ -257,9 +260,8 @@ std::string unsteadyWords(const Unsteady& unsteady) {
   constexpr double worth_saying = 0.1;
   if (unsteady.share_of_gap < worth_saying) return "";
   return fmt::format(
-      "Under these commands the model does not repeat itself: internal steps twice as long move {} by {:.0f} times the noise, {:.0f} % of "
-      "the "
-      "gap, as after impacts on stops. Such motions hardly tell causes apart; record gentler ones.",
+      "Under these commands the simulated motion depends on the step size: internal steps twice as long move {} by {:.0f} times the noise, "
+      "{:.0f} % of the gap, as happens after impacts on stops. Such motions hardly distinguish causes; record gentler ones.",
       unsteady.signal, unsteady.in_sigmas, 100 * unsteady.share_of_gap);
 }
 
@@ -268,8 +270,8 @@ std::string noneWords(const Diagnosis& d) {
   constexpr double worth_saying = 0.1;
   if (d.none_of_these < worth_saying) return "";
   if (d.candidates.empty())
-    return fmt::format("That none of the known effects is the cause is {} likely.", probabilityWords(d.none_of_these));
-  return fmt::format("That {} is {} likely; other effects were not asked about.",
+    return fmt::format("The probability that none of the known effects is the cause is {}.", probabilityWords(d.none_of_these));
+  return fmt::format("The probability that {} is {}; other effects were not considered.",
                      d.candidates.size() == 1 ? d.candidates.front() + " is not the cause"
                                               : fmt::format("none of {} is the cause", fmt::join(d.candidates, ", ")),
                      probabilityWords(d.none_of_these));
@@ -284,8 +286,8 @@ std::string mostProbable(const Diagnosis& d) {
 std::string notConfirmed(const Diagnosis& d) {
   const FoundEffect& first = d.effects.front();
   std::string text = fmt::format(
-      ": the best candidate, {}, fits the data that it was fitted to ({} likely without that), but on data held back it removes {} of the "
-      "gap",
+      ": the best candidate, {}, has a probability of {} on the recordings that it was fitted to, but removes {} of the gap on the "
+      "held-out data",
       labelWords(first.label()), probabilityWords(first.probability),
       first.reduction_percent > 0 ? percentWords(first.reduction_percent) : "nothing");
   if (d.nominal_refit_percent > 0)
@@ -304,7 +306,7 @@ std::string shape(const Diagnosis& d) {
   for (const auto& [signal, gap] : d.before.per_signal)
     if (const std::string shape = shapeOfRest(d, signal); !shape.empty() && overNoise(gap) > most) {
       most = overNoise(gap);
-      words = fmt::format("In {} it is {}.", signal, shape);
+      words = fmt::format("In {} the residual is {}.", signal, shape);
     }
   return words;
 }
@@ -314,19 +316,19 @@ std::vector<std::string> unexplainedSentences(const Diagnosis& d) {
   const bool is_small = std::ranges::all_of(d.before.per_signal, [](const auto& entry) { return overNoise(entry.second) < out_of_noise; });
   if (is_small && !d.before.per_signal.empty()) {
     std::vector<std::string> sentences = {
-        "I cannot tell: there is a gap in the recordings that were fitted, but none in the data held back, so no cause can be confirmed "
-        "there; put a recording that shows the gap last."};
-    if (!d.effects.empty()) sentences.push_back("In what was fitted" + mostProbable(d).substr(1) + ".");
+        "I cannot tell: the fitted recordings show a gap, but the held-out data does not, so no cause can be confirmed; put a recording "
+        "that shows the gap last."};
+    if (!d.effects.empty()) sentences.push_back("On the fitted recordings" + mostProbable(d).substr(1) + ".");
     return sentences;
   }
   std::string text = "There is a gap that I cannot explain";
   if (!d.effects.empty()) text += d.effects.front().probability > likely ? notConfirmed(d) : mostProbable(d);
   std::vector<std::string> sentences = {text + ".", noneWords(d), d.where.empty() ? "" : whereSentence(d) + ".", shape(d)};
   if (d.attempt.effects.empty()) return sentences;
-  sentences.push_back(fmt::format(
-      "What comes nearest, {}, removes {} of the gap on data that neither fitting nor choosing had seen; attempt.json holds it, to build "
-      "on, not to believe.",
-      listWords(d.attempt.effects), percentWords(d.attempt.reduction_percent)));
+  sentences.push_back(
+      fmt::format("The best rejected hypothesis, {}, removes {} of the gap on held-out data; attempt.json holds it as a starting point, "
+                  "not as a finding.",
+                  listWords(d.attempt.effects), percentWords(d.attempt.reduction_percent)));
   sentences.push_back(remainder(d.attempt.after));
   return sentences;
 }
@@ -334,8 +336,7 @@ std::vector<std::string> unexplainedSentences(const Diagnosis& d) {
 std::vector<std::string> foundSentences(const Diagnosis& d) {
   const auto best = std::ranges::find(d.explanations, d.chosen, &ExplanationProbability::effects);
   return {d.where.empty() ? "" : whereSentence(d) + ".",
-          fmt::format("The best explanation ({} likely) is {}; adding {} removes {}{} of the gap on data that neither fitting nor choosing "
-                      "had seen.",
+          fmt::format("The best explanation ({} likely) is {}; adding {} to the model removes {}{} of the gap on held-out data.",
                       probabilityWords(best == d.explanations.end() ? 0 : best->probability), chosenWords(d),
                       d.chosen.size() > 1 ? "them" : "it", percentWords(d.reduction_percent), intervalWords(d)),
           remainder(d.after), noneWords(d), otherwise(d)};
@@ -349,7 +350,7 @@ std::vector<std::string> verdictSentences(const Diagnosis& d) {
     case Verdict::no_gap:
       return {"No gap: the recordings agree with the model up to the noise."};
     case Verdict::not_excited:
-      return {"I cannot tell: the commands rest, so the recordings do not show what the plant does."};
+      return {"I cannot tell: the commands do not change, so the recordings do not show how the plant responds."};
     case Verdict::unexplained:
       sentences = unexplainedSentences(d);
       break;

@@ -30,7 +30,7 @@ int makeCases(MakeArguments& arguments) {
   arguments.make.progress = [&](int done, int count) { progress.show(done, count); };
   const auto key = blind::make(arguments.folder, arguments.keys, arguments.make);
   if (key.empty()) {
-    fmt::print(stderr, "musclesim: interrupted; the cases made so far have no key yet; the same call goes on\n");
+    fmt::print(stderr, "musclesim: interrupted; the cases made so far have no key yet; repeat the call to continue\n");
     return interrupted_base + interruptSignal();
   }
   fmt::print("cases   {}\nkey     {}\nseal    {}/seal.json\n", arguments.make.count + arguments.make.arm_count, key.string(),
@@ -44,9 +44,9 @@ Action addMake(CLI::App& command) {
   command.add_option("--keys", arguments->keys, "Folder for the key, out of reach of `blind run`")->required();
   command.add_option("--count", arguments->make.count, "Cases on rig and elbow in turn (default 120)");
   command.add_option("--arm-count", arguments->make.arm_count, "Further cases on the arm (default 12)");
-  command.add_option("--seed", arguments->make.seed, "Of all draws (default 1)");
-  command.add_option("--duration-s", arguments->make.duration_s, "Of each recording (default 6); half of it on the arm");
-  addList(command, "--kinds", arguments->make.kinds, "Only these: single, double, open, null");
+  command.add_option("--seed", arguments->make.seed, "Seed of all draws (default 1)");
+  command.add_option("--duration-s", arguments->make.duration_s, "Duration of each recording (default 6); on the arm half of it");
+  addList(command, "--kinds", arguments->make.kinds, "Only these kinds of case: single, double, open, null");
   addList(command, "--causes", arguments->make.causes, "Only these effects of the catalogue (default: all in turn)");
   command.add_option("--jobs", arguments->make.job_count, "Threads (default: one per core); the cases do not depend on it")
       ->check(CLI::Range(1, 1024));
@@ -67,7 +67,7 @@ int runCases(RunArguments& arguments) {
   arguments.run.progress = [&](int done, int count) { progress.show(done, count); };
   const blind::RunSummary summary = blind::run(arguments.folder, arguments.run);
   fmt::print("answers  {} of {}\n", summary.answered, summary.count);
-  if (summary.failed > 0) fmt::print("failed   {}: the answer is the reason why the case cannot be diagnosed\n", summary.failed);
+  if (summary.failed > 0) fmt::print("failed   {}: the answer says why the case cannot be diagnosed\n", summary.failed);
   return interruptSignal() != 0 ? interrupted_base + interruptSignal() : done;
 }
 
@@ -101,7 +101,7 @@ int followCases(FollowArguments& arguments) {
 Action addFollow(CLI::App& command) {
   auto arguments = std::make_shared<FollowArguments>();
   command.add_option("folder", arguments->folder, "Folder with cases and answers")->required();
-  command.add_option("--keys", arguments->key, "The key's file")->required();
+  command.add_option("--keys", arguments->key, "File of the key")->required();
   command.add_option("--jobs", arguments->follow.job_count, "Cases at once (default: one per core); the results do not depend on it")
       ->check(CLI::Range(1, 1024));
   addList(command, "--candidates", arguments->follow.candidates, "Only these effects, by id, separated by commas");
@@ -143,7 +143,7 @@ int scoreCases(const ScoreArguments& arguments) {
 Action addScore(CLI::App& command) {
   auto arguments = std::make_shared<ScoreArguments>();
   command.add_option("folder", arguments->folder, "Folder with cases and answers")->required();
-  command.add_option("--keys", arguments->key, "The key's file")->required();
+  command.add_option("--keys", arguments->key, "File of the key")->required();
   command.add_option("--docs", arguments->docs, "Also write FOLDER/blind.md and its figures");
   command.add_flag("--json", arguments->json, "Print the totals as one JSON object");
   return [arguments] { return scoreCases(*arguments); };

@@ -142,23 +142,23 @@ int diagnoseCommand(const ModelOptions& model, const DiagnoseArguments& argument
 
 Action addDiagnose(CLI::App& command, ModelOptions& model) {
   auto arguments = std::make_shared<DiagnoseArguments>();
-  command
-      .add_option("recordings", arguments->recordings, "Recordings of one plant; with several, the last is only used to measure the result")
+  command.add_option("recordings", arguments->recordings, "Recordings of one plant; of several, the last one only measures the result")
       ->required();
   command.add_option("--out", arguments->out,
                      "Folder for report.html, diagnosis.json, effects.json and the rest (default: RECORDING-diagnosis)");
   command.add_option("--jobs", arguments->jobs, "Threads (default: one per core); the answer does not depend on it")
       ->check(CLI::Range(1, 1024));
   addList(command, "--candidates", arguments->candidates, "Only these effects, by id, separated by commas");
-  addList(command, "--exclude", arguments->exclude, "All effects but these");
+  addList(command, "--exclude", arguments->exclude, "All effects except these, by id, separated by commas");
   addList(command, "--tune", arguments->tune,
-          "Numbers of the model that nobody measured, by name, separated by commas: fitted first, written to nominal.toml");
-  command.add_option("--max-effects", arguments->max_effects, "Effects at once, found one after the other (default 2)")
+          "Parameters of the model that nobody measured, by name, separated by commas: fitted first, written to nominal.toml");
+  command
+      .add_option("--max-effects", arguments->max_effects, "Largest number of effects in one explanation, added one at a time (default 2)")
       ->check(CLI::Range(1, 6));
   addList(command, "--ignore-columns", arguments->ignore_columns, "Columns to skip, separated by commas");
   addModelOptions(command, model);
   command.remove_option(command.get_option("--json"));
-  command.add_option("--json", arguments->json, "Write diagnosis.json also to FILE");
+  command.add_option("--json", arguments->json, "Also write diagnosis.json to FILE");
   return [&model, arguments] { return diagnoseCommand(model, *arguments); };
 }
 

@@ -298,7 +298,7 @@ TEST(Diagnose, TellsWhatComesNearestWhereNothingDeservesBelief) {
   EXPECT_GT(found.attempt.reduction_percent, 85);
   EXPECT_EQ(found.attempt.effects.size(), found.attempt.active_effects.size());
   EXPECT_TRUE(contains(diagnosisJson(found), "\"attempt\""));
-  EXPECT_TRUE(contains(diagnosisSummary(found), "What comes nearest"));
+  EXPECT_TRUE(contains(diagnosisSummary(found), "The best rejected hypothesis"));
 }
 
 TEST(Diagnose, EffectsThatThePlantCannotTakeAreNoCandidates) {
