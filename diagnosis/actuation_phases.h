@@ -1,4 +1,4 @@
-/// The residual by what the commands do.
+/// The residual by actuation phase: while commands rise, fall or rest.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@ enum class ActuationPhase { filling, venting, holding };
 constexpr std::size_t phase_count = 3;
 std::string nameOf(ActuationPhase phase);
 
-/// Mean square of residual over floor and number of rows while some command rises, while it falls, and while none has changed for a tenth
-/// of a second; of several commands the one that changes most decides.
+/// Per phase the sum of squares of residual over sigma and the number of rows: filling while some command rises, venting while it falls,
+/// holding while no command has changed for a tenth of a second. If several commands change, the one that changes most decides.
 struct PhaseSums {
   std::array<double, phase_count> square{}, rows{};
   double meanSquare(ActuationPhase phase) const;

@@ -1,4 +1,5 @@
-/// Which effects explain the gap: screen, refit, compare, pairs, honest no.
+/// Which effects explain the gap: screens all hypotheses, fits the promising ones, compares them, adds further effects, and says if none
+/// fits.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,17 +18,17 @@
 namespace musclesim {
 
 struct Attribution {
-  std::vector<Hypothesis> hypotheses;      ///< of the whole catalogue: where the gap lies does not depend on what may be an answer
-  std::vector<char> allowed;               ///< of every suspect: it may be an answer
-  std::set<std::string> thinned;           ///< labels of which not all variants are among the suspects
-  std::vector<Sensitivity> sensitivities;  ///< of all suspects, on the first look; without changes where that was not worth its time
-  std::size_t screened_count = 0;          ///< suspects that were looked at on all of the look
+  std::vector<Hypothesis> hypotheses;      ///< whole catalogue: fault isolation does not depend on the candidates
+  std::vector<char> allowed;               ///< per hypothesis: it may be an answer
+  std::set<std::string> thinned;           ///< labels of hypotheses that lost some of their variants
+  std::vector<Sensitivity> sensitivities;  ///< per hypothesis, on the screening segments; without changes if it was not screened there
+  std::size_t screened_count = 0;          ///< hypotheses that were screened on all screening segments
   std::vector<FittedHypothesis> fits;      ///< best first
   double none_of_these = 0, no_effect = 0;
 };
 
-/// How far behind the best, in log misfit per affected cell, a fit may be and go on: the more the best itself still leaves, the farther,
-/// since the others have as little settled after the same number of rounds.
+/// Pruning margin in log misfit per affected residual block: a candidate continues if its misfit is within `beyond_best` plus
+/// `share_of_best` times the best misfit of the best one; early fits have not converged.
 struct PruningMargin {
   double beyond_best, share_of_best;
 };
@@ -39,9 +40,9 @@ class Attributor {
  public:
   Attributor(const Plant& plant, const DiagnosisOptions& options, OnSimulation on_simulation);
 
-  /// The first look: what every effect of the catalogue would change.
+  /// Screening: the sensitivity of the residual to every effect of the catalogue.
   void screen();
-  /// Fits, pairs, probabilities.
+  /// Fits single hypotheses, adds further effects, computes the probabilities.
   void decide();
 
   const Comparison& screeningComparison() const { return screening_; }
@@ -51,14 +52,14 @@ class Attributor {
   const Attribution& result() const { return result_; }
   Model modelOf(const FittedHypothesis& fitted) const;
   const FittedHypothesis& nearest() const;
-  /// What planning an experiment needs to know of an explanation.
+  /// The fitted hypothesis as nextExperiment() needs it, with the derivatives of its prediction.
   Rival rival(const FittedHypothesis& fitted, const std::string& label) const;
 
  private:
-  /// An explanation that is yet to be fitted.
+  /// A hypothesis that is yet to be fitted.
   struct Candidate {
     FittedHypothesis fitted;
-    double without;  ///< misfit on the look without its last suspect
+    double without;  ///< misfit on the screening segments without its last effect
   };
 
   std::vector<Candidate> begunBySquares(const std::vector<Candidate>& candidates);
@@ -67,13 +68,13 @@ class Attributor {
   Eigen::VectorXd clampedAll(const std::vector<std::size_t>& members, const Eigen::VectorXd& z) const;
   FitProblem problemOf(const FittedHypothesis& fitted, const Comparison& comparison, Fidelity fidelity) const;
   void refit(FittedHypothesis& fitted, const Comparison& comparison, int rounds, Fidelity fidelity) const;
-  static constexpr int more_rounds = 6;  ///< of a fit that is worth going on with
+  static constexpr int more_rounds = 6;  ///< of a fit that continues after the first rounds
   void fitToAll(FittedHypothesis& fitted) const;
   void takeFromCounterparts(FittedHypothesis& fitted) const;
   bool hasInactiveEffect(const FittedHypothesis& fitted) const;
   Comparison firstScreeningSegment() const;
   void keepNearestVariants();
-  enum class Ties { kept, dropped };  ///< of the last one kept
+  enum class Ties { kept, dropped };  ///< variants as good as the last one kept
   void keepNearestVariants(const Comparison& comparison, std::size_t kept, Ties ties);
   std::vector<std::size_t> worthScreening() const;
   void screenHypotheses(const Eigen::VectorXd& nominal);
@@ -96,7 +97,7 @@ class Attributor {
   Eigen::VectorXd stepWithout(const std::set<std::size_t>& left_out, const FittedHypothesis& fitted, const Eigen::MatrixXd& jacobian) const;
   std::set<std::size_t> sameCommandsAs(std::size_t segment) const;
   struct Unmoved {
-    std::vector<double> misfit;          ///< per stretch
+    std::vector<double> misfit;          ///< per segment
     std::vector<Eigen::VectorXd> shift;  ///< fine minus coarse prediction
   };
   Eigen::VectorXd partOf(std::size_t segment, const Eigen::VectorXd& all) const;
@@ -109,7 +110,7 @@ class Attributor {
   const DiagnosisOptions& options_;
   OnSimulation on_simulation_;
   Comparison screening_, fit_;
-  std::vector<Comparison> one_by_one_;  ///< the stretches of fit_, each by itself
+  std::vector<Comparison> one_by_one_;  ///< the segments of fit_, one comparison each
   Eigen::VectorXd screening_residual_, nominal_residual_;
   Attribution result_;
 };

@@ -1,4 +1,4 @@
-/// Where the gap arises: stages of a sample's way, components, regimes. Comes before, and does not use, the fits of effects.
+/// Fault isolation: at which stage, component and actuation phase the gap arises. Runs before the fits of effects and does not use them.
 #pragma once
 
 #include <string>
@@ -12,14 +12,14 @@ namespace musclesim {
 
 struct FaultIsolation {
   std::vector<Place> places;  ///< largest share first; shares sum to 1
-  std::string method;         ///< which signals decided, in words
+  std::string method;         ///< the evidence, in words
 };
 
-/// Stages are told apart by substitution where the signals are there:
-///   measured pressures as commands of the model: what vanishes was made by command or pressure stage
-///   measured pressure and length into the force law, against the measured tension: force stage
-/// on all that is fitted (`whole`), and, for what substitution leaves open, by how well a small typical disturbance of each stage
-/// (`signatures`) resembles the residual on the first look.
+/// Distinguishes stages by substitution if the signals are measured:
+///   measured pressures as commands of the model: the part of the gap that vanishes arose in the command or pressure stage
+///   measured pressure and length into the force law, compared with the measured tension: force stage
+/// on all fitted data (`whole`). For the stages that substitution leaves open, compares the residual on the screening segments with the
+/// change that a small typical disturbance of each stage makes (`sensitivities`).
 FaultIsolation isolateFault(const Comparison& whole, const Eigen::VectorXd& residual_of_all, const Comparison& screening,
                             const std::vector<Hypothesis>& hypotheses, const std::vector<Sensitivity>& sensitivities,
                             const Eigen::VectorXd& screening_residual);

@@ -1,4 +1,4 @@
-/// How far the gap shrinks on data that neither fitting nor choosing has seen, and what simpler changes of the model would have gained.
+/// Gap reduction on held-out data, and what two controls gain: re-tuning the model, and a disturbance without meaning.
 #pragma once
 
 #include <cstdint>
@@ -11,23 +11,24 @@ namespace musclesim {
 /// 100 (1 - after / before) of the normalised gaps; 0 if there is no gap before.
 double gapReductionPercent(const Gap& before, const Gap& after);
 
-/// Whether a shrink deserves belief beside those of changes without meaning: 5 points more than the better of them and than nothing, or
-/// less than half of what that one leaves is left.
+/// Whether a gap reduction clearly beats the controls: it is 5 points above the better control and above 0, or leaves less than half of
+/// what the better control leaves.
 bool clearlyBeats(double reduction_percent, double nominal_refit_percent, double negative_control_percent);
 
-/// Residuals with and without what was found.
+/// Residuals without and with the effects found.
 struct BeforeAndAfter {
   const Comparison& comparison;
   const Eigen::VectorXd &before, &after;
 };
 
-/// The shrink on what was held out, and the interval in which that of another recording of the same plant is expected with 95 %. It holds
-/// two: a bootstrap over blocks of rows of one second, 1000 draws (Kuensch 1989), and, where there are three recordings or more, Student's
-/// prediction interval for one more value of ln(after / before), which has one value per recording, fitted or held out. It reaches 100 %
-/// where its upper end leaves no more than noise alone may.
+/// The gap reduction on the held-out data, and the interval in which it is expected to lie with 95 % on another recording of the same
+/// plant. The interval covers two others: a bootstrap over blocks of one second of rows, 1000 draws (Kuensch 1989), and, for three
+/// recordings or more, Student's prediction interval for one more value of ln(after / before), which has one value per recording, fitted or
+/// held out. It extends to 100 % if its upper end leaves no more gap than noise alone may.
 Estimate gapReductionInterval(const BeforeAndAfter& held_out, const BeforeAndAfter& fitted, std::uint64_t seed);
 
-/// Residual on held_out after re-tuning the model's own numbers (Plant::nominalParameters) on `fitted`, without any effect.
+/// Negative control: residual on held_out after fitting a disturbance of the commands without physical meaning, a sum of `parameter_count`
+/// sines of random frequency (0.1 .. 2 Hz) and phase with fitted amplitudes.
 Eigen::VectorXd nominalRefitResidual(const Comparison& fitted, const Comparison& held_out, const OnSimulation& on_simulation);
 
 /// Residual on held_out after fitting a disturbance of the commands without physical meaning: a sum of `parameter_count` sines of random

@@ -1,4 +1,4 @@
-/// A fitted hypothesis as far as planning an experiment needs it.
+/// A fitted hypothesis as the planner of experiments needs it.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,12 +9,12 @@
 
 namespace musclesim {
 
-/// An explanation as fitted, with what is made of it so far and what its numbers can still take up.
+/// A fitted hypothesis with its probability and its Jacobian.
 struct Rival {
   std::string label;
   Model model;
-  double probability;           ///< need not sum to 1
-  std::vector<Model> beside{};  ///< with one coordinate each moved by any step
+  double probability;           ///< of all rivals; need not sum to 1
+  std::vector<Model> beside{};  ///< the models with one coordinate each moved by a step
   Eigen::MatrixXd
       slopes{};  ///< what those steps change in the recordings that it was fitted to, times the weights of the fit: [rows, steps]
 };

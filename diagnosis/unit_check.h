@@ -5,8 +5,8 @@
 
 namespace musclesim {
 
-/// Throws BadFile if a signal's size is about a thousand times that of the model's or a thousandth of it: m in place of mm, kPa in
-/// place of fractions.
+/// Throws BadFile if a signal is about a thousand times as large as in the model, or a thousandth of it: m instead of mm, kPa instead of
+/// fractions.
 void requireUnits(const Plant& plant, int recording, const Prediction& prediction);
 
 }  // namespace musclesim
