@@ -21,8 +21,7 @@ struct FittedHypothesis {
   Eigen::VectorXd tuning_half_width = {};  ///< see Plant::tunedAt
   bool fitted_to_all = false;              ///< not only to the screening segments
   bool is_inactive = false;                ///< one of its effects is inactive: the fit is as good at nearly zero strength
-  Eigen::VectorXd cross_validated =
-      {};  ///< cross-validated residual: every segment predicted from a fit to the others; empty if not computed
+  Eigen::VectorXd cross_validated = {};    ///< residual of each segment predicted from a fit to the others; empty if not computed
   /// The residual that its odds are computed from.
   const Eigen::VectorXd& validationResidual() const { return cross_validated.size() ? cross_validated : residual; }
 };
@@ -37,11 +36,10 @@ struct Weighing {
   double per_excess = 2.25;      ///< penalty per e-fold by which a parameter exceeds its usual range
   double shared_sensor = 4.5;    ///< ln odds of a fault of one sensor against a fault that all sensors share
   double law_mismatch = 0.1;     ///< share of the gap that the right cause may leave if its law differs from ours
-  double close_law_mismatch = 0.01;  ///< the same if its law is close to ours
-  double per_share_left = 12;        ///< ln odds of "none of these" per share of the log misfit that the best hypothesis leaves
-  double share_of_unknown = 0.3;     ///< remaining share at which "none of these" is as likely as the best hypothesis
-  double per_further_strength =
-      0.6;  ///< ln odds of "none of these" per further strength of the best hypothesis: flexible laws fit foreign causes
+  double close_law_mismatch = 0.01;   ///< the same if its law is close to ours
+  double per_share_left = 12;         ///< ln odds of "none of these" per share of the log misfit that the best hypothesis leaves
+  double share_of_unknown = 0.3;      ///< remaining share at which "none of these" is as likely as the best hypothesis
+  double per_further_strength = 0.6;  ///< ln odds of "none of these" per further strength of the best: flexible laws fit much
 };
 
 class Odds {

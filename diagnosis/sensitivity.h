@@ -15,15 +15,14 @@ namespace musclesim {
 struct Sensitivity {
   /// Change of the prediction by each strength alone, at z = 1; empty columns if the model diverged.
   std::vector<Eigen::VectorXd> per_strength;
-  Eigen::VectorXd amount;  ///< multiple of each strength that removes most
-  bool from_threshold =
-      false;  ///< the typical strength was set just above the threshold from which the effect shows; below it the effect may do nothing
-  double log_misfit = 0;  ///< log misfit of the remaining residual
+  Eigen::VectorXd amount;       ///< multiple of each strength that removes most
+  bool from_threshold = false;  ///< z = 1 was set at the threshold of the effect, below which it may do nothing
+  double log_misfit = 0;        ///< log misfit of the remaining residual
   /// Largest RMS over sigma, in any residual block, of the change at typical strengths; empty if not all of them could be simulated.
   std::optional<double> excitation_ratio;
 };
 
-/// Called after each simulation, from any thread, by one thread at a time.
+/// Called after each simulation, from any thread; must be thread-safe.
 using OnSimulation = std::function<void()>;
 
 /// Whether screening may rescale or remove the strengths of a hypothesis, or must keep them.
