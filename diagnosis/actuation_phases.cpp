@@ -39,7 +39,7 @@ PhaseSums phaseSums(const Comparison& comparison, const Eigen::VectorXd& residua
     for (std::size_t i = 0; i < block.rows.size(); ++i) {
       const auto row = static_cast<std::size_t>(block.rows[i]);
       while (recording.time_s[before] < recording.time_s[row] - window_s - rounding_s) ++before;
-      const std::size_t from = row > 0 ? std::min(before, row - 1) : 0;  // rows may lie further apart than that
+      const std::size_t from = row > 0 ? std::min(before, row - 1) : 0;  // rows may be further apart than the window
       const auto phase = static_cast<std::size_t>(phaseAt(recording, row, from));
       const double r = residual[block.first + static_cast<Eigen::Index>(i)] / block.sigma;
       sums.square[phase] += r * r;

@@ -15,17 +15,18 @@ namespace musclesim {
 
 namespace {
 
-constexpr std::size_t single_count = 14;    ///< suspects that are fitted
-constexpr std::size_t component_count = 8;  ///< suspects on the component of the best that are fitted
-constexpr std::size_t pair_count = 6;       ///< further effects that are fitted beside the best
-constexpr std::size_t base_count = 3;       ///< explanations beside which further effects are looked for
-constexpr std::size_t fewer_pairs = 3;      ///< further effects that are fitted beside the second and third of them
-constexpr double likely_share = 0.03;       ///< of the best one's probability, that those have at least
-constexpr double least_bound = -1.5;        ///< ln of the odds of one more effect that leaves nothing; below, none is looked for
-constexpr int few_effects = 2;              ///< up to that many, the first look serves for all of them
+constexpr std::size_t single_count = 14;    ///< hypotheses that are fitted
+constexpr std::size_t component_count = 8;  ///< hypotheses on the component of the best one that are fitted
+constexpr std::size_t pair_count = 6;       ///< further effects that are fitted beside the best hypothesis
+constexpr std::size_t base_count = 3;       ///< fitted hypotheses to which further effects are added
+constexpr std::size_t fewer_pairs = 3;      ///< further effects that are fitted beside the second and third
+constexpr double likely_share = 0.03;       ///< least probability of these, as a share of the best one's
+constexpr double least_bound = -1.5;        ///< least optimistic bound, ln odds, for which a further effect is tried
+constexpr int few_effects = 2;              ///< up to this many effects, one screening serves for all of them
 constexpr int first_rounds = 2, square_rounds = 3, last_rounds = 2;
-constexpr Eigen::Index many_coordinates = 3;  ///< from so many on, a fit also begins by plain least squares: the misfit has many minima
-constexpr int many_rounds = 12;               ///< in place of the last rounds where many effects act together
+constexpr Eigen::Index many_coordinates =
+    3;                           ///< from this number on, a fit also starts by plain least squares, because the misfit has many minima
+constexpr int many_rounds = 12;  ///< in place of last_rounds if many effects act together
 constexpr PruningMargins single_margins = {{0.8, 0.5}, {0.4, 0.15}}, pair_margins = {{0.25, 0}, {0.1, 0}};
 
 }  // namespace
@@ -70,8 +71,7 @@ Eigen::VectorXd Attributor::clampedAll(const std::vector<std::size_t>& members, 
   return result;
 }
 
-/// The effects' coordinates and those of the numbers of the model that nobody measured, fitted together: either could stand in for the
-/// other.
+/// Fits the effects' coordinates and the tuned parameters together, because either could stand in for the other.
 FitProblem Attributor::problemOf(const FittedHypothesis& fitted, const Comparison& comparison, Fidelity fidelity) const {
   const Eigen::Index effect_count = fitted.z.size(), tuned_count = fitted.tuning.size();
   FitProblem problem;
@@ -107,7 +107,7 @@ void Attributor::refit(FittedHypothesis& fitted, const Comparison& comparison, i
   fitted.log_misfit = result.log_misfit / comparison.affectedBlocks(&comparison == &fit_ ? nominal_residual_ : screening_residual_);
 }
 
-/// In fine steps.
+/// Fits to all fitting segments, with fine time steps.
 void Attributor::fitToAll(FittedHypothesis& fitted) const {
   if (fitted.fitted_to_all) return;
   refit(fitted, fit_, options_.max_effects > few_effects ? many_rounds : last_rounds, Fidelity::fine);
@@ -116,10 +116,10 @@ void Attributor::fitToAll(FittedHypothesis& fitted) const {
   fitted.fitted_to_all = true;
 }
 
-/// What the recordings do not determine takes the value of the other direction: a valve of which only the venting was recorded fills at the
-/// same rate, for all that is known.
+/// A parameter that the recordings do not determine takes the value of the other direction: a valve of which only the venting was recorded
+/// is taken to fill at the same rate.
 void Attributor::takeFromCounterparts(FittedHypothesis& fitted) const {
-  constexpr double noticeable = 0.01;  // log misfit per affected cell
+  constexpr double noticeable = 0.01;  // log misfit per affected block
   FittedHypothesis changed = fitted;
   Eigen::Index first = 0;
   for (const std::size_t index : fitted.members) {
@@ -137,7 +137,7 @@ void Attributor::takeFromCounterparts(FittedHypothesis& fitted) const {
   if (changed.residual.size() == fit_.size() && changed.log_misfit < fitted.log_misfit + noticeable) fitted = changed;
 }
 
-/// The last suspect's strengths are taken down until the prediction on the look is no worse than without it.
+/// Reduces the strengths of the last effect until the prediction on the screening segments is no worse than without it.
 void Attributor::weakenStart(Candidate& candidate) const {
   constexpr double share = 0.3;
   constexpr int weakenings = 4;
@@ -151,25 +151,25 @@ void Attributor::weakenStart(Candidate& candidate) const {
   }
 }
 
-/// A further effect that gains next to nothing on the look after the first steps will not be believed.
+/// Whether a further effect gains something on the screening segments after the first rounds; otherwise it will be improbable.
 bool Attributor::gainsOnScreening(const Candidate& candidate) const {
   constexpr double least_gain = 0.1;
   const double without = candidate.without / screening_.affectedBlocks(screening_residual_);
   return candidate.fitted.members.size() == 1 || candidate.fitted.log_misfit < without - least_gain;
 }
 
-/// Nor will one whose explanation is far behind the likeliest so far.
+/// Whether a fitted hypothesis is close enough to the most probable one to be refined.
 bool Attributor::mayBeBelieved(const FittedHypothesis& fitted) const {
-  constexpr double far_behind = 13.5;  // ln of the odds; what a fit in fine steps may still gain
+  constexpr double far_behind = 13.5;  // ln odds; a fit in fine steps may gain this much
   if (fitted.members.size() == 1) return true;
   double best = -std::numeric_limits<double>::infinity();
   for (const FittedHypothesis& other : result_.fits) best = std::max(best, odds().ofHypothesis(other));
   return fitted.residual.size() == fit_.size() && odds().ofHypothesis(fitted) > best - far_behind;
 }
 
-/// Of candidates with the same effects the one with the least misfit, where further coordinates must be worth their while.
+/// Keeps, of candidates with the same effects, the one with the least misfit, with a penalty per coordinate.
 void Attributor::keepBetterOfSame(std::vector<Candidate>& candidates) const {
-  constexpr double worth_a_coordinate = 0.05;  // log misfit per affected cell
+  constexpr double worth_a_coordinate = 0.05;  // log misfit per affected block
   auto costOf = [&](const FittedHypothesis& fitted) {
     return fitted.log_misfit + worth_a_coordinate * static_cast<double>(fitted.z.size());
   };
@@ -184,7 +184,8 @@ void Attributor::keepBetterOfSame(std::vector<Candidate>& candidates) const {
   candidates = std::move(kept);
 }
 
-/// Candidates with one effect of many numbers once more, begun by plain least squares. Not where something explains the look already.
+/// Fits candidates with one effect of many coordinates again, starting by plain least squares. Skipped if a candidate explains the
+/// screening segments already.
 std::vector<Attributor::Candidate> Attributor::begunBySquares(const std::vector<Candidate>& candidates) {
   constexpr double little = 0.2;  // of the log misfit
   double least = screening_.logMisfit(screening_residual_) / screening_.affectedBlocks(screening_residual_);
@@ -206,9 +207,9 @@ std::vector<Attributor::Candidate> Attributor::begunBySquares(const std::vector<
   return result;
 }
 
-/// In three rounds, each for those that the round before left within reach of the best: a few steps on the look, more steps, all recordings
-/// in fine steps (coarse ones blur what lasts some milliseconds). Those out of reach keep what they had, with their misfit on all
-/// recordings.
+/// Fits candidates in three rounds: a few steps on the screening segments, more steps there, then all fitting segments with fine time steps
+/// (coarse ones blur what lasts some milliseconds). After each round only candidates within the pruning margin of the best continue; the
+/// others keep their values, with their misfit on all fitting segments.
 void Attributor::fitTogether(std::vector<Candidate> candidates, PruningMargins margins) {
   auto forEach = [&](const std::function<bool(const Candidate&)>& chosen, const std::function<void(Candidate&)>& work) {
     parallelFor(static_cast<int>(candidates.size()), options_.job_count, [&](int i) {
@@ -239,7 +240,7 @@ void Attributor::fitTogether(std::vector<Candidate> candidates, PruningMargins m
     if (candidate.fitted.residual.size() == fit_.size()) result_.fits.push_back(std::move(candidate.fitted));
 }
 
-/// The best by the first look, and the best of every stage; each id and component once.
+/// The best hypotheses by screening, and the best of every stage; each label once.
 std::vector<std::size_t> Attributor::survivors(const std::vector<double>& log_misfit, std::size_t count, bool from_every_stage) const {
   std::vector<std::size_t> order(log_misfit.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -265,7 +266,7 @@ void Attributor::fitSingles() {
   fitAlone(survivors(log_misfit, single_count, true));
 }
 
-/// The chosen suspects, each with the variant of it that is next best on the first look.
+/// The chosen hypotheses, each with its next best variant by screening.
 std::vector<std::size_t> Attributor::withSecondVariants(const std::vector<std::size_t>& chosen) const {
   std::vector<std::size_t> result;
   for (const std::size_t index : chosen) {
@@ -289,12 +290,12 @@ void Attributor::fitAlone(const std::vector<std::size_t>& chosen) {
   fitTogether(std::move(candidates), single_margins);
 }
 
-/// What looks alike acts on the same component, most of all in the same stage; where there are many, most of it may not have been among the
-/// first.
+/// Fits further hypotheses on the component of the best one, those of its stage first: look-alikes act there, and on a robot with many
+/// components most of them may not be among the first survivors.
 void Attributor::fitMoreOnTheBestComponent() {
   if (result_.fits.empty()) return;
   const Hypothesis& best = result_.hypotheses[result_.fits.front().members.front()];
-  // A plant with one muscle has no other place for what acts on all.
+  // With one muscle, "all" and "muscle_0" are the same place.
   const auto placeOf = [this](const Hypothesis& hypothesis) {
     return plant_.muscleCount() == 1 && hypothesis.component() == "all" ? std::string("muscle_0") : hypothesis.component();
   };
@@ -321,7 +322,7 @@ void Attributor::fitMoreOnTheBestComponent() {
   fitAlone(chosen);
 }
 
-/// A further effect is looked for beside the likeliest explanations of `count` - 1 effects. Returns whether there was anything to look for.
+/// Adds one further effect to the most probable hypotheses of `count` - 1 effects. Returns whether there was one to extend.
 bool Attributor::fitFurther(std::size_t count) {
   std::vector<FittedHypothesis> bases;
   double likeliest = 0;
@@ -346,7 +347,7 @@ bool Attributor::fitFurther(std::size_t count) {
   return !bases.empty();
 }
 
-/// Whether two explanations hold the same effects on the same components, in whatever order.
+/// Whether two fitted hypotheses have the same effects on the same components, in any order.
 bool Attributor::sameEffects(const FittedHypothesis& one, const FittedHypothesis& other) const {
   auto labels = [&](const FittedHypothesis& fitted) {
     std::set<std::string> result;
@@ -356,12 +357,12 @@ bool Attributor::sameEffects(const FittedHypothesis& one, const FittedHypothesis
   return labels(one) == labels(other);
 }
 
-/// One more effect each beside `base`, chosen by the first look's signatures on what that one leaves.
+/// Candidates that add one effect to `base`, chosen by their sensitivities on the residual of `base`.
 std::vector<Attributor::Candidate> Attributor::candidatesBeside(const FittedHypothesis& base, std::size_t most) const {
   const Eigen::VectorXd predicted = screening_.predicted(modelOf(base));
   if (!predicted.size()) return {};
   const Eigen::VectorXd left = screening_.measured() - predicted;
-  // Where many effects act, what one changes depends on the others: they are looked at again beside what has been found.
+  // With many effects, the change that one makes depends on the others, so they are screened again beside `base`.
   std::vector<Sensitivity> sensitivities = result_.sensitivities;
   if (options_.max_effects > few_effects) {
     std::vector<Hypothesis> hypotheses = result_.hypotheses;
@@ -386,7 +387,7 @@ std::vector<Attributor::Candidate> Attributor::candidatesBeside(const FittedHypo
   return candidates;
 }
 
-/// Sorts by the odds; "none of these" and "no effect" are explanations like any other.
+/// Computes the probabilities from the odds, of "none of these" and "no effect" too, and sorts by them.
 void Attributor::weigh() {
   if (result_.fits.empty() && plant_.interrupted()) return;  // nothing is known yet
   std::vector<double> all = {odds().ofNoEffect(), odds().ofNoneOfThese(result_.fits)};
@@ -401,16 +402,16 @@ void Attributor::weigh() {
                            [](const FittedHypothesis& a, const FittedHypothesis& b) { return a.probability > b.probability; });
 }
 
-/// The explanation that leaves least, where every effect must be worth its while.
+/// The fitted hypothesis with the least misfit, with a penalty per effect.
 const FittedHypothesis& Attributor::nearest() const {
-  constexpr double worth_an_effect = 0.05;  // log misfit per affected cell
+  constexpr double worth_an_effect = 0.05;  // log misfit per affected block
   return *std::ranges::min_element(result_.fits, {}, [](const FittedHypothesis& fitted) {
     const double inactive = fitted.is_inactive ? std::numeric_limits<double>::infinity() : 0;
     return fitted.log_misfit + worth_an_effect * static_cast<double>(fitted.members.size()) + inactive;
   });
 }
 
-/// With the steps of derivatives().
+/// Uses the steps of derivatives().
 Rival Attributor::rival(const FittedHypothesis& fitted, const std::string& label) const {
   Rival result{label, modelOf(fitted), fitted.probability, {}, {}};
   const FitProblem problem = problemOf(fitted, fit_, Fidelity::coarse);

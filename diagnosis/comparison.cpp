@@ -45,7 +45,7 @@ double averagedShareOfSigma(const std::vector<double>& values) {
   return std::sqrt(1.0 / per_block + steady_share * steady_share);
 }
 
-/// What repeats differ by need not be white: it is not averaged.
+/// Adds averaged blocks, except for signals whose sigma comes from repeats: their differences need not be white noise.
 void Comparison::addAverages() {
   const std::size_t plain_count = blocks_.size();
   for (std::size_t i = 0; i < plain_count; ++i) {
@@ -93,7 +93,7 @@ void Comparison::goCoarse(const Eigen::VectorXd& nominal, Purpose purpose) {
   }
 }
 
-/// The signal, as it is, that another step moves most.
+/// The row-by-row signal that the other time step changes most.
 Unsteady Comparison::unsteadiness(const Eigen::VectorXd& change, const Eigen::VectorXd& residual) const {
   Unsteady worst;
   for (const Block& block : blocks_) {

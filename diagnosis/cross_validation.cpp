@@ -1,5 +1,5 @@
-// What speaks against explanations beside their misfit: that they do not hold on recordings that their numbers were not fitted to, and
-// that they do as well at no strength.
+// Two checks of fitted hypotheses beyond their misfit: cross-validation on recordings that their parameters were not fitted to, and whether
+// an effect is inactive.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -12,12 +12,12 @@
 
 namespace musclesim {
 
-/// The step to where the linearised problem is best without some stretches, weighted anew five times. Coordinates that reach a bound, or
-/// go farther than a typical strength or twice where they are, stay there.
+/// The step to the optimum of the linearised problem without some segments, reweighted five times. Coordinates stop at bounds, and at a
+/// typical strength or twice their value, whichever is farther.
 Eigen::VectorXd Attributor::stepWithout(const std::set<std::size_t>& left_out, const FittedHypothesis& fitted,
                                         const Eigen::MatrixXd& jacobian) const {
   constexpr int reweightings = 5;
-  constexpr double damping = 1e-3;  // what changes nothing stays where it is
+  constexpr double damping = 1e-3;  // coordinates without influence stay where they are
   const Eigen::VectorXd longest_step = fitted.z.cwiseAbs().cwiseMax(1.0);
   Eigen::VectorXd step = Eigen::VectorXd::Zero(jacobian.cols()), kept = step;
   Eigen::MatrixXd free = jacobian;
@@ -39,7 +39,7 @@ Eigen::VectorXd Attributor::stepWithout(const std::set<std::size_t>& left_out, c
   return step;
 }
 
-/// The part of a vector over all stretches that belongs to one of them, in the order of that one's own comparison.
+/// The part of a vector over all segments that belongs to one of them, in the order of that segment's own comparison.
 Eigen::VectorXd Attributor::partOf(std::size_t segment, const Eigen::VectorXd& all) const {
   const Comparison& one = one_by_one_[segment];
   Eigen::VectorXd part(one.size());
@@ -51,7 +51,7 @@ Eigen::VectorXd Attributor::partOf(std::size_t segment, const Eigen::VectorXd& a
   return part;
 }
 
-/// An explanation as it is: what fine steps leave of each stretch, and by how much they differ from coarse ones there.
+/// The unmoved fit: its misfit per segment with fine time steps, and the difference between fine and coarse prediction.
 Attributor::Unmoved Attributor::unmoved(const FittedHypothesis& fitted) const {
   Unmoved result{std::vector<double>(one_by_one_.size()), std::vector<Eigen::VectorXd>(one_by_one_.size())};
   parallelFor(static_cast<int>(one_by_one_.size()), options_.job_count, [&](int i) {
@@ -65,12 +65,12 @@ Attributor::Unmoved Attributor::unmoved(const FittedHypothesis& fitted) const {
   return result;
 }
 
-/// The explanation moved by a step, or by a half or quarter of it where that fits the stretches that are not left out worse than it does
-/// unmoved. In coarse steps, with what these change in the explanation as it is.
+/// The fit moved by a step, or by a half or a quarter of it if the full step fits the segments that are kept worse than the unmoved fit.
+/// Coarse predictions are corrected by the fine-minus-coarse difference of the unmoved fit.
 FittedHypothesis Attributor::movedWithout(const std::set<std::size_t>& left_out, const FittedHypothesis& fitted, Eigen::VectorXd step,
                                           const Unmoved& unmoved) const {
   constexpr int halving_count = 3;
-  const double worse = 0.02 * fit_.affectedBlocks(nominal_residual_);  // misfit that is no reason to go less far
+  const double worse = 0.02 * fit_.affectedBlocks(nominal_residual_);  // increase of the misfit that is tolerated
   FittedHypothesis moved = fitted;
   auto gainOf = [&](std::size_t k) {
     const Eigen::VectorXd coarse = one_by_one_[k].predicted(modelOf(moved));
@@ -89,10 +89,10 @@ FittedHypothesis Attributor::movedWithout(const std::set<std::size_t>& left_out,
   return std::isfinite(gain) ? moved : fitted;
 }
 
-/// Leave-one-out cross-validation (Stone 1974): each stretch as predicted by the numbers that fit the others; one with the same commands is
-/// none of those. They differ from the fit to all by the steps of the linearised problem with and without it, made shorter where that fits
-/// the others worse. Where the model diverges with them, the gap is what is left. Tuned numbers stay, since the model without effects keeps
-/// them too.
+/// Leave-one-out cross-validation (Stone 1974): predicts each segment with parameters fitted to the others; repeats of the segment are left
+/// out too. These parameters differ from the fit to all segments by the steps of the linearised problem with and without the segment,
+/// shortened if they fit the others worse. If the model diverges with them, the residual without effects is used. Tuned parameters stay
+/// fixed, because the model without effects keeps them too.
 void Attributor::predictFromOthers(FittedHypothesis& fitted) const {
   FitProblem problem = problemOf(fitted, fit_, Fidelity::coarse);
   const Eigen::Index effect_count = fitted.z.size();
@@ -122,7 +122,7 @@ void Attributor::predictFromOthers(FittedHypothesis& fitted) const {
   if (!plant_.interrupted()) fitted.cross_validated = cross_validated;
 }
 
-/// The stretch itself and its repeats.
+/// The segment itself and its repeats.
 std::set<std::size_t> Attributor::sameCommandsAs(std::size_t segment) const {
   auto recordingOf = [&](std::size_t k) -> const Recording& {
     return plant_.recordings()[static_cast<std::size_t>(fit_.segments()[k].recording)];
@@ -133,10 +133,10 @@ std::set<std::size_t> Attributor::sameCommandsAs(std::size_t segment) const {
   return result;
 }
 
-/// Whether one of its effects does as well, as far as odds are made of it, at next to no strength, with its shape as it is: a leak without
-/// a leak is its regulator's lag.
+/// True if an effect's strength can go to nearly zero at no noticeable loss: its shape parameters explain the data, not the effect. For
+/// example a leak without a leak is the lag of its regulator.
 bool Attributor::hasInactiveEffect(const FittedHypothesis& fitted) const {
-  constexpr double next_to_nothing = 1e-3, noticeable = 0.45;  // typical strengths; ln of the odds
+  constexpr double next_to_nothing = 1e-3, noticeable = 0.45;  // typical strengths; ln odds
   if (fitted.residual.size() != fit_.size()) return false;
   const Eigen::VectorXd as_it_is = fit_.predicted(modelOf(fitted));
   Eigen::Index first = 0;
@@ -158,8 +158,8 @@ bool Attributor::hasInactiveEffect(const FittedHypothesis& fitted) const {
   return false;
 }
 
-/// Fits every explanation that is not out of the question to all recordings and judges it by stretches that it has not seen, and its
-/// effects alone with it, until all of those have been.
+/// Fits every hypothesis that is not improbable to all fitting segments and cross-validates it, and each of its effects alone, until none
+/// is left.
 void Attributor::crossCheck() {
   constexpr double out_of_the_question = 0.001;
   const bool some_unlike = sameCommandsAs(0).size() < fit_.segments().size();
@@ -185,7 +185,7 @@ void Attributor::crossCheck() {
       fitToAll(fitted);
       if (some_unlike && fitted.residual.size() == fit_.size()) predictFromOthers(fitted);
     });
-    // Fine steps may diverge where coarse ones go on.
+    // The model may diverge with fine time steps though not with coarse ones.
     std::erase_if(result_.fits, [&](const FittedHypothesis& fitted) { return fitted.residual.size() != fit_.size(); });
     if (!plant_.interrupted()) weigh();
   }

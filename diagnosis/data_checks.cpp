@@ -16,7 +16,7 @@ namespace musclesim {
 namespace {
 
 constexpr double least_change = 0.02;
-constexpr double usual_steps = 10;  ///< a gap is longer than that many usual steps
+constexpr double usual_steps = 10;  ///< a dropout is longer than this number of usual steps
 
 std::vector<std::string> dropoutNotes(const Recording& recording) {
   std::vector<double> steps;
@@ -32,7 +32,6 @@ std::vector<std::string> dropoutNotes(const Recording& recording) {
 
 }  // namespace
 
-/// Median of the sizes of all numbers; 0 if there are none.
 double medianSize(const std::vector<double>& values) {
   std::vector<double> sizes;
   for (const double value : values)
@@ -82,7 +81,7 @@ std::vector<std::string> dataNotes(const std::vector<Recording>& recordings) {
   std::vector<std::string> notes;
   for (const Recording& recording : recordings) {
     std::ranges::move(dropoutNotes(recording), std::back_inserter(notes));
-    std::map<std::ptrdiff_t, std::vector<std::string>> missing;  // signals by the number of rows without one
+    std::map<std::ptrdiff_t, std::vector<std::string>> missing;  // signals by the number of rows without a value
     for (const Signal& signal : recording.signals)
       missing[std::ranges::count_if(signal.values, [](double value) { return !std::isfinite(value); })].push_back(signal.name);
     for (const auto& [count, names] : missing)

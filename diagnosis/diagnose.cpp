@@ -1,4 +1,4 @@
-// The order of a diagnosis: gap, where, which, how far, what next.
+// The order of a diagnosis: gap, fault isolation, effects, gap reduction, next experiment.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -28,10 +28,10 @@ namespace {
 
 constexpr double listed = 0.01;   ///< least probability that is listed
 constexpr double named = 0.5;     ///< least probability of none_of_these that makes the verdict `unexplained`
-constexpr double as_good = 0.01;  ///< share of the best explanation's probability from which on one cannot be told from it
-constexpr double excited = 1;     ///< a typical effect must change some signal by that many floors
+constexpr double as_good = 0.01;  ///< explanations with at least this share of the best one's probability cannot be distinguished from it
+constexpr double excited = 1;     ///< least change of a signal by a typical effect, in sigmas, for it to be excited
 
-/// Of the program, for the model that is diagnosed, without what nominal.toml holds. Without a hand there is no task.
+/// The options of the program for the diagnosed model, without the values in nominal.toml. A robot without a hand has no task.
 std::string modelOptions(const Plant& plant, const std::optional<std::string>& initial_state) {
   std::string options = "--robot " + plant.robot();
   if (!plant.hasHand()) options += " --controller hold";
@@ -51,7 +51,7 @@ double secondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Counts simulations and tells the caller.
+/// Counts simulations and reports progress to the caller.
 class Monitor {
  public:
   explicit Monitor(const DiagnosisOptions& options) : options_(options) {}
@@ -125,7 +125,7 @@ class Run {
     if (!names.empty()) diagnosis_.notes.push_back(fmt::format("no repeats and no noise_std of {}: {}", fmt::join(names, ", "), how));
   }
 
-  /// Throws BadParameter if nothing could be an answer.
+  /// Throws BadParameter if no effect is left as a candidate.
   void describeCandidates() {
     if (options_.candidates.empty() && options_.exclude.empty()) return;
     for (const Hypothesis& hypothesis : hypotheses(plant_, options_))
@@ -159,7 +159,7 @@ class Run {
     if (diagnosis_.verdict == Verdict::no_gap) diagnosis_.explanations.push_back({{}, 1});
   }
 
-  /// What the recordings could not have shown is told whatever the verdict: that there is no gap does not mean that there is no effect.
+  /// Runs for every verdict, since effects that the recordings could not have shown may be present even without a gap.
   void screen() {
     monitor_.phase("screening all effects", static_cast<long>(hypotheses(plant_, DiagnosisOptions{}).size()));
     attributor_.screen();
@@ -186,7 +186,7 @@ class Run {
     if (!plant_.interrupted()) proposeExperiment();
   }
 
-  /// What none of its variants would have shown; not what was never simulated.
+  /// Labels none of whose variants would have shown; labels that were never simulated are not listed.
   void listNotExcited() {
     const Attribution& attribution = attributor_.result();
     std::set<std::string> shown = attribution.thinned;
@@ -230,7 +230,7 @@ class Run {
     const Attempt attempt{labelsOf(model), model.effects, gap_after, reductionOf(after), interval.low, interval.high};
     const bool found =
         !none && clearlyBeats(attempt.reduction_percent, diagnosis_.nominal_refit_percent, diagnosis_.negative_control_percent);
-    // Nothing to build on: it does not hold beyond what it was fitted to, or gains no more than what means nothing.
+    // Not offered, because it does not hold on the held-out data or gains no more than a control.
     if (!found && attempt.reduction_percent <= std::max({0.0, diagnosis_.nominal_refit_percent, diagnosis_.negative_control_percent}))
       return;
     diagnosis_.tuned = tunedParameters(plant_, best.tuning, best.tuning_half_width);
@@ -259,7 +259,7 @@ class Run {
 
   std::string labelOf(std::size_t hypothesis) const { return attributor_.result().hypotheses[hypothesis].label(); }
 
-  /// Probabilities per effect and per explanation, and the set that cannot be told apart.
+  /// Lists probabilities per effect and per explanation, and the ambiguity set.
   void list() {
     const Attribution& attribution = attributor_.result();
     diagnosis_.none_of_these = attribution.none_of_these;
@@ -287,7 +287,7 @@ class Run {
       if (effect.probability >= listed) diagnosis_.effects.push_back(effect);
     std::ranges::stable_sort(diagnosis_.effects, [](const auto& a, const auto& b) { return a.probability > b.probability; });
     ambiguity();
-    // What was found shows, if not where it is as strong as usual.
+    // An effect that was found is excited, though not at its typical strength.
     std::erase_if(diagnosis_.not_excited, [&](const std::string& label) {
       const auto& tried = diagnosis_.attempt.effects;
       return (found.contains(label) && found[label].probability >= listed) || std::ranges::find(tried, label) != tried.end();
@@ -298,7 +298,7 @@ class Run {
     });
   }
 
-  /// What was looked at and fitted.
+  /// Lists the screened and the fitted hypotheses.
   void listTrials() {
     const Attribution& attribution = attributor_.result();
     const double all = attributor_.screeningComparison().logMisfit(attributor_.screeningResidual());
@@ -341,14 +341,14 @@ class Run {
                other = hypothesis.valuesAt(hypothesis.clamped(z + half));
     std::map<std::string, Estimate> result;
     for (std::size_t i = 0; i < at.size(); ++i) {
-      const auto coordinate = static_cast<Eigen::Index>(i);  // those that are not fitted come last
+      const auto coordinate = static_cast<Eigen::Index>(i);  // parameters that are not fitted come last
       result[at[i].first] = {at[i].second, std::min(one[i].second, other[i].second), std::max(one[i].second, other[i].second),
                              coordinate >= count || std::isfinite(half[coordinate])};
     }
     return result;
   }
 
-  /// Explanations with as many effects as the best that are not much less probable, the best among them.
+  /// The best fit and those with as many effects that are not much less probable.
   std::vector<const FittedHypothesis*> asGood() const {
     std::vector<const FittedHypothesis*> result;
     const auto& all = attributor_.result().fits;
@@ -369,7 +369,7 @@ class Run {
           diagnosis_.ambiguity_set.push_back(labelOf(index));
   }
 
-  /// What tells an explanation from others: its effects but those that all of them hold.
+  /// The effects of a fitted hypothesis that not all the others have.
   std::string ownWords(const FittedHypothesis& fitted, const std::vector<const FittedHypothesis*>& others) const {
     std::vector<std::string> own;
     for (const std::size_t index : fitted.members)

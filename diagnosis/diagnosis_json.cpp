@@ -1,4 +1,4 @@
-// The contract's diagnosis.json, format musclesim-diagnosis-1, and the summary for the terminal.
+// diagnosis.json, format musclesim-diagnosis-1, and the summary for the terminal.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -74,7 +74,7 @@ Json gapJson(const Diagnosis& d) {
           {"sham_shrink_percent", d.negative_control_percent}};
 }
 
-/// What was tried and what it left: enough to weigh the answers in another way without simulating again.
+/// The hypotheses that were tried and their residuals: enough to compute other odds without simulating again.
 Json fittedJson(const Diagnosis& d) {
   Json json = {{"looks", Json::array()}, {"cells", Json::array()}, {"trials", Json::array()}};
   for (const Screening& screening : d.screenings) json["looks"].push_back({screening.effect, screening.removed});

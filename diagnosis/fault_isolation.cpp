@@ -17,9 +17,9 @@ namespace musclesim {
 namespace {
 
 constexpr std::size_t stage_count = 5;
-constexpr double per_misfit = 5;              ///< ln of the odds of a stage per unit of log misfit of its best disturbance
-constexpr double per_further_strength = 0.3;  ///< and per strength of it beyond the first: what has many resembles much
-constexpr double hardly = 0.03;               ///< factor for a stage that a substitution speaks against
+constexpr double per_misfit = 5;              ///< ln odds of a stage per unit of log misfit of its best disturbance
+constexpr double per_further_strength = 0.3;  ///< and per further strength of it: a flexible effect resembles many residuals
+constexpr double hardly = 0.03;               ///< factor for a stage that a substitution contradicts
 
 using StageWeights = std::array<double, stage_count>;
 
@@ -27,13 +27,13 @@ std::size_t indexOf(Stage stage) {
   return static_cast<std::size_t>(stage);
 }
 
-/// Whether a suspect is the fault of the sensor of one of these signals.
+/// Whether a hypothesis is a fault of the sensor of one of these signals.
 bool isSensorOf(const Hypothesis& hypothesis, const std::vector<std::string>& signals) {
   return hypothesis.info().stage == Stage::sensor && hypothesis.component() != "all" &&
          std::ranges::any_of(signals, [&](const std::string& signal) { return Plant::isComponentOf(hypothesis.component(), signal); });
 }
 
-/// Shares of the stages by likeness alone; the sensors of some signals are acquitted.
+/// Shares of the stages by likeness alone, without the sensors of the signals in `acquitted`.
 StageWeights byLikeness(const Comparison& comparison, const std::vector<Hypothesis>& hypotheses,
                         const std::vector<Sensitivity>& sensitivities, const Eigen::VectorXd& residual,
                         const std::vector<std::string>& acquitted) {
@@ -58,7 +58,7 @@ void normalise(StageWeights& weights) {
   for (double& weight : weights) weight = sum > 0 ? weight / sum : 1.0 / stage_count;
 }
 
-/// The likeliest component of a stage; that of the signal that reads wrong, if it is known.
+/// The most probable component of a stage; for the sensor stage that of the wrong signal, if it is known.
 std::string componentOf(Stage stage, const std::vector<Hypothesis>& hypotheses, const std::vector<Sensitivity>& sensitivities,
                         const std::string& wrong_signal) {
   if (stage == Stage::sensor && !wrong_signal.empty())
@@ -75,7 +75,7 @@ std::string componentOf(Stage stage, const std::vector<Hypothesis>& hypotheses, 
   return component;
 }
 
-/// Where the residual is largest, by what the commands do, in words; empty if it is much the same everywhere.
+/// The actuation phase in which the residual is largest, in words; empty if it is similar in all.
 std::string phaseOf(const Comparison& comparison, const Eigen::VectorXd& residual) {
   constexpr double fewest_rows = 50, stands_out = 1.5;
   const PhaseSums sums = phaseSums(comparison, residual);
@@ -92,7 +92,7 @@ std::string phaseOf(const Comparison& comparison, const Eigen::VectorXd& residua
   return rows > 0 && largest > stands_out * square / rows ? found : "";
 }
 
-/// What substitution and agreement of signals say: stages they speak against, and why.
+/// Evidence from substitution and from the consistency of signals: the stages that it contradicts, and why.
 class Evidence {
  public:
   Evidence(const Comparison& comparison, const Eigen::VectorXd& residual) : comparison_(comparison), residual_(residual) {
@@ -101,9 +101,9 @@ class Evidence {
     askTensions();
   }
   bool speaksAgainst(Stage stage) const { return against_.contains(stage) && against_.size() < stage_count; }
-  /// Signals whose sensors read right.
+  /// Signals whose sensors read correctly.
   const std::vector<std::string>& acquittedSignals() const { return acquitted_signals_; }
-  /// The signal that reads wrong, where that is what was found; empty otherwise.
+  /// The signal whose sensor reads wrong, if the evidence shows one; empty otherwise.
   const std::string& wrongSignal() const { return wrong_signal_; }
   std::string words() const {
     if (reasons_.empty())
@@ -169,7 +169,7 @@ class Evidence {
   }
 
   void askWhatPressuresMake(const PressureTest& test) {
-    constexpr double most = 0.5, sure = 2;  // of the gap; standard deviations
+    constexpr double most = 0.5, sure = 2;  // share of the gap; number of standard deviations
     const double uncertainty = sure * test.share_deviation;
     const bool moves_otherwise = test.misfit_increase >= 2 * small_misfit;
     if (test.share > most && test.share > uncertainty && !moves_otherwise)
@@ -216,7 +216,7 @@ class Evidence {
     return largestMotionRatio(comparison_, residual_) < agrees && ratioOf(comparison_, residual_, "pressure_").value_or(1) < agrees;
   }
 
-  static constexpr double small_misfit = 0.1;  ///< mean log misfit of motion and tension below which there is nothing to explain
+  static constexpr double small_misfit = 0.1;  ///< mean log misfit of motion and tension below which there is no gap to explain
   const Comparison& comparison_;
   const Eigen::VectorXd& residual_;
   std::set<Stage> against_;

@@ -19,7 +19,7 @@ constexpr int draw_count = 1000;
 constexpr double block_s = 1;
 constexpr int round_count = 4;
 
-/// Sums of squares of one block, before and after, per signal.
+/// Sums of squares of one bootstrap block, before and after, per signal.
 struct BootstrapBlock {
   std::map<int, std::array<double, 3>> sums;  ///< before, after, rows
 };
@@ -63,10 +63,10 @@ double reductionOf(const Comparison& comparison, const std::vector<const Bootstr
   return before > 0 ? 100 * (1 - after / before) : 0;
 }
 
-/// Normalised gap by which that of noise alone is uncertain with some hundred rows.
+/// Uncertainty of the normalised gap of noise alone, for some hundred rows.
 constexpr double noise_alone = 0.07;
 
-/// ln(after / before) of the normalised gaps of each recording. What is left counts at least as much as noise alone.
+/// ln(after / before) of the normalised gaps of each recording; the gap after counts at least as noise_alone.
 std::vector<double> logRests(const BeforeAndAfter& both) {
   std::map<int, std::map<int, std::array<double, 3>>> sums;  // recording, signal: before, after, rows
   for (const Comparison::Block& block : both.comparison.blocks()) {
@@ -90,7 +90,7 @@ std::vector<double> logRests(const BeforeAndAfter& both) {
   return result;
 }
 
-/// Student's prediction interval for one more value, as shrink in percent.
+/// Student's prediction interval for one more value, as gap reduction in percent.
 std::optional<std::pair<double, double>> ofAnotherRecording(const std::vector<double>& log_rests) {
   constexpr std::array quantile_975 = {4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262};  // 2 .. 9 degrees of freedom
   if (log_rests.size() < 3) return std::nullopt;
@@ -153,7 +153,7 @@ Estimate gapReductionInterval(const BeforeAndAfter& held_out, const BeforeAndAft
     reduction.low = std::min(reduction.low, other->first);
     reduction.high = std::max(reduction.high, other->second);
   }
-  // Where noise alone may leave as much as the best of these does, nothing may be left.
+  // If noise alone may leave as much as the upper end does, the whole gap may be removed.
   if ((1 - reduction.high / 100) * gapsOf(held_out.comparison, all).first <= noise_alone) reduction.high = 100;
   return reduction;
 }

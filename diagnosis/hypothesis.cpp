@@ -68,7 +68,7 @@ Hypothesis::Hypothesis(EffectInfo info, std::string component, const Plant& plan
   if (info_.id == held_effect) countHeld(plant);
 }
 
-/// How many samples are held, and how many in a row, is counted, not fitted.
+/// Counts the share of held samples and the mean length of their runs instead of fitting them.
 void Hypothesis::countHeld(const Plant& plant) {
   double samples = 0, held = 0, runs = 0;
   for (std::size_t s = 0; s < plant.signals().size(); ++s) {
@@ -94,8 +94,8 @@ void Hypothesis::countHeld(const Plant& plant) {
   }
 }
 
-/// Another law has many constants and no neutral ones: the terms of Chou and Hannaford are added to the law of the model, where 0 is
-/// neutral.
+/// Another force law has many constants and no neutral ones, so the terms of Chou and Hannaford are added to the model's law; 0 is neutral
+/// for them.
 void Hypothesis::useCorrectedLaw(const Plant& plant) {
   constexpr double typical_share = 0.1;  // of the tension at full pressure and length
   const double typical_N = typical_share * plant.tensionN(0, 1, plant.muscleRange(0).maximum_mm);
@@ -246,8 +246,7 @@ Eigen::VectorXd Hypothesis::typical() const {
   return z;
 }
 
-/// Levels are a matter of one or the other: whole numbers of bits are tried, rounded and truncated, with full scale at the highest level
-/// and one beyond it; nothing is fitted.
+/// One variant per whole number of bits, rounded and truncated, with full scale at the highest level and one beyond it; nothing is fitted.
 std::vector<Hypothesis> Hypothesis::numbersOfBits() const {
   constexpr int fewest = 3, most = 10;
   std::vector<Hypothesis> result;
@@ -266,9 +265,9 @@ std::vector<Hypothesis> Hypothesis::numbersOfBits() const {
   return result;
 }
 
-/// A small leak shows as its regulator's lag, a large one as what the regulator cannot hold: they look different.
+/// Two variants: a small leak shows as the lag of its regulator, a large one as a pressure that the regulator cannot hold.
 std::vector<Hypothesis> Hypothesis::smallAndLarge() const {
-  constexpr double large = 0.5;  // times the end of the usual range
+  constexpr double large = 0.5;  // times the upper end of the usual range
   std::vector<Hypothesis> result = {*this, *this};
   for (const int strength : strengths_) {
     Coordinate& c = result.back().coordinates_[static_cast<std::size_t>(strength)];
@@ -277,8 +276,8 @@ std::vector<Hypothesis> Hypothesis::smallAndLarge() const {
   return result;
 }
 
-/// A share that may be none, of a second lag, of a filter, of friction that goes with the pressure: the simpler law is fitted by itself,
-/// for the share leads fits away from where it would be best.
+/// With and without shares that may be zero (of a second lag, of a filter, of friction that depends on the pressure): the simpler law is
+/// also fitted by itself, because a share leads fits away from its optimum.
 std::vector<Hypothesis> Hypothesis::withAndWithoutShares() const {
   Hypothesis without = *this;
   for (int i = coordinateCount() - 1; i >= 0; --i) {
@@ -289,7 +288,7 @@ std::vector<Hypothesis> Hypothesis::withAndWithoutShares() const {
   return without.coordinateCount() < coordinateCount() ? std::vector{*this, std::move(without)} : std::vector{*this};
 }
 
-/// A muscle's start and its end, where the robot has both.
+/// Variants for the start and the end of a muscle, if the robot has both.
 std::vector<Hypothesis> Hypothesis::ends(const Plant& plant) const {
   std::vector<Hypothesis> result;
   for (const MuscleEnd end : {MuscleEnd::start, MuscleEnd::end}) {
@@ -302,8 +301,8 @@ std::vector<Hypothesis> Hypothesis::ends(const Plant& plant) const {
   return result;
 }
 
-/// All strengths together, and each by itself: about an axis that lies in the plane of motion a tilt acts by its square, which no small
-/// step shows, and beside another strength it is not looked for farther.
+/// All strengths together, and each alone: a tilt about an axis in the plane of motion acts by its square, so small steps do not show it,
+/// and beside another strength it would not be increased.
 std::vector<Hypothesis> Hypothesis::togetherAndAlone() const {
   std::vector<Hypothesis> result = {*this};
   for (int kept = 0; kept < coordinateCount(); ++kept) {
@@ -360,11 +359,11 @@ std::vector<Hypothesis> hypotheses(const Plant& plant, const DiagnosisOptions& o
   for (const EffectInfo& info : effectCatalogue()) {
     if (!allows(options, info.id)) continue;
     for (const std::string& component : plant.componentsFor(info)) {
-      // A wall stands before one joint or the hand.
+      // A wall stops one joint or the hand, not all.
       if (component == "all" && info.acts_on.size() > 1) continue;
-      // There is no play between a gauge and a pressure.
+      // Effects without relevant parameters on this component cannot act, such as play between a gauge and a pressure.
       if (!info.parameters.empty() && relevantParameters(info, component).empty()) continue;
-      // One sensor fails at a time; clocks and loggers may fail for all at once.
+      // Sensors fail one at a time, but a clock or a logger may fail for all at once.
       const bool shared = info.id == "sensor_delay" || info.id == "sensor_dropout";
       if (info.stage == Stage::sensor && (!plant.compares(component) || (component == "all" && !shared))) continue;
       for (Hypothesis& variant : Hypothesis(info, component, plant).variants(plant)) result.push_back(std::move(variant));

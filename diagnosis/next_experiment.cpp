@@ -23,11 +23,11 @@ namespace musclesim {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double scatter = 4;      ///< noise floors that readings scatter by
-constexpr double worth_it = 2e-4;  ///< probability that a schedule tells contenders apart, below which it is not proposed
-constexpr double apart = 0.5;      ///< noise floors that contenders differ by whom a schedule is said to separate
+constexpr double scatter = 4;      ///< noise sigmas by which readings scatter
+constexpr double worth_it = 2e-4;  ///< least probability of distinguishing the rivals for a schedule to be proposed
+constexpr double apart = 0.5;      ///< least difference, in noise sigmas, of rivals that a schedule is said to separate
 
-/// Between which values a signal is, or may be predicted to stay; nowhere as yet.
+/// An interval of a signal's values; initially empty.
 struct Span {
   double low = infinity, high = -infinity;
   void include(double value) { low = std::min(low, value), high = std::max(high, value); }
@@ -39,7 +39,7 @@ bool isPosition(const std::string& signal) {
   return signal.starts_with("length_") || signal.starts_with("angle_") || signal.starts_with("hand_");
 }
 
-/// What stops allow an angle or a length, and where it is as built.
+/// The range of an angle or a length between its stops, and its value as built.
 struct Travel {
   Span stops;
   double built;
@@ -58,8 +58,9 @@ std::map<std::string, Travel> travelsOf(Simulation& model) {
   return travels;
 }
 
-/// Measured positions may go a quarter of their range farther than they have been. All keep a thirtieth of their travel from stops, but for
-/// where they have been or are as built, and a hundredth more: what rests on a stop is pressed into it.
+/// Allowed intervals of positions. Measured positions may exceed their recorded range by a quarter of it. All keep a thirtieth of their
+/// travel from the stops, except where they have been recorded or are as built; there they may exceed that by a hundredth, since a part
+/// that rests on a stop is pressed into it.
 Spans roomsOf(const Plant& plant) {
   constexpr double farther = 0.25, margin = 1.0 / 30, pressed_in = 0.01;
   Spans been, rooms;
@@ -91,15 +92,15 @@ bool keepsWithin(const Spans& rooms, const Recording& predicted) {
   });
 }
 
-/// A schedule with what the contenders predict.
+/// A schedule with the predictions of the rivals.
 struct TriedSchedule {
   ScheduleChoice choice;
   Recording commands;
-  std::vector<Recording> predicted;  ///< of every contender; fewer: one of them would go too far
-  std::optional<Recording> nominal;  ///< without effects; none if that diverges
+  std::vector<Recording> predicted;  ///< one per rival; fewer if one of them would move too far
+  std::optional<Recording> nominal;  ///< without effects; empty if the model diverges
 };
 
-/// The schedule at the largest of a few shares of its amplitude at which all contenders keep within the rooms.
+/// The schedule at the largest of a few amplitudes at which all rivals stay within the allowed intervals.
 TriedSchedule triedOut(const Plant& plant, ScheduleChoice choice, const std::vector<Rival>& rivals, const Spans& rooms, Fidelity fidelity,
                        const OnSimulation& on_simulation) {
   constexpr double smaller = 0.7, smallest = 0.2;
@@ -117,7 +118,7 @@ TriedSchedule triedOut(const Plant& plant, ScheduleChoice choice, const std::vec
   return trial;
 }
 
-/// What a schedule's readings and their averages over blocks of rows are, in units of their floors: signal after signal, readings first.
+/// The readings under a schedule and their block averages in units of their sigmas: signal after signal, readings first.
 class InSigmas {
  public:
   InSigmas(const Plant& plant, const Recording& commands)
@@ -145,7 +146,7 @@ class InSigmas {
     }
     return result;
   }
-  /// Every part of mean square 1 becomes one of length 1.
+  /// Scales every part so that mean square 1 becomes length 1.
   Eigen::VectorXd perPart(const Eigen::VectorXd& difference) const {
     Eigen::VectorXd result = difference;
     for (Eigen::Index s = 0; s < signal_count_; ++s) {
@@ -157,8 +158,8 @@ class InSigmas {
   double meanSquare(const Eigen::VectorXd& difference, Eigen::Index signal) const {
     return difference.segment(signal * perSignal(), row_count_).squaredNorm() / static_cast<double>(row_count_);
   }
-  /// Mean over signals and averages of ln(RMS over floor) where a difference is measured on top of the noise and of what the law of the
-  /// right cause, which is not quite ours, leaves of a gap (Odds).
+  /// Mean over signals and averages of ln(RMS / sigma), where sigma combines the noise and the share of the gap that the right cause may
+  /// leave because its law differs from ours (Odds).
   double logMisfit(const Eigen::VectorXd& difference, const Eigen::VectorXd& gap) const {
     const double mismatch = Weighing{}.law_mismatch;
     double sum = 0;
@@ -181,10 +182,10 @@ class InSigmas {
 
   const Plant& plant_;
   Eigen::Index row_count_, block_count_, signal_count_;
-  std::vector<double> averaged_sigmas_;  ///< in units of the floor, as Comparison takes them
+  std::vector<double> averaged_sigmas_;  ///< in units of sigma, as in Comparison
 };
 
-/// What changes of a contender's numbers change under a schedule; without columns where they are not looked at.
+/// Derivatives of the readings under a schedule with respect to each rival's parameters; without columns if not computed.
 using Slopes = std::vector<Eigen::MatrixXd>;
 
 Slopes slopesOf(const Plant& plant, const TriedSchedule& trial, const std::vector<Rival>& rivals, Fidelity fidelity, int job_count,
@@ -205,7 +206,7 @@ Slopes slopesOf(const Plant& plant, const TriedSchedule& trial, const std::vecto
   return slopes;
 }
 
-/// What is left of a difference when the contender is fitted to its recordings and to that difference together.
+/// The part of a difference that remains after the rival has been refitted to its recordings and that difference together.
 Eigen::VectorXd leftBy(const Rival& rival, const Eigen::MatrixXd& slopes, const InSigmas& in_sigmas, const Eigen::VectorXd& difference) {
   if (slopes.cols() == 0) return difference;
   Eigen::MatrixXd both(rival.slopes.rows() + slopes.rows(), slopes.cols());
@@ -217,10 +218,10 @@ Eigen::VectorXd leftBy(const Rival& rival, const Eigen::MatrixXd& slopes, const 
   return difference - slopes * normal.ldlt().solve(both.transpose() * aim);
 }
 
-/// How far a contender's prediction is from the likeliest one's.
+/// Difference between a rival's prediction and that of the most probable one.
 struct Difference {
-  double overall = infinity;  ///< RMS over all signals and rows in units of the floor
-  std::string signal;         ///< that differs most
+  double overall = infinity;  ///< RMS over all signals and rows in units of sigma
+  std::string signal;         ///< the signal that differs most
   double in_signal = 0;
 };
 
@@ -235,7 +236,7 @@ Difference differenceOf(const Plant& plant, const InSigmas& in_sigmas, const Eig
   return {std::sqrt(sum / static_cast<double>(plant.signals().size())), plant.signals()[most].name, std::sqrt(largest)};
 }
 
-/// What a schedule is worth, and how far every contender is from the likeliest there; 0 for itself.
+/// The worth of a schedule, and the difference of every rival from the most probable one; 0 for that one itself.
 struct Worth {
   double told = 0;
   std::vector<Difference> from_likeliest;
@@ -265,7 +266,7 @@ Worth worthOf(const Plant& plant, const TriedSchedule& trial, const std::vector<
   return worth;
 }
 
-/// Says what the schedule separates from the likeliest; where that is nothing, what it separates best.
+/// States which rivals the schedule separates from the most probable one, or the best separated one if there are none.
 Experiment experimentOf(const TriedSchedule& trial, const std::vector<Rival>& rivals, const Worth& worth) {
   const double farthest = std::ranges::max(worth.from_likeliest, {}, &Difference::overall).overall;
   Experiment result;

@@ -7,7 +7,7 @@
 
 namespace musclesim {
 
-/// Mean over affected cells of ln(RMS / floor), no less than 0 each, floor^2 = noise floor^2 + (mismatch gap)^2.
+/// Mean over affected blocks of ln(RMS / s), at least 0 each, with s^2 = sigma^2 + (mismatch RMS gap)^2.
 double Odds::misfitBeyond(double mismatch, const Eigen::VectorXd& residual) const {
   double sum = 0;
   for (const Comparison::Block& block : comparison_.blocks()) {
@@ -23,7 +23,7 @@ double Odds::ofMisfit(const Eigen::VectorXd& residual) const {
          weighing_.per_closer_misfit * misfitBeyond(weighing_.close_law_mismatch, residual);
 }
 
-/// Whether an effect acts where one before it does: on the same muscle, on the same signal, both on the body.
+/// Whether an effect shares its place with an earlier one: the same muscle, the same signal, or both the body.
 bool Odds::actsWhereOthersDo(const FittedHypothesis& fitted, std::size_t member) const {
   enum class Part { muscle, body, sensor };
   auto place = [&](std::size_t i) -> std::pair<Part, std::string> {
@@ -52,7 +52,7 @@ bool Odds::actsWhereOthersDo(const FittedHypothesis& fitted, std::size_t member)
   return false;
 }
 
-/// What speaks against an explanation before its misfit is looked at.
+/// Log prior of a fitted hypothesis.
 double Odds::logPrior(const FittedHypothesis& fitted) const {
   double odds = -weighing_.per_parameter * static_cast<double>(fitted.z.size()) -
                 weighing_.per_effect * (static_cast<double>(fitted.members.size()) - 1);

@@ -16,9 +16,9 @@ namespace musclesim {
 
 namespace {
 
-constexpr int fewest_to_coarsen = 8;  ///< with fewer internal steps than that a simulation is cheap and as coarse as it can be
+constexpr int fewest_to_coarsen = 8;  ///< with fewer internal steps a simulation is cheap and cannot be coarser
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-/// Friction within the muscles and the curvature of Eq. 1.
+/// Parameters of the nominal refit: friction within the muscles and the curvature of Eq. 1.
 constexpr const char* hinge_friction = "muscle.hinge_friction_Nm";
 constexpr const char* nominal_names[] = {"muscle.slider_friction_N", hinge_friction, "force_law.b"};
 
@@ -37,12 +37,12 @@ void requireDiagnosable(const std::vector<Recording>& recordings) {
   requireDifferentMeasurements(recordings);
 }
 
-/// Without its folder.
+/// The file name without its folder.
 std::string nameOf(const Recording& recording) {
   return std::filesystem::path(recording.file).filename().string();
 }
 
-/// With several recordings the last is held out; with one, the last two fifths of its rows.
+/// Of several recordings the last is held out; of one recording, the last two fifths of its rows.
 Split splitOf(const std::vector<Recording>& recordings) {
   Split split;
   const int count = static_cast<int>(recordings.size());
@@ -60,7 +60,7 @@ Split splitOf(const std::vector<Recording>& recordings) {
   return split;
 }
 
-/// Everything that a simulation depends on but the recording.
+/// All that a simulation depends on except the recording.
 std::string keyOf(const Model& model) {
   auto written = [](const Parameter::Value& value) {
     return std::holds_alternative<double>(value) ? fmt::format("{:a}", std::get<double>(value)) : std::get<std::string>(value);
@@ -75,7 +75,7 @@ std::string keyOf(const Model& model) {
   return key;
 }
 
-/// Internal steps that a simulation makes one of.
+/// Ratio of the time step to the fine one.
 int ratioOf(Fidelity fidelity) {
   return 1 << static_cast<int>(fidelity);
 }
@@ -106,7 +106,7 @@ Plant::Plant(std::vector<Recording> recordings, const DiagnosisOptions& options)
   for (const auto* part : {&split_.fit, &split_.held_out}) requireNumbers(*part);
 }
 
-/// Enough of some signal in a part of the recordings.
+/// Throws BadFile unless a part of the recordings has enough numbers of at least one signal.
 void Plant::requireNumbers(const std::vector<Segment>& part) const {
   const auto numbersIn = [&](const Segment& segment, std::size_t signal) {
     const std::vector<double>& y = measured(segment.recording, static_cast<int>(signal));
@@ -125,7 +125,8 @@ void Plant::requireNumbers(const std::vector<Segment>& part) const {
                             fewest_compared_rows));
 }
 
-/// A sensor that shows one value throughout a recording in which commands change, but not in all: there it is dead.
+/// Removes a signal from a recording in which it never changes although commands do, if it changes in another recording: the sensor is dead
+/// there.
 void Plant::dropDeadSegments() {
   for (Recording& recording : recordings_) {
     const std::vector<Recording> one = {recording};
@@ -222,7 +223,7 @@ Plant::MuscleRange Plant::muscleRange(int muscle) const {
   return {actuator.minimumLengthMm(), actuator.maximumLengthMm()};
 }
 
-/// Throws BadParameter with the nearest name if the model has no such number, and for one that a factor cannot change.
+/// Throws BadParameter, with the nearest name, if the model has no such number, and for a number that a factor cannot change.
 Parameter Plant::numberNamed(const std::string& name) const {
   std::vector<std::string> names;
   for (const Parameter& parameter : reference_->parameters().declared()) {
@@ -259,7 +260,7 @@ bool Plant::hasHand() const {
   return reference_->robot().getState().hand_mm.has_value();
 }
 
-/// Coarse steps only where there is something to gain.
+/// The fidelity itself if coarser steps save time on this robot, otherwise fine.
 Fidelity Plant::possible(Fidelity fidelity) const {
   return reference_->substeps() >= fewest_to_coarsen ? fidelity : Fidelity::fine;
 }
@@ -294,7 +295,8 @@ Prediction Plant::predict(int recording, const Model& model, const std::vector<s
   return replay(std::move(changed), model, end_row, fidelity);
 }
 
-/// Whether changed numbers of the model, a force that grows a millionfold towards full length, need far more internal steps than it has.
+/// Whether changed parameters need far more internal steps than the model, for example a force that grows a millionfold towards full
+/// length.
 bool Plant::takesForEver(const Recording& recording, const ReplayOptions& options) const {
   constexpr int most_ratio = 20;
   Simulation changed(simulationOptionsFor(recording.info, sidecarPath(recording.file), options));
@@ -302,12 +304,12 @@ bool Plant::takesForEver(const Recording& recording, const ReplayOptions& option
   return changed.substeps() > most_ratio * reference_->substeps();
 }
 
-/// Nothing if such an effect cannot act on this plant, for example a payload that takes away more than there is, or if it would take for
-/// ever.
+/// Empty if such an effect cannot act on this plant (a payload that removes more mass than there is), or if the simulation would take too
+/// long.
 std::optional<ReplayResult> Plant::simulated(const Recording& recording, const Model& model, Fidelity fidelity, HeldSamples held) const {
   ReplayOptions options = options_.model;
   const bool unchanged = model.effects.empty() && model.parameters.empty();
-  if (!unchanged) options.interrupted = options_.interrupted;  // a partial report compares with the unchanged model too
+  if (!unchanged) options.interrupted = options_.interrupted;  // a partial report also compares with the unchanged model
   if (const int ratio = ratioOf(possible(fidelity)); ratio > 1) options.substeps = (reference_->substeps() + ratio - 1) / ratio;
   for (const ActiveEffect& effect : model.effects)
     if (effect.id != held_effect || held == HeldSamples::drawn) options.effects.push_back(effect);
@@ -345,7 +347,7 @@ std::optional<Recording> Plant::predictSchedule(const Recording& schedule, const
   return std::move(result->simulated);
 }
 
-/// The same held samples in a stored prediction, which does not depend on them.
+/// Applies held samples to a stored prediction, which does not depend on them.
 void Plant::holdSamples(int recording, const Model& model, Prediction& prediction) const {
   for (const ActiveEffect& effect : model.effects) {
     if (effect.id != held_effect) continue;

@@ -37,7 +37,7 @@ std::string heading(const std::string& words) {
   return "<h2>" + words + "</h2>\n";
 }
 
-/// A label that may be broken after every word of it.
+/// A label with a possible line break after each of its words.
 std::string breakable(const std::string& label) {
   std::string text;
   for (const char c : escapedXml(label)) text += c == '_' || c == '@' || c == '.' ? std::string(1, c) + "<wbr>" : std::string(1, c);
@@ -52,7 +52,7 @@ std::string paragraph(const std::string& words) {
   return "<p>" + escapedXml(words) + "</p>\n";
 }
 
-/// What introduces the figure or table behind it.
+/// A paragraph that introduces the following figure or table.
 std::string lead(const std::string& words) {
   return "<p class=lead>" + escapedXml(words) + "</p>\n";
 }
@@ -61,12 +61,12 @@ std::string small(const std::string& words) {
   return "<p class=small>" + escapedXml(words) + "</p>\n";
 }
 
-/// Slides sideways where the page is narrow.
+/// Content that scrolls sideways on narrow pages.
 std::string sliding(const std::string& content) {
   return "<div class=scroll>" + content + "</div>\n";
 }
 
-/// The robot with the place that the signals show in colour, or else the one where the best explanation acts.
+/// The robot with the located component in colour, or else the component of the best explanation.
 std::string drawing(const Diagnosis& d) {
   if (d.drawing.lines.empty()) return "";
   Place place;
@@ -97,7 +97,7 @@ bool triedAlone(const Diagnosis& d, const FoundEffect& effect) {
   return std::ranges::any_of(d.trials, [&](const Trial& trial) { return trial.effects.size() == 1 && trial.effects[0] == effect.label(); });
 }
 
-/// What a reader should know of a fitted number: that it could not go on, or that no plant is known to be like that.
+/// A remark on a fitted number at its bound or outside the usual range.
 std::string remarkOn(const EffectParameter& parameter, double value) {
   if (!parameter.choices.empty() || value == parameter.neutral) return "";
   if (value == parameter.minimum || value == parameter.maximum) return ", at its bound";
@@ -118,7 +118,7 @@ std::string parameterRows(const FoundEffect& effect) {
   return rows;
 }
 
-/// Where effects act together, what is likely is a set of them.
+/// The probabilities of sets of effects, if any set has several.
 std::string togetherWords(const Diagnosis& d) {
   if (std::ranges::none_of(d.explanations, [](const auto& fitted) { return fitted.effects.size() > 1; })) return "";
   std::vector<std::string> words;
@@ -151,7 +151,7 @@ std::string which(const Diagnosis& d) {
   return text;
 }
 
-/// Whether there is a model with effects to set against the one without.
+/// Whether there is a model with effects to compare with the one without.
 bool hasAfter(const Diagnosis& d) {
   return !d.chosen.empty() || !d.attempt.effects.empty();
 }
@@ -175,7 +175,7 @@ std::string signalTable(const Diagnosis& d) {
                  "</table>");
 }
 
-/// What an explanation gains beside what gains nothing in understanding.
+/// Bars of the remaining gap: with the effects found and with both controls.
 std::string reductionFigure(const Diagnosis& d) {
   std::vector<Bar> all;
   auto add = [&](const std::string& label, double left_percent, bool strong) {
@@ -209,7 +209,7 @@ std::string phaseFigure(const Diagnosis& d) {
          barsFigure("Residual by actuation phase", all, full);
 }
 
-/// Of what comes nearest; the table of effects may not list it.
+/// The parameters of the best rejected hypothesis, which the table of effects may not list.
 std::string attemptWords(const Attempt& attempt) {
   std::vector<std::string> words;
   for (const ActiveEffect& effect : attempt.active_effects) {
@@ -228,7 +228,7 @@ std::string attemptWords(const Attempt& attempt) {
   return fmt::format("{}", fmt::join(words, " together with "));
 }
 
-/// Signals that stand farthest out of their floors first.
+/// Traces by RMS over sigma, largest first.
 std::vector<const Trace*> tracesByGap(const Diagnosis& d) {
   std::vector<const Trace*> traces;
   for (const Trace& trace : d.traces) traces.push_back(&trace);
@@ -271,7 +271,7 @@ std::string howFar(const Diagnosis& d) {
   return text;
 }
 
-/// The model that everything is measured against, where parts of it were fitted.
+/// The tuned parameters of the model that everything is compared with.
 std::string tuned(const Diagnosis& d) {
   if (d.tuned.empty()) return "";
   std::string rows;
@@ -292,7 +292,7 @@ std::string tuned(const Diagnosis& d) {
                  std::string(together ? "<th class=number>fitted with the effects</th>" : "") + "</tr>\n" + rows + "</table>");
 }
 
-/// What each effect alone could remove by the first look: the strongest, and what was chosen wherever it stood.
+/// Bars of the share of the log misfit that each effect would remove by screening: the strongest effects, and the chosen ones at any rank.
 std::string screenings(const Diagnosis& d) {
   constexpr std::size_t shown = 12;
   std::vector<std::pair<Screening, std::size_t>> places;  // the best variant of each label, with its rank

@@ -13,7 +13,7 @@ namespace musclesim {
 namespace {
 
 constexpr Eigen::Index fewest_rows = 64;
-constexpr double enough = 0.5;  ///< share of the power that names the shape
+constexpr double enough = 0.5;  ///< least share of the power for a shape to be named
 
 bool evenlySpaced(const Eigen::VectorXd& time_s) {
   const Eigen::Index last = time_s.size() - 1;
@@ -23,7 +23,7 @@ bool evenlySpaced(const Eigen::VectorXd& time_s) {
   return step_s > 0;
 }
 
-/// Power at the frequencies 1 / T, 2 / T, ... of evenly spaced rows; those from `first_hz` on, 0 below. They sum up to that of the rows.
+/// Power of evenly spaced rows at the frequencies 1 / T, 2 / T, ... from `first_hz` on, 0 below it. All powers add up to that of the rows.
 std::vector<double> spectrum(const Eigen::VectorXd& residual, double step_s, double first_hz) {
   const Eigen::Index count = residual.size();
   const double duration_s = static_cast<double>(count) * step_s;

@@ -14,9 +14,9 @@ namespace musclesim {
 namespace {
 
 constexpr double duration_s = 12, step_s = 0.01;
-constexpr double beside = 0.5;  ///< of a command's range, by which levels lie apart
+constexpr double beside = 0.5;  ///< distance between levels, in units of a command's range
 
-/// -1..1 for each muscle at a time, of the range that its command has in the recordings.
+/// A shape from -1 to 1 over time for each muscle, in units of half the range that its command has in the recordings.
 struct ScheduleShape {
   std::string name, words;
   std::function<double(double time_s, int muscle)> shape;
@@ -31,7 +31,7 @@ double sign(int muscle) {
   return muscle % 2 == 0 ? 1 : -1;
 }
 
-/// Muscles with even and odd numbers move against each other unless the schedule is a co-contraction.
+/// Muscles with even and odd numbers move in opposition unless the schedule is a co-contraction.
 const std::vector<ScheduleShape>& scheduleShapes() {
   static const std::vector<ScheduleShape> all = {
       {"slow reversals", "triangles of six seconds", [](double t, int m) { return sign(m) * triangle(t, 6); }},
@@ -62,7 +62,7 @@ struct CommandRange {
   double low = 1, high = 0;
 };
 
-/// The range of a muscle's command over all recordings: where the plant is known to go.
+/// The range of a muscle's command over all recordings, where the plant is known to operate.
 CommandRange rangeOf(const std::vector<Recording>& recordings, int muscle) {
   CommandRange range;
   for (const Recording& recording : recordings)

@@ -1,4 +1,4 @@
-// How every suspect would show, from one simulation or a few of each: what is fitted is chosen by that.
+// Screening: one or a few simulations of every hypothesis decide which ones are fitted.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <limits>
@@ -14,9 +14,9 @@ namespace musclesim {
 
 namespace {
 
-constexpr std::size_t many_hypotheses = 240;  ///< with more, most are looked at on the first stretch of the look only
-constexpr std::size_t nearest_count = 80;     ///< suspects that are looked at on all of it then
-constexpr std::size_t per_effect_count = 3;   ///< and at least so many of every effect
+constexpr std::size_t many_hypotheses = 240;  ///< with more hypotheses, most are screened on the first screening segment only
+constexpr std::size_t nearest_count = 80;     ///< number of them that are then screened on all segments
+constexpr std::size_t per_effect_count = 3;   ///< and at least this many of every effect
 
 }  // namespace
 
@@ -26,9 +26,9 @@ Comparison Attributor::firstScreeningSegment() const {
   return result;
 }
 
-/// Of variants without any strength (numbers of bits), the two of one component that leave least on the look, among the six that leave
-/// least on its first stretch, and what does as well as the sixth: simulating all of them on all of it would take as long as everything
-/// else, and one stretch alone may hardly tell them.
+/// Keeps, of variants without a strength (numbers of bits), the two of each component with the least misfit on the screening segments,
+/// chosen from the six best on the first segment and those as good as the sixth. Simulating all of them everywhere would take as long as
+/// the rest of the diagnosis, and one segment alone may hardly distinguish them.
 void Attributor::keepNearestVariants() {
   keepNearestVariants(firstScreeningSegment(), 6, Ties::kept);
   keepNearestVariants(screening_, 2, Ties::dropped);
@@ -67,8 +67,8 @@ void Attributor::keepNearestVariants(const Comparison& comparison, std::size_t k
   all = std::move(rest);
 }
 
-/// The suspects that are looked at on all of the look. Where there are many - ten muscles have ten of most kinds - those that explain most
-/// of its first stretch, and some of every effect. That does not depend on what may be an answer: nor does where the gap lies.
+/// Indices of the hypotheses that are screened on all segments. If there are many (ten muscles have ten of most kinds), those that explain
+/// most of the first segment, and some of every effect. The choice does not depend on the candidates, because fault isolation must not.
 std::vector<std::size_t> Attributor::worthScreening() const {
   const std::vector<Hypothesis>& all = result_.hypotheses;
   std::vector<std::size_t> order(all.size());
@@ -108,7 +108,7 @@ void Attributor::screenHypotheses(const Eigen::VectorXd& nominal) {
   result_.screened_count = chosen.size();
 }
 
-/// What shows nothing in the stretches of the look may show in the rest of the recordings.
+/// An effect that shows nothing in the screening segments may show in the rest of the recordings.
 void Attributor::checkExcitation(const std::vector<Hypothesis>& typical) {
   const std::vector<Segment>&screened = screening_.segments(), &fitted = fit_.segments();
   const bool is_all = screened.size() == fitted.size() && std::ranges::equal(screened, fitted, {}, &Segment::end_row, &Segment::end_row);

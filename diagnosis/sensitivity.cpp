@@ -12,17 +12,17 @@ namespace musclesim {
 
 namespace {
 
-constexpr double largest_amount = 5;  ///< beyond that many typical strengths a straight line says nothing
-constexpr double strong = 4;          ///< typical strengths at which one that shows nothing is looked at again
-constexpr double nothing = 0.1;       ///< floors
-constexpr double late = 3;            ///< typical strengths at which delays and time constants are looked at again
+constexpr double largest_amount = 5;  ///< typical strengths up to which the response is taken as linear
+constexpr double strong = 4;          ///< typical strengths at which a strength without response is tried again
+constexpr double nothing = 0.1;       ///< noise sigmas
+constexpr double late = 3;            ///< typical strengths at which delays and time constants are tried again
 
-/// A simulation whose result gives columns of one or more suspects.
+/// A simulation whose result gives columns of one or more hypotheses.
 struct Probe {
   Model model;
   struct Target {
     std::size_t hypothesis, strength;
-    int signal;  ///< the only one that it concerns; -1: all
+    int signal;  ///< the only affected signal; -1: all
   };
   std::vector<Target> targets;
 };
@@ -66,8 +66,8 @@ Eigen::VectorXd only(const Comparison& comparison, const Eigen::VectorXd& values
   return result;
 }
 
-/// Smallest x^T N x / 2 - s^T x for least <= x <= largest_amount, one x after the other (N positive definite): strengths that act alike do
-/// not drive each other against the bounds.
+/// Minimises x^T N x / 2 - s^T x for least <= x <= largest_amount by coordinate descent (N positive definite), so that strengths with
+/// similar responses do not drive each other against the bounds.
 Eigen::VectorXd boundedSolution(const Eigen::MatrixXd& normal, const Eigen::VectorXd& slope, const Eigen::VectorXd& least) {
   constexpr int sweep_count = 200;
   Eigen::VectorXd x = Eigen::VectorXd::Zero(slope.size());
@@ -106,7 +106,7 @@ void fitLinearly(const Comparison& comparison, const Hypothesis& hypothesis, con
     const Eigen::MatrixXd weighted = weights.asDiagonal() * columns;
     Eigen::MatrixXd normal = weighted.transpose() * weighted;
     normal.diagonal().array() += 1e-12 + 1e-9 * normal.diagonal().maxCoeff();
-    // An effect without parameters is there or not.
+    // An effect without parameters is either present or absent.
     const Eigen::VectorXd amount = hypothesis.strengths().empty()
                                        ? Eigen::VectorXd(Eigen::VectorXd::Ones(count))
                                        : boundedSolution(normal, weighted.transpose() * weights.cwiseProduct(residual), least);
@@ -121,7 +121,7 @@ void fitLinearly(const Comparison& comparison, const Hypothesis& hypothesis, con
 
 namespace {
 
-/// What the probes change, empty where the model diverged.
+/// Changes of the prediction by the probes; empty if the model diverged.
 std::vector<Eigen::VectorXd> changesBy(const Comparison& comparison, const std::vector<Probe>& probes, const Eigen::VectorXd& nominal,
                                        const Model& base, int job_count, const OnSimulation& on_simulation) {
   std::vector<Eigen::VectorXd> changes(probes.size());
@@ -137,14 +137,14 @@ std::vector<Eigen::VectorXd> changesBy(const Comparison& comparison, const std::
   return changes;
 }
 
-/// Whether a strength changes something at its typical value.
+/// Whether a strength at its typical value changes the prediction visibly.
 bool shows(const Comparison& comparison, const Hypothesis& hypothesis, std::size_t strength, const Sensitivity& look) {
   const double least = hypothesis.isSigned(hypothesis.strengths()[strength]) ? nothing : 1;
   return excitationRatio(comparison, {look.per_strength[strength]}) >= least;
 }
 
-/// Strengths that change nothing at their typical value, though they would if they were stronger: limits that nothing reaches. `direction`
-/// -1: those that may have either sign.
+/// Probes of strengths that change nothing at their typical value but would if they were stronger, such as limits that nothing reaches.
+/// `direction` -1: only strengths that may have either sign.
 std::vector<Probe> strongerProbes(const Comparison& comparison, const std::vector<Hypothesis>& hypotheses,
                                   const std::vector<Sensitivity>& sensitivities, int direction) {
   std::vector<Probe> result;
@@ -161,8 +161,8 @@ std::vector<Probe> strongerProbes(const Comparison& comparison, const std::vecto
   return result;
 }
 
-/// The largest RMS change in any cell over the residual's there, or over the floor where that is more. 1 where the right cause acts in its
-/// right strength.
+/// Largest ratio of the RMS change in any block to the RMS residual there, or to sigma if that is larger. It is 1 for the right cause at
+/// its right strength.
 double sizeOver(const Comparison& comparison, const Eigen::VectorXd& residual, const Eigen::VectorXd& change) {
   double largest = 0;
   for (const Comparison::Block& block : comparison.blocks())
@@ -171,7 +171,7 @@ double sizeOver(const Comparison& comparison, const Eigen::VectorXd& residual, c
   return largest;
 }
 
-/// Weakens the strengths that change much more than there is to explain, or with which the model diverges. Returns their probes.
+/// Weakens strengths whose change is much larger than the residual, or with which the model diverges. Returns their probes.
 std::vector<Probe> weakerProbes(const Comparison& comparison, std::vector<Hypothesis>& hypotheses,
                                 const std::vector<Sensitivity>& sensitivities, const Eigen::VectorXd& residual) {
   constexpr double too_much = 3, after_divergence = 0.1;
@@ -192,7 +192,7 @@ std::vector<Probe> weakerProbes(const Comparison& comparison, std::vector<Hypoth
   return result;
 }
 
-/// A suspect's only strength made stronger or weaker than typical.
+/// Adapts the only strength of a hypothesis.
 class OnlyStrength {
  public:
   OnlyStrength(const Comparison& comparison, const Eigen::VectorXd& nominal, const Model& base, const OnSimulation& on_simulation,
@@ -204,8 +204,9 @@ class OnlyStrength {
         hypothesis_(hypothesis),
         sensitivity_(look) {}
 
-  /// Where the typical strength shows nothing: stronger and stronger until it does, to either side where that is possible, then closer to
-  /// where it begins to, and about the one that leaves least. That one is typical from here on. Beside a threshold derivatives tell little.
+  /// For a typical strength that shows nothing: increases it, in both directions if it is signed, until it shows, then bisects the
+  /// threshold and refines around the strength with the least misfit. Makes that strength the typical one. Derivatives at the threshold say
+  /// little.
   void searchThreshold() {
     constexpr double growth = 4;
     constexpr int halvings = 3;
@@ -228,7 +229,7 @@ class OnlyStrength {
     hypothesis_.rescale(coordinate(), best_.strength);
   }
 
-  /// Where as much as a straight line may tell is called for: from there on again, while that leaves less.
+  /// Linearises again at the limit of the linear range while that reduces the misfit.
   void relinearise() {
     while (std::abs(sensitivity_.amount[0]) >= largest_amount && !isBound(sensitivity_.amount[0])) {
       Sensitivity farther = sensitivity_;
@@ -256,7 +257,7 @@ class OnlyStrength {
   }
   double possible(double strength) const { return hypothesis_.clamped(at(strength))[coordinate()]; }
   bool isBound(double strength) const { return possible(strength) != strength; }
-  /// Empty where the model diverges, and once interrupted.
+  /// Empty if the model diverges, and once interrupted.
   Eigen::VectorXd changeAt(double strength) const {
     if (comparison_.plant().interrupted()) return {};
     Model model = base_;
@@ -266,7 +267,7 @@ class OnlyStrength {
     if (predicted.size() != nominal_.size() || !predicted.allFinite()) return {};
     return predicted - nominal_;
   }
-  /// Some: a floor or more in a cell.
+  /// `some`: at least one sigma in a block.
   Showing showing(double strength) const {
     const Eigen::VectorXd change = changeAt(strength);
     if (!change.size()) return Showing::diverged;
@@ -294,14 +295,14 @@ class OnlyStrength {
   Found best_;
 };
 
-/// Changes that are multiples of each other, but for what can hardly be seen.
+/// Whether two changes are multiples of each other, up to a barely visible difference.
 bool actAlike(const Eigen::VectorXd& one, const Eigen::VectorXd& other) {
   constexpr double parallel = 0.999;
   return one.size() && one.size() == other.size() && std::abs(one.dot(other)) > parallel * one.norm() * other.norm() && one.norm() > 0;
 }
 
-/// Leaves out the strengths of either sign that change everything by a small share of what another one of the suspect does, both of usual
-/// size, and those that change the same as another one: the recordings cannot tell them, and a fit would drive them anywhere.
+/// Drops signed strengths whose change is a small share of another strength's change, or a multiple of it: the recordings cannot determine
+/// them, and a fit would give them arbitrary values.
 void leaveOutIdle(const Comparison& comparison, Hypothesis& hypothesis, Sensitivity& look) {
   constexpr double small_share = 0.1;
   std::vector<double> excitation;
@@ -320,7 +321,7 @@ void leaveOutIdle(const Comparison& comparison, Hypothesis& hypothesis, Sensitiv
   }
 }
 
-/// Delays and time constants: what they do is not proportional to them.
+/// Probes of delays and time constants, whose response is not proportional to them.
 std::vector<Probe> lateProbes(const std::vector<Hypothesis>& hypotheses) {
   std::vector<Probe> result;
   for (std::size_t s = 0; s < hypotheses.size(); ++s)

@@ -15,10 +15,10 @@ namespace musclesim {
 
 namespace {
 
-constexpr double stands_out = 2;      ///< floors
-constexpr double nearly_all = 99.95;  ///< percent; what is above must not read as 100.0
+constexpr double stands_out = 2;      ///< RMS over sigma
+constexpr double nearly_all = 99.95;  ///< percent; larger values must not read as 100.0
 
-/// "a = 1.0 (0.9 to 1.1), b = 2 (1 to 3)", without what the data left out.
+/// "a = 1.0 (0.9 to 1.1), b = 2 (1 to 3)", without parameters that the data left out.
 std::string parameterWords(const FoundEffect& effect) {
   std::vector<std::string> words;
   for (const auto& [name, word] : effect.choices) words.push_back(fmt::format("{} = {}", name, word));
@@ -73,7 +73,7 @@ std::string probabilityWords(double probability) {
 
 std::string elsewhereSentence(const Estimate& reduction_percent) {
   if (reduction_percent.low > nearly_all) return "On another recording of this plant the same is expected.";
-  // An interval that reaches below 0 tells of the recordings, not of the effect.
+  // An interval that extends below 0 says something about the recordings, not about the effect.
   if (reduction_percent.low < 0) return "The recordings are too few or too different to predict how much is removed on another one.";
   return fmt::format("On another recording of this plant, {:.1f} to {:.1f} % is expected to be removed (95 % interval).",
                      reduction_percent.low, reduction_percent.high);
@@ -105,7 +105,7 @@ bool isTold(const std::vector<Place>& where) {
 
 namespace {
 
-/// The stages but the first that the signals do not speak against.
+/// The stages after the first that the signals do not contradict.
 std::vector<std::string> othersPossible(const std::vector<Place>& where) {
   std::vector<std::string> others;
   for (auto place = where.begin() + 1; place != where.end(); ++place)
@@ -122,7 +122,7 @@ bool isBeforeTheForce(const std::string& stage) {
 bool isLocated(const std::vector<Place>& where) {
   if (!isTold(where) || where.front().is_ruled_out) return false;
   const std::vector<std::string> others = othersPossible(where);
-  // A pressure is commanded: what is before the force is one place.
+  // A pressure follows its command, so the stages before the force count as one place.
   return isBeforeTheForce(where.front().stage) ? std::ranges::all_of(others, isBeforeTheForce) : others.empty();
 }
 
@@ -133,7 +133,7 @@ bool mayBeAt(const std::vector<Place>& where, const std::string& stage) {
 
 namespace {
 
-/// ", mostly while venting" where the data held back, of which the page shows bars, say so as well.
+/// ", mostly while venting" if the held-out data, whose bars the page shows, agree.
 std::string phaseWords(const Diagnosis& d) {
   const std::string& phase = d.where.front().phase;
   const auto largest = std::ranges::max_element(d.phases, {}, &PhaseGap::before);
@@ -168,13 +168,13 @@ std::string whereSentence(const Diagnosis& d) {
 
 namespace {
 
-/// " (94.0 to 97.5)", where the recordings tell how much is to be expected elsewhere.
+/// " (94.0 to 97.5)" if the recordings allow a prediction for another one.
 std::string intervalWords(const Diagnosis& d) {
   if (d.reduction_low_percent > nearly_all || d.reduction_low_percent < 0) return "";
   return fmt::format(" ({:.1f} to {:.1f})", d.reduction_low_percent, d.reduction_high_percent);
 }
 
-constexpr double likely = 0.5;  ///< probability from which a candidate must have failed on data held back
+constexpr double likely = 0.5;  ///< a candidate above this probability must have failed on the held-out data
 
 /// "valve lag on muscle 1".
 std::string labelWords(const std::string& label) {
@@ -205,7 +205,7 @@ std::string chosenWords(const Diagnosis& d) {
   return fmt::format("{}", fmt::join(words, " together with "));
 }
 
-/// What no explanation should hide: a rest that stands far out of the noise. RMS / floor = sqrt(1 + normalised gap).
+/// A sentence about a residual that stands far out of the noise, which no explanation should hide. RMS / sigma = sqrt(1 + normalised gap).
 std::string remainder(const Gap& after) {
   const double over_noise = std::sqrt(1 + after.normalised);
   if (over_noise < stands_out) return "";
@@ -227,7 +227,7 @@ std::string explanationWords(const std::string& labels) {
   return words;
 }
 
-/// What the next experiment tells from what, and how surely.
+/// What the next experiment distinguishes, and how clearly.
 std::string separatedWords(const Diagnosis& d) {
   const std::vector<std::string>& separates = d.next_experiment.separates;
   std::string words = "them apart";
@@ -242,7 +242,7 @@ std::string separatedWords(const Diagnosis& d) {
   return words;
 }
 
-/// What else would do, and how to find out.
+/// The alternatives, and how to distinguish them.
 std::string otherwise(const Diagnosis& d) {
   if (d.alternatives.size() < 2) return "";
   std::vector<std::string> others;
@@ -255,7 +255,7 @@ std::string otherwise(const Diagnosis& d) {
   return fmt::format("{} would explain the gap as well{}{}.", fmt::join(others, pairs ? "; or " : " or "), place, experiment);
 }
 
-/// Where a hair's difference in a cause changes the motion as much as the cause does, a free rollout hardly tells causes.
+/// A warning if the motion is so sensitive that the time step changes it by a noticeable share of the gap.
 std::string unsteadyWords(const Unsteady& unsteady) {
   constexpr double worth_saying = 0.1;
   if (unsteady.share_of_gap < worth_saying) return "";
@@ -265,7 +265,7 @@ std::string unsteadyWords(const Unsteady& unsteady) {
       unsteady.signal, unsteady.in_sigmas, 100 * unsteady.share_of_gap);
 }
 
-/// Where that the catalogue holds the cause is not taken for granted.
+/// The probability that the cause is not among the candidates, if it is worth saying.
 std::string noneWords(const Diagnosis& d) {
   constexpr double worth_saying = 0.1;
   if (d.none_of_these < worth_saying) return "";
@@ -282,7 +282,7 @@ std::string mostProbable(const Diagnosis& d) {
   return fmt::format(": the best candidate, {}, has a probability of {}", labelWords(first.label()), probabilityWords(first.probability));
 }
 
-/// The likeliest effect explains what it was fitted to and nothing else.
+/// The most probable effect explains the fitted recordings but not the held-out data.
 std::string notConfirmed(const Diagnosis& d) {
   const FoundEffect& first = d.effects.front();
   std::string text = fmt::format(
@@ -299,7 +299,7 @@ std::string notConfirmed(const Diagnosis& d) {
 
 namespace {
 
-/// What somebody who looks for a cause that is not in the catalogue should see: the largest gap that has a simple shape.
+/// The shape of the signal with the largest gap that has a simple one, for a reader who looks for a cause outside the catalogue.
 std::string shape(const Diagnosis& d) {
   std::string words;
   double most = 0;

@@ -25,7 +25,7 @@ double sigmaOf(const Plant& plant, int signal) {
   return plant.signals()[static_cast<std::size_t>(signal)].sigma.value;
 }
 
-/// Mean square of a residual over its variance, row by row, and averaged over blocks of rows: what is weak but slow stands out there.
+/// Mean square of a residual over its variance, row by row and averaged over blocks of rows, in which weak but slow differences stand out.
 class BlockRatio {
  public:
   void add(double residual, double variance) {
@@ -45,7 +45,7 @@ class BlockRatio {
   int count_ = 0, block_count_ = 0;
 };
 
-/// Measured values of a muscle's pressure, or the commanded ones.
+/// The measured pressures of a muscle, or the commanded ones.
 struct Pressures {
   int signal = -1;  ///< -1: commanded
   const std::vector<double>* values = nullptr;
@@ -57,7 +57,7 @@ std::optional<Pressures> pressuresOf(const Plant& plant, int recording, int musc
   return Pressures{-1, &plant.recordings()[static_cast<std::size_t>(recording)].find(fmt::format("command_{}", muscle))->values};
 }
 
-/// Of one muscle; nothing if there is nothing to compare.
+/// The test of one muscle; empty if there is nothing to compare.
 std::optional<TensionTest> testTensionOf(const Comparison& comparison, const Eigen::VectorXd& residual, int muscle) {
   const Plant& plant = comparison.plant();
   const int f = signalIndex(plant, fmt::format("force_{}_N", muscle)), l = signalIndex(plant, fmt::format("length_{}_mm", muscle));
@@ -87,12 +87,12 @@ std::optional<TensionTest> testTensionOf(const Comparison& comparison, const Eig
   return TensionTest{found.largestRms(), expected.largestRms(), commanded, commanded, true};
 }
 
-/// A signal of motion in all stretches, row by row; NaN where it is not measured.
+/// A signal of motion in all segments, row by row; NaN where it is not measured.
 struct Motion {
   int signal;
   double sigma;
   std::vector<double> measured, simulated;
-  double ratio = 0;  ///< largest RMS over floor of its cells
+  double ratio = 0;  ///< largest RMS over sigma of its blocks
 };
 
 std::vector<Motion> motionsOf(const Comparison& comparison, const Eigen::VectorXd& residual) {
@@ -120,7 +120,7 @@ std::vector<Motion> motionsOf(const Comparison& comparison, const Eigen::VectorX
   return motions;
 }
 
-/// A polynomial through the simulated values of one signal over those of another.
+/// A polynomial fit of the simulated values of one signal over those of another.
 class Curve {
  public:
   Curve(const Motion& of, const Motion& over) {
@@ -143,7 +143,7 @@ class Curve {
     const double error = std::sqrt((powers * coefficients_ - values).squaredNorm() / static_cast<double>(rows.size()));
     fits_ = error < close * of.sigma;
   }
-  /// One signal is a function of the other, to a part of its noise.
+  /// Whether one signal is a function of the other, to within a part of its noise.
   bool fits() const { return fits_; }
   bool covers(double x) const { return std::abs(x - middle_) <= half_; }
   double at(double x) const {
@@ -155,14 +155,14 @@ class Curve {
  private:
   static constexpr int degree = 6;
   static constexpr std::size_t fewest_rows = 100;
-  static constexpr double moves = 20;   ///< range over noise of a signal that others can be told from
+  static constexpr double moves = 20;   ///< least range over noise of a signal that determines others
   static constexpr double close = 0.3;  ///< of the noise
   double middle_ = 0, half_ = 1;
   Eigen::VectorXd coefficients_;
   bool fits_ = false;
 };
 
-/// How far one signal is from what another one says, over the noise of both; nothing if it is no function of it.
+/// Difference between a signal and its value computed from another one, over the noise of both; empty if it is no function of it.
 std::optional<double> contradiction(const Motion& of, const Motion& by) {
   const Curve curve(of, by);
   if (!curve.fits()) return std::nullopt;
@@ -179,7 +179,7 @@ std::optional<double> contradiction(const Motion& of, const Motion& by) {
 
 constexpr int noise_draws = 4;
 
-/// The number before in place of one that is missing, and the first one at the beginning; empty if there is none at all.
+/// Replaces missing numbers by the one before, at the beginning by the first one; empty if there is none at all.
 std::vector<double> withoutHoles(std::vector<double> values) {
   const auto first = std::ranges::find_if(values, [](double value) { return std::isfinite(value); });
   if (first == values.end()) return {};
@@ -188,8 +188,8 @@ std::vector<double> withoutHoles(std::vector<double> values) {
   return values;
 }
 
-/// With the measured pressures as commands of the model, and as much noise again added to them if a stream is given; empty if the model
-/// cannot follow or a pressure is missing.
+/// Prediction with the measured pressures as commands of the model, with as much noise again added if a stream is given; empty if the model
+/// diverges or a pressure is missing.
 Eigen::VectorXd predictedUnderMeasuredPressures(const Comparison& comparison, RandomStream* noise) {
   const Plant& plant = comparison.plant();
   std::vector<std::vector<std::vector<double>>> commands_of;
@@ -323,7 +323,7 @@ std::optional<TensionTest> testTension(const Comparison& comparison, const Eigen
 
 std::optional<MotionTest> testMotion(const Comparison& comparison, const Eigen::VectorXd& residual) {
   const std::vector<Motion> motions = motionsOf(comparison, residual);
-  // Of every two signals the larger contradiction, by either curve.
+  // For every pair of signals the larger contradiction of the two curves.
   std::vector<std::vector<std::optional<double>>> pairs(motions.size(), std::vector<std::optional<double>>(motions.size()));
   bool told = false;
   for (std::size_t i = 0; i < motions.size(); ++i)
@@ -357,7 +357,7 @@ std::optional<MotionTest> testMotion(const Comparison& comparison, const Eigen::
       others_right = others_right && (other == s || motions[other].ratio < disagrees);
     double ratio = 0;
     for (const auto& pair : pairs[s]) ratio = std::max(ratio, pair.value_or(0));
-    // Of two signals that contradict each other the one that is not as predicted.
+    // Of two signals that contradict each other, the faulty one is the one that is not as predicted.
     if (!test.odd.empty() && !others_right) continue;
     test.odd = comparison.plant().signals()[static_cast<std::size_t>(motions[s].signal)].name;
     test.odd_ratio = ratio;
