@@ -41,7 +41,7 @@ std::vector<ActiveEffect> lawsOf(const json& key) {
   return laws;
 }
 
-/// What the plant measures under other commands.
+/// Measurements of the plant under other commands.
 Recording measuredUnder(Recording schedule, const Answered& one, const std::string& file, std::uint64_t seed) {
   schedule.info.noise_std.clear();
   const Truth truth({schedule}, one.key.at("signals").get<std::vector<std::string>>(),
@@ -77,7 +77,7 @@ json leftOut(const Answered& one, const FollowUpOptions& options) {
   return diagnosed(one.recordings, how);
 }
 
-/// The proposed schedule is recorded and comes first; what was held out stays so.
+/// The answer after recording the proposed schedule, which comes first so that the held-out recording stays the last.
 json experimented(const Answered& one, const FollowUpOptions& options) {
   if (!one.answer.contains("next_experiment")) return {{"verdict", "failed"}, {"message", "no schedule was proposed"}};
   const json& proposed = one.answer["next_experiment"];
@@ -97,7 +97,7 @@ double meanSquareOverNoise(const Recording& measured, const Recording& simulated
   return sum;
 }
 
-/// The commands of a recording from the last to the first.
+/// The commands of a recording in reverse order.
 Recording backwards(const Recording& recording) {
   Recording schedule = recording;
   std::erase_if(schedule.signals, [](const Signal& signal) { return !signal.name.starts_with("command_"); });
@@ -105,7 +105,7 @@ Recording backwards(const Recording& recording) {
   return schedule;
 }
 
-/// On a motion that the diagnosis has not seen, of the same kind as what was held out.
+/// Gap reduction on a motion that the diagnosis has not seen, of the same kind as the held-out one.
 json freshReduction(const Answered& one, const fs::path& effects_file) {
   const Recording measured = measuredUnder(backwards(one.recordings.back()), one, "fresh.csv", 2);
   ReplayOptions with;
@@ -121,7 +121,7 @@ json freshReduction(const Answered& one, const fs::path& effects_file) {
           {"diverged", added.divergence.has_value()}};
 }
 
-/// Nothing if it was interrupted.
+/// Empty if it was interrupted.
 std::optional<json> followed(const Answered& one, const fs::path& folder, const FollowUpOptions& options) {
   json result = json::object();
   if (one.answer.value("verdict", "") == "failed") return result;
@@ -136,7 +136,7 @@ std::optional<json> followed(const Answered& one, const fs::path& folder, const 
   return result;
 }
 
-/// Says what a file was made from.
+/// The members that say how a file was made.
 json origin(const FollowUpOptions& options) {
   json members = programMembers("");
   members["candidates"] = options.candidates;

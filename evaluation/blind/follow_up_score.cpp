@@ -33,7 +33,7 @@ FollowUp followUpOf(const fs::path& folder, const std::string& name, const json&
   return result;
 }
 
-/// Adds a rate over the follow-ups of which `hit` tells something.
+/// Adds a rate over the follow-ups for which `hit` has a value.
 void putRate(json& totals, const std::string& name, const std::vector<FollowUp>& follow_ups,
              const std::function<std::optional<bool>(const FollowUp&)>& hit) {
   Rate rate;

@@ -78,7 +78,7 @@ void judgeReduction(Judgement& j, const json& answer, const std::vector<Answer>&
   j.oracle_share = *j.reduction_percent / (j.oracle_listed ? listed->reduction_percent : everything_percent);
 }
 
-/// Of the explanations that hold all of them.
+/// Probability of the explanations that contain all of the effects.
 double probabilityOfAll(const json& answer, const Patterns& truths) {
   double sum = 0;
   for (const json& explanation : answer.value("explanations", json::array()))
@@ -100,7 +100,7 @@ void judgeSets(Judgement& j, const json& answer, const Patterns& acceptable, con
   j.covered = allNamed(truths, set);
 }
 
-/// The truth itself, under all names of its component: the acceptable answers with the same id.
+/// The truth under all names of its component: the acceptable answers with the same id.
 Patterns truthsOf(const std::vector<std::string>& ids, const Patterns& acceptable) {
   Patterns truths;
   for (std::size_t i = 0; i < ids.size(); ++i) {
@@ -110,7 +110,7 @@ Patterns truthsOf(const std::vector<std::string>& ids, const Patterns& acceptabl
   return truths;
 }
 
-/// What was said with the largest probability; nothing where no answer was given.
+/// The most probable claim of an answer; empty if there is no answer.
 std::optional<Claim> claimOf(const Judgement& j, bool right) {
   if (j.verdict == "failed") return std::nullopt;
   return Claim{j.confidence(), right};

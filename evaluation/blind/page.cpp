@@ -126,7 +126,7 @@ std::string followUpMisses(const std::vector<FollowUp>& follow_ups) {
   return rows.empty() ? "" : "| case | robot | gap / noise | true | what was missed |\n|---|---|---|---|---|\n" + rows + "\n";
 }
 
-/// What came of the answers; empty if that was not tried.
+/// The follow-ups; empty if there are none.
 std::string followed(const Score& score) {
   const json totals = score.totals.value("follow_up", json::object());
   if (totals.empty()) return "";
@@ -159,7 +159,7 @@ std::string followed(const Score& score) {
   return text + followUpMisses(score.follow_ups);
 }
 
-/// What is wrong with the causes that were named; empty if nothing is.
+/// The fault of the named causes; empty if there is none.
 std::string wrongCause(const Judgement& j) {
   if (j.kind == "null") return j.false_alarm.value_or(false) ? "false alarm" : "";
   if (j.verdict == "failed") return "no answer: " + j.message;

@@ -59,8 +59,8 @@ void putRates(json& totals, const Cases& cases) {
   for (const auto& [name, member] : members) putRate(totals, name, cases, [m = member](const Judgement& j) { return j.*m; });
 }
 
-/// Shares of single and double cases: at least 80 %; of single ones at least 80 % of the true effect's best fit; at least 20 points above
-/// the nominal refit where the cause is at least three times the noise. A nominal refit that makes it worse is none.
+/// Rates of gap reduction: at least 80 % (single and double cases); at least 80 % of the true effect's best fit (single cases); at least 20
+/// points above the nominal refit if the cause is at least three times the noise. A nominal refit that increases the gap counts as 0.
 void putReduction(json& totals, const Cases& cases) {
   constexpr double enough_percent = 80, enough_share = 0.8, enough_points = 20, large_gap = 3;
   putRate(totals, "shrink_at_least_80_percent", cases,
@@ -105,7 +105,7 @@ std::string causesOf(const Judgement& j) {
   return j.true_ids.empty() ? "none" : fmt::format("{}", fmt::join(j.true_ids, " + "));
 }
 
-/// true id -> answered id -> count, of single and open cases.
+/// Counts by true id and answered id, of single and open cases.
 json confusionOf(const Cases& cases) {
   json confusion = json::object();
   for (const Judgement& j : cases) {

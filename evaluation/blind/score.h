@@ -10,12 +10,12 @@
 
 namespace musclesim::blind {
 
-/// All judgements and what they add up to.
+/// All judgements and their totals.
 struct Score {
   nlohmann::json seal, answers;  ///< as in DIR
   std::vector<Judgement> cases;
-  std::vector<FollowUp> follow_ups;  ///< as far as there are
-  nlohmann::json totals;             ///< see totalsOf, of all and by kind, robot, size, effect
+  std::vector<FollowUp> follow_ups;  ///< empty if nothing was followed up
+  nlohmann::json totals;             ///< totalsOf() all cases and by kind, robot, size, effect
 };
 
 /// What was said of single and open causes.
