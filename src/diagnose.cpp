@@ -1,4 +1,4 @@
-/// `musclesim diagnose`: from recordings to where the gap lies, which effect causes it and how far it shrinks.
+/// `musclesim diagnose`: finds from recordings where the gap arises, which effect causes it and how much of it that effect removes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -44,13 +44,13 @@ std::string scheduleText(const Experiment& experiment) {
   return text;
 }
 
-/// With the effects that the model already had by --effects, so that the file can take that file's place.
+/// Adds the effects that --effects gave the model, so that the new file can replace that file.
 void writeWith(const std::vector<ActiveEffect>& found, std::vector<ActiveEffect> effects, const std::filesystem::path& file) {
   effects.insert(effects.end(), found.begin(), found.end());
   writeEffects(effects, file.string());
 }
 
-/// What a sidecar says of the model that is diagnosed, but for the effects of --effects: those are no part of what is recorded.
+/// The description of the diagnosed model for a sidecar, without the effects of --effects, which are not part of the recorded plant.
 RecordingInfo modelOf(const Recording& recording, const ReplayOptions& options) {
   RecordingInfo given = recording.info;
   replaceRobot(given, options.robot);
@@ -87,7 +87,7 @@ void writeAll(const Diagnosis& diagnosis, const std::filesystem::path& folder, c
   if (arguments.json) replaceFile(*arguments.json, json);
 }
 
-/// Before minutes of work: what is written has a place, and it is none of the files that are read.
+/// Checks, before minutes of work, that the output can be written and overwrites no input file.
 void requirePlaces(const std::filesystem::path& folder, const ModelOptions& model, const DiagnoseArguments& arguments) {
   std::vector<std::string> inputs = arguments.recordings;
   for (const std::string& recording : arguments.recordings) inputs.push_back(sidecarPath(recording));
