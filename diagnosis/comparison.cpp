@@ -8,30 +8,30 @@
 
 namespace musclesim {
 
-Comparison::Comparison(const Plant& plant, std::vector<Stretch> stretches, Averages averages)
-    : plant_(plant), stretches_(std::move(stretches)) {
-  for (std::size_t k = 0; k < stretches_.size(); ++k)
+Comparison::Comparison(const Plant& plant, std::vector<Segment> segments, Averages averages)
+    : plant_(plant), segments_(std::move(segments)) {
+  for (std::size_t k = 0; k < segments_.size(); ++k)
     for (std::size_t s = 0; s < plant.signals().size(); ++s) {
-      const std::vector<double>& y = plant.measured(stretches_[k].recording, static_cast<int>(s));
-      Cell cell{k, static_cast<int>(s), {}, size_, plant.signals()[s].floor.value};
-      for (int row = stretches_[k].first_row; row < std::min(stretches_[k].end_row, static_cast<int>(y.size())); row += stretches_[k].every)
-        if (std::isfinite(y[static_cast<std::size_t>(row)])) cell.rows.push_back(row);
-      if (cell.rows.size() < fewest_rows) continue;
-      size_ += static_cast<Eigen::Index>(cell.rows.size());
-      cells_.push_back(std::move(cell));
+      const std::vector<double>& y = plant.measured(segments_[k].recording, static_cast<int>(s));
+      Block block{k, static_cast<int>(s), {}, size_, plant.signals()[s].sigma.value};
+      for (int row = segments_[k].first_row; row < std::min(segments_[k].end_row, static_cast<int>(y.size())); row += segments_[k].every)
+        if (std::isfinite(y[static_cast<std::size_t>(row)])) block.rows.push_back(row);
+      if (block.rows.size() < fewest_compared_rows) continue;
+      size_ += static_cast<Eigen::Index>(block.rows.size());
+      blocks_.push_back(std::move(block));
     }
   if (averages == Averages::with) addAverages();
   measured_.resize(size_);
-  for (const Cell& cell : cells_) {
-    if (cell.block > 0) continue;
-    const std::vector<double>& y = plant.measured(stretches_[cell.stretch].recording, cell.signal);
-    for (std::size_t i = 0; i < cell.rows.size(); ++i)
-      measured_[cell.first + static_cast<Eigen::Index>(i)] = y[static_cast<std::size_t>(cell.rows[i])];
+  for (const Block& block : blocks_) {
+    if (block.averaged_rows > 0) continue;
+    const std::vector<double>& y = plant.measured(segments_[block.segment].recording, block.signal);
+    for (std::size_t i = 0; i < block.rows.size(); ++i)
+      measured_[block.first + static_cast<Eigen::Index>(i)] = y[static_cast<std::size_t>(block.rows[i])];
   }
   average(measured_);
 }
 
-double averagedShareOfFloor(const std::vector<double>& values) {
+double averagedShareOfSigma(const std::vector<double>& values) {
   std::size_t rows = 0, readings = 0;
   double last = std::numeric_limits<double>::quiet_NaN();
   for (const double value : values) {
@@ -40,48 +40,48 @@ double averagedShareOfFloor(const std::vector<double>& values) {
     readings += value != last ? 1 : 0;
     last = value;
   }
-  const double per_block = std::max(1.0, static_cast<double>(block_rows * readings) / static_cast<double>(std::max<std::size_t>(rows, 1)));
+  const double per_block =
+      std::max(1.0, static_cast<double>(averaging_rows * readings) / static_cast<double>(std::max<std::size_t>(rows, 1)));
   return std::sqrt(1.0 / per_block + steady_share * steady_share);
 }
 
-/// What repeats differ by need not be white: it is not averaged.
+/// Adds averaged blocks, except for signals whose sigma comes from repeats: their differences need not be white noise.
 void Comparison::addAverages() {
-  const std::size_t plain_count = cells_.size();
+  const std::size_t plain_count = blocks_.size();
   for (std::size_t i = 0; i < plain_count; ++i) {
-    const Cell& plain = cells_[i];
-    const NoiseFloor& floor = plant_.signals()[static_cast<std::size_t>(plain.signal)].floor;
-    if (floor.source == NoiseFloor::Source::repeats || plain.rows.size() < 4 * block_rows) continue;
-    const std::vector<double>& y = plant_.measured(stretches_[plain.stretch].recording, plain.signal);
+    const Block& plain = blocks_[i];
+    const NoiseSigma& sigma = plant_.signals()[static_cast<std::size_t>(plain.signal)].sigma;
+    if (sigma.source == NoiseSigma::Source::repeats || plain.rows.size() < 4 * averaging_rows) continue;
+    const std::vector<double>& y = plant_.measured(segments_[plain.segment].recording, plain.signal);
     std::vector<double> values;
     for (const int row : plain.rows) values.push_back(y[static_cast<std::size_t>(row)]);
-    Cell cell{plain.stretch, plain.signal, {}, size_, plain.floor * averagedShareOfFloor(values), block_rows, plain.first};
-    for (std::size_t row = 0; row + block_rows <= plain.rows.size(); row += block_rows) cell.rows.push_back(plain.rows[row]);
-    size_ += cell.count();
-    cells_.push_back(std::move(cell));
+    Block block{plain.segment, plain.signal, {}, size_, plain.sigma * averagedShareOfSigma(values), averaging_rows, plain.first};
+    for (std::size_t row = 0; row + averaging_rows <= plain.rows.size(); row += averaging_rows) block.rows.push_back(plain.rows[row]);
+    size_ += block.count();
+    blocks_.push_back(std::move(block));
   }
 }
 
 void Comparison::average(Eigen::VectorXd& values) const {
-  for (const Cell& cell : cells_) {
-    if (cell.block == 0) continue;
-    const auto block = static_cast<Eigen::Index>(cell.block);
-    for (Eigen::Index i = 0; i < cell.count(); ++i) values[cell.first + i] = values.segment(cell.first_of_all + i * block, block).mean();
+  for (const Block& block : blocks_) {
+    if (block.averaged_rows == 0) continue;
+    for (Eigen::Index i = 0; i < block.count(); ++i) values[block.first + i] = meanOfBlock(values, block.first_averaged, i);
   }
 }
 
 void Comparison::goCoarse(const Eigen::VectorXd& nominal, Purpose purpose) {
-  constexpr double few_floors = 5, share_of_gap = 0.1;
+  constexpr double few_sigmas = 5, share_of_gap = 0.1;
   if (nominal.size() != size_) return;
-  const bool looking = purpose == Purpose::looking;
+  const bool screening = purpose == Purpose::screening;
   const Eigen::VectorXd residual = measured_ - nominal;
   for (const Fidelity fidelity : {Fidelity::coarsest, Fidelity::coarse, Fidelity::medium}) {
-    if (fidelity == Fidelity::coarsest && !looking) continue;
+    if (fidelity == Fidelity::coarsest && !screening) continue;
     const Eigen::VectorXd coarse = predicted(Model{}, fidelity);
     if (coarse.size() != nominal.size() || !coarse.allFinite()) continue;
     const Eigen::VectorXd correction = nominal - coarse;
-    const bool follows = std::ranges::all_of(cells_, [&](const Cell& cell) {
-      const double bearable = std::max(few_floors * cell.floor, looking ? share_of_gap * std::sqrt(meanSquare(cell, residual)) : 0);
-      return std::sqrt(meanSquare(cell, correction)) <= bearable;
+    const bool follows = std::ranges::all_of(blocks_, [&](const Block& block) {
+      const double bearable = std::max(few_sigmas * block.sigma, screening ? share_of_gap * std::sqrt(meanSquare(block, residual)) : 0);
+      return std::sqrt(meanSquare(block, correction)) <= bearable;
     });
     if (!follows) {
       if (fidelity == Fidelity::medium) unsteady_ = unsteadiness(correction, residual);
@@ -93,14 +93,14 @@ void Comparison::goCoarse(const Eigen::VectorXd& nominal, Purpose purpose) {
   }
 }
 
-/// The signal, as it is, that another step moves most.
+/// The row-by-row signal that the other time step changes most.
 Unsteady Comparison::unsteadiness(const Eigen::VectorXd& change, const Eigen::VectorXd& residual) const {
   Unsteady worst;
-  for (const Cell& cell : cells_) {
-    const double in_floors = std::sqrt(meanSquare(cell, change)) / cell.floor;
-    if (cell.block > 0 || in_floors <= worst.in_floors) continue;
-    worst = {plant_.signals()[static_cast<std::size_t>(cell.signal)].name, in_floors,
-             std::sqrt(meanSquare(cell, change) / std::max(1e-300, meanSquare(cell, residual)))};
+  for (const Block& block : blocks_) {
+    const double in_sigmas = std::sqrt(meanSquare(block, change)) / block.sigma;
+    if (block.averaged_rows > 0 || in_sigmas <= worst.in_sigmas) continue;
+    worst = {plant_.signals()[static_cast<std::size_t>(block.signal)].name, in_sigmas,
+             std::sqrt(meanSquare(block, change) / std::max(1e-300, meanSquare(block, residual)))};
   }
   return worst;
 }
@@ -113,64 +113,65 @@ Eigen::VectorXd Comparison::predicted(const Model& model) const {
 }
 
 Eigen::VectorXd Comparison::predicted(const Model& model, Fidelity fidelity) const {
-  std::vector<Prediction> predictions(stretches_.size());
-  parallelFor(static_cast<int>(stretches_.size()), plant_.jobCount(), [&](int i) {
-    const Stretch& stretch = stretches_[static_cast<std::size_t>(i)];
-    predictions[static_cast<std::size_t>(i)] = plant_.predict(stretch.recording, model, stretch.end_row, fidelity);
+  std::vector<Prediction> predictions(segments_.size());
+  parallelFor(static_cast<int>(segments_.size()), plant_.jobCount(), [&](int i) {
+    const Segment& segment = segments_[static_cast<std::size_t>(i)];
+    predictions[static_cast<std::size_t>(i)] = plant_.predict(segment.recording, model, segment.end_row, fidelity);
   });
   return gathered(predictions);
 }
 
-Eigen::VectorXd Comparison::predicted(const std::vector<Prediction>& per_stretch, Fidelity fidelity) const {
-  Eigen::VectorXd result = gathered(per_stretch);
+Eigen::VectorXd Comparison::predicted(const std::vector<Prediction>& per_segment, Fidelity fidelity) const {
+  Eigen::VectorXd result = gathered(per_segment);
   if (result.size() && fidelity != Fidelity::fine) result += correction_;
   return result;
 }
 
-Eigen::VectorXd Comparison::gathered(const std::vector<Prediction>& per_stretch) const {
-  for (const Prediction& prediction : per_stretch)
+Eigen::VectorXd Comparison::gathered(const std::vector<Prediction>& per_segment) const {
+  for (const Prediction& prediction : per_segment)
     if (prediction.diverged) return {};
   Eigen::VectorXd result(size_);
-  for (const Cell& cell : cells_) {
-    if (cell.block > 0) continue;
-    const std::vector<double>& y = per_stretch[cell.stretch].values[static_cast<std::size_t>(cell.signal)];
-    for (std::size_t i = 0; i < cell.rows.size(); ++i)
-      result[cell.first + static_cast<Eigen::Index>(i)] = y[static_cast<std::size_t>(cell.rows[i])];
+  for (const Block& block : blocks_) {
+    if (block.averaged_rows > 0) continue;
+    const std::vector<double>& y = per_segment[block.segment].values[static_cast<std::size_t>(block.signal)];
+    for (std::size_t i = 0; i < block.rows.size(); ++i)
+      result[block.first + static_cast<Eigen::Index>(i)] = y[static_cast<std::size_t>(block.rows[i])];
   }
   average(result);
   return result;
 }
 
-const Comparison::Cell& Comparison::cellLike(const Cell& other) const {
-  return *std::ranges::find_if(cells_, [&](const Cell& cell) { return cell.signal == other.signal && cell.block == other.block; });
+const Comparison::Block& Comparison::blockLike(const Block& other) const {
+  return *std::ranges::find_if(
+      blocks_, [&](const Block& block) { return block.signal == other.signal && block.averaged_rows == other.averaged_rows; });
 }
 
 Comparison Comparison::bySquares(const Eigen::VectorXd& residual) const {
   Comparison result = *this;
   result.by_squares_ = true;
-  for (Cell& cell : result.cells_) cell.floor = std::sqrt(cell.floor * cell.floor + meanSquare(cell, residual));
+  for (Block& block : result.blocks_) block.sigma = std::sqrt(block.sigma * block.sigma + meanSquare(block, residual));
   return result;
 }
 
-double Comparison::meanSquare(const Cell& cell, const Eigen::VectorXd& residual) const {
-  return residual.segment(cell.first, cell.count()).squaredNorm() / static_cast<double>(cell.count());
+double Comparison::meanSquare(const Block& block, const Eigen::VectorXd& residual) const {
+  return residual.segment(block.first, block.count()).squaredNorm() / static_cast<double>(block.count());
 }
 
 double Comparison::logMisfit(const Eigen::VectorXd& residual) const {
   if (residual.size() != size_ || !residual.allFinite()) return std::numeric_limits<double>::infinity();
   double sum = 0;
-  for (const Cell& cell : cells_) {
-    const double over_floor = meanSquare(cell, residual) / (cell.floor * cell.floor);
-    sum += 0.5 * (by_squares_ ? over_floor : std::log(std::max(1.0, over_floor)));
+  for (const Block& block : blocks_) {
+    const double over_noise = meanSquare(block, residual) / (block.sigma * block.sigma);
+    sum += 0.5 * (by_squares_ ? over_noise : std::log(std::max(1.0, over_noise)));
   }
   return sum;
 }
 
 Eigen::VectorXd Comparison::weights(const Eigen::VectorXd& residual) const {
   Eigen::VectorXd result(size_);
-  for (const Cell& cell : cells_) {
-    const double rms = by_squares_ ? cell.floor : std::max(cell.floor, std::sqrt(meanSquare(cell, residual)));
-    result.segment(cell.first, cell.count()).setConstant(1 / (rms * std::sqrt(static_cast<double>(cell.count()))));
+  for (const Block& block : blocks_) {
+    const double rms = by_squares_ ? block.sigma : std::max(block.sigma, std::sqrt(meanSquare(block, residual)));
+    result.segment(block.first, block.count()).setConstant(1 / (rms * std::sqrt(static_cast<double>(block.count()))));
   }
   return result;
 }
@@ -181,43 +182,42 @@ Gap Comparison::gap(const Eigen::VectorXd& residual) const {
     std::size_t count = 0;
   };
   std::map<int, Sum> sums;
-  for (const Cell& cell : cells_) {
-    if (cell.block > 0) continue;
-    Sum& sum = sums[cell.signal];
-    sum.squares += meanSquare(cell, residual) * static_cast<double>(cell.rows.size());
-    sum.count += cell.rows.size();
+  for (const Block& block : blocks_) {
+    if (block.averaged_rows > 0) continue;
+    Sum& sum = sums[block.signal];
+    sum.squares += meanSquare(block, residual) * static_cast<double>(block.rows.size());
+    sum.count += block.rows.size();
   }
   Gap gap;
   for (const auto& [signal, sum] : sums) {
     const ComparedSignal& compared = plant_.signals()[static_cast<std::size_t>(signal)];
-    const double mean_square = sum.squares / static_cast<double>(sum.count), floor = compared.floor.value;
-    gap.per_signal[compared.name] = {std::sqrt(mean_square), floor};
-    gap.normalised += std::max(0.0, mean_square - floor * floor) / (floor * floor) / static_cast<double>(sums.size());
+    const double mean_square = sum.squares / static_cast<double>(sum.count), sigma = compared.sigma.value;
+    gap.per_signal[compared.name] = {std::sqrt(mean_square), sigma};
+    gap.normalised += std::max(0.0, mean_square - sigma * sigma) / (sigma * sigma) / static_cast<double>(sums.size());
   }
   return gap;
 }
 
-int Comparison::affectedCells(const Eigen::VectorXd& residual) const {
-  constexpr double out_of_floor = 1.15;
-  const auto count =
-      std::ranges::count_if(cells_, [&](const Cell& cell) { return std::sqrt(meanSquare(cell, residual)) > out_of_floor * cell.floor; });
+int Comparison::affectedBlocks(const Eigen::VectorXd& residual) const {
+  const auto count = std::ranges::count_if(
+      blocks_, [&](const Block& block) { return std::sqrt(meanSquare(block, residual)) > out_of_noise * block.sigma; });
   return std::max(1, static_cast<int>(count));
 }
 
-bool isWithinFloor(const Comparison& comparison, const Eigen::VectorXd& residual) {
+bool isWithinNoise(const Comparison& comparison, const Eigen::VectorXd& residual) {
   constexpr Eigen::Index enough_rows = 200;
-  constexpr double known = 1.15, estimated = 1.3, known_in_one = 1.3, estimated_in_one = 1.5;
+  constexpr double known_in_one = 1.3, estimated_in_one = 1.5;
   const Gap gap = comparison.gap(residual);
   const auto& signals = comparison.plant().signals();
   const bool all = std::ranges::all_of(signals, [&](const ComparedSignal& signal) {
     const auto found = gap.per_signal.find(signal.name);
     return found == gap.per_signal.end() ||
-           found->second.rmse < (signal.floor.isEstimated() ? estimated : known) * found->second.noise_floor;
+           found->second.rmse < (signal.sigma.isEstimated() ? out_of_estimated_noise : out_of_noise) * found->second.noise_sigma;
   });
-  return all && std::ranges::all_of(comparison.cells(), [&](const Comparison::Cell& cell) {
-           const bool is_estimated = signals[static_cast<std::size_t>(cell.signal)].floor.isEstimated();
-           const double rms = std::sqrt(comparison.meanSquare(cell, residual));
-           return cell.count() < enough_rows || rms < (is_estimated ? estimated_in_one : known_in_one) * cell.floor;
+  return all && std::ranges::all_of(comparison.blocks(), [&](const Comparison::Block& block) {
+           const bool is_estimated = signals[static_cast<std::size_t>(block.signal)].sigma.isEstimated();
+           const double rms = std::sqrt(comparison.meanSquare(block, residual));
+           return block.count() < enough_rows || rms < (is_estimated ? estimated_in_one : known_in_one) * block.sigma;
          });
 }
 

@@ -1,4 +1,4 @@
-/// Measured minus predicted, over chosen stretches, in one long vector.
+/// Residuals (measured minus predicted) of chosen segments, in one long vector.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,92 +8,99 @@
 
 namespace musclesim {
 
-inline constexpr std::size_t block_rows = 16;  ///< that many rows are averaged
-inline constexpr double steady_share = 0.2;    ///< of a noise floor that does not average out: what the model's own steps leave
+inline constexpr std::size_t averaging_rows = 16;  ///< rows per averaging block
+inline constexpr double steady_share = 0.2;        ///< share of sigma that averaging does not reduce: errors of the model's own time steps
 
-/// What part of a signal's noise floor is left in averages over blocks: sqrt(1 / n + steady_share^2), n readings per block, where a
-/// reading that is held in the next rows is one. Values that are no numbers are left out.
-double averagedShareOfFloor(const std::vector<double>& values);
+/// Noise sigma of block averages over the noise sigma of rows: sqrt(1 / n + steady_share^2), n readings per block. A reading that is held
+/// in the following rows counts once; values that are not finite are left out.
+double averagedShareOfSigma(const std::vector<double>& values);
 
-/// The compared rows of some stretches. A cell is one signal in one stretch, or the same averaged over blocks of rows: there noise is
-/// smaller, and what is weak but slow stands out.
+/// Mean of the `index`-th averaging block of rows that begin at `first`.
+inline double meanOfBlock(const Eigen::VectorXd& values, Eigen::Index first, Eigen::Index index) {
+  constexpr auto rows = static_cast<Eigen::Index>(averaging_rows);
+  return values.segment(first + index * rows, rows).mean();
+}
+
+/// The compared rows of some segments. A residual block is one signal in one segment, either row by row or averaged over blocks of rows:
+/// averages have less noise, so weak but slow differences stand out.
 class Comparison {
  public:
-  static constexpr int fewest_rows = 10;  ///< a signal with fewer numbers in a stretch is not compared there
-  struct Cell {
-    std::size_t stretch;
+  struct Block {
+    std::size_t segment;
     int signal;
-    std::vector<int> rows;  ///< those with a measured number, or the first ones of the blocks
-    Eigen::Index first;     ///< where its rows begin in the vectors
-    double floor;
-    std::size_t block = 0;          ///< rows of a block; 0: not averaged
-    Eigen::Index first_of_all = 0;  ///< where the rows that are averaged begin
+    std::vector<int> rows;  ///< rows with a measured value, or the first row of each averaging block
+    Eigen::Index first;     ///< index of its first row in the vectors
+    double sigma;
+    std::size_t averaged_rows = 0;    ///< rows per average; 0: not averaged
+    Eigen::Index first_averaged = 0;  ///< index of the first row that is averaged
     Eigen::Index count() const { return static_cast<Eigen::Index>(rows.size()); }
   };
   enum class Averages { without, with };
 
-  Comparison(const Plant& plant, std::vector<Stretch> stretches, Averages averages = Averages::without);
+  Comparison(const Plant& plant, std::vector<Segment> segments, Averages averages = Averages::without);
 
   const Plant& plant() const { return plant_; }
-  const std::vector<Stretch>& stretches() const { return stretches_; }
-  const std::vector<Cell>& cells() const { return cells_; }
-  /// The cell of this comparison's only stretch with the signal and averages of a cell of another comparison.
-  const Cell& cellLike(const Cell& other) const;
+  const std::vector<Segment>& segments() const { return segments_; }
+  const std::vector<Block>& blocks() const { return blocks_; }
+  /// The block of this one-segment comparison with the signal and averaging of a block of another comparison.
+  const Block& blockLike(const Block& other) const;
   Eigen::Index size() const { return size_; }
 
-  enum class Purpose { fitting, looking };  ///< a look only chooses what is fitted further
+  enum class Purpose { fitting, screening };  ///< screening only chooses what is fitted further
 
-  /// From here on predictions are coarse, corrected by what coarse steps change in the model without effects: medium where coarse steps
-  /// change a signal by more than a few floors, since they follow another motion then, and fine where medium ones do. A look begins
-  /// with the coarsest steps and bears a tenth of a signal's gap where that is more than those floors. A model that diverges in coarse
-  /// steps is simulated in fine ones. `nominal` is the fine prediction of the model without effects.
+  /// From here on predictions use coarse time steps, corrected by the change that coarse steps cause in the model without effects. Medium
+  /// steps are used if coarse ones change a signal by more than a few noise sigmas, because the motion is then another one, and fine steps
+  /// if medium ones do. Screening begins with the coarsest steps and tolerates a tenth of a signal's gap where that is more than those
+  /// sigmas. A model that diverges in coarse steps is simulated in fine ones. `nominal` is the fine prediction of the model without
+  /// effects.
   void goCoarse(const Eigen::VectorXd& nominal, Purpose purpose = Purpose::fitting);
   Fidelity fidelity() const { return fidelity_; }
-  /// Where even medium steps follow another motion, what they change; empty otherwise, and before goCoarse.
+  /// The change that medium steps cause, if the motion is another one even with them; empty otherwise, and before goCoarse.
   const Unsteady& unsteady() const { return unsteady_; }
 
-  /// What a model predicts at the compared rows; empty if it diverges on one of the stretches.
+  /// Prediction of a model at the compared rows; empty if it diverges on one of the segments.
   Eigen::VectorXd predicted(const Model& model) const;
   Eigen::VectorXd predicted(const Model& model, Fidelity fidelity) const;
-  /// The same from simulations made elsewhere, in fine steps or with fidelity().
-  Eigen::VectorXd predicted(const std::vector<Prediction>& per_stretch, Fidelity fidelity) const;
+  /// The prediction from simulations made elsewhere, in fine steps or with fidelity().
+  Eigen::VectorXd predicted(const std::vector<Prediction>& per_segment, Fidelity fidelity) const;
   const Eigen::VectorXd& measured() const { return measured_; }
 
-  /// The same where logMisfit and weights are those of plain least squares, every cell in units of its floor and its part of a residual
-  /// together (root of the sum of squares). Far from the best fit that has fewer minima: the logarithm rewards one cell that fits very
-  /// well.
+  /// A copy whose logMisfit and weights are those of plain least squares; the scale of every block is the root of the sum of squares of its
+  /// sigma and of the RMS of `residual`. Far from the best fit this has fewer minima, because the logarithm rewards a single block that
+  /// fits very well.
   Comparison bySquares(const Eigen::VectorXd& residual) const;
 
-  /// Mean square of a vector's part in one cell.
-  double meanSquare(const Cell& cell, const Eigen::VectorXd& residual) const;
-  /// ln of the RMS residual over the floor, 0 below the floor, summed over all cells; infinite for an empty vector.
+  /// Mean square of the part of a vector that belongs to one block.
+  double meanSquare(const Block& block, const Eigen::VectorXd& residual) const;
+  /// Sum over all blocks of ln(RMS residual / sigma), 0 below sigma; infinite for an empty vector.
   double logMisfit(const Eigen::VectorXd& residual) const;
-  /// 1 / (RMS sqrt(rows)) for each row, RMS its cell's residual but not less than the floor: makes least squares follow logMisfit.
+  /// 1 / (RMS sqrt(rows)) for each row, where RMS is that of its block's residual, at least sigma: with these weights least squares follows
+  /// logMisfit.
   Eigen::VectorXd weights(const Eigen::VectorXd& residual) const;
-  /// normalised gap and its parts.
+  /// The normalised gap and its parts per signal.
   Gap gap(const Eigen::VectorXd& residual) const;
-  /// Number of cells in which the residual stands out of the floor (RMS > 1.15 floor), at least 1.
-  int affectedCells(const Eigen::VectorXd& residual) const;
+  /// Number of blocks whose residual stands out of the noise (RMS > out_of_noise sigma), at least 1.
+  int affectedBlocks(const Eigen::VectorXd& residual) const;
 
  private:
   void addAverages();
   void average(Eigen::VectorXd& values) const;
   Unsteady unsteadiness(const Eigen::VectorXd& change, const Eigen::VectorXd& residual) const;
-  Eigen::VectorXd gathered(const std::vector<Prediction>& per_stretch) const;
+  Eigen::VectorXd gathered(const std::vector<Prediction>& per_segment) const;
 
   const Plant& plant_;
   bool by_squares_ = false;
   Fidelity fidelity_ = Fidelity::fine;
   Unsteady unsteady_;
-  Eigen::VectorXd correction_;  ///< fine minus coarse
-  std::vector<Stretch> stretches_;
-  std::vector<Cell> cells_;
+  Eigen::VectorXd correction_;  ///< fine minus coarse prediction of the model without effects
+  std::vector<Segment> segments_;
+  std::vector<Block> blocks_;
   Eigen::Index size_ = 0;
   Eigen::VectorXd measured_;
 };
 
-/// No signal stands out of its floor: RMS below 1.15 floors, or 1.3 where the floor itself had to be estimated; nor in a single stretch of
-/// 200 rows or more by 1.3 or 1.5.
-bool isWithinFloor(const Comparison& comparison, const Eigen::VectorXd& residual);
+/// Whether no signal stands out of its noise: RMS below out_of_noise sigmas, or out_of_estimated_noise where sigma is estimated; and in
+/// each single segment of 200 rows or more below 1.3 or 1.5 sigmas.
+bool isWithinNoise(const Comparison& comparison, const Eigen::VectorXd& residual);
 
 }  // namespace musclesim

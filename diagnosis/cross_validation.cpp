@@ -1,5 +1,5 @@
-// What speaks against explanations beside their misfit: that they do not hold on recordings that their numbers were not fitted to, and
-// that they do as well at no strength.
+// Two checks of fitted hypotheses beyond their misfit: cross-validation on recordings that their parameters were not fitted to, and whether
+// an effect is inactive.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -12,25 +12,24 @@
 
 namespace musclesim {
 
-/// The step to where the linearised problem is best without some stretches, weighted anew five times. Coordinates that reach a bound, or
-/// go farther than a typical strength or twice where they are, stay there.
-Eigen::VectorXd Attributor::stepWithout(const std::set<std::size_t>& left_out, const Explanation& explanation,
+/// The step to the optimum of the linearised problem without some segments, reweighted five times. Coordinates stop at bounds, and at a
+/// typical strength or twice their value, whichever is farther.
+Eigen::VectorXd Attributor::stepWithout(const std::set<std::size_t>& left_out, const FittedHypothesis& fitted,
                                         const Eigen::MatrixXd& jacobian) const {
   constexpr int reweightings = 5;
-  constexpr double damping = 1e-3;  // what changes nothing stays where it is
-  const Eigen::VectorXd reach = explanation.z.cwiseAbs().cwiseMax(1.0);
+  constexpr double damping = 1e-3;  // coordinates without influence stay where they are
+  const Eigen::VectorXd longest_step = fitted.z.cwiseAbs().cwiseMax(1.0);
   Eigen::VectorXd step = Eigen::VectorXd::Zero(jacobian.cols()), kept = step;
   Eigen::MatrixXd free = jacobian;
   for (int i = 0; i < reweightings && step.size() > 0; ++i) {
-    Eigen::VectorXd weights = fit_.weights(explanation.residual - jacobian * step);
-    for (const Comparison::Cell& cell : fit_.cells())
-      if (left_out.contains(cell.stretch)) weights.segment(cell.first, cell.count()).setZero();
+    Eigen::VectorXd weights = fit_.weights(fitted.residual - jacobian * step);
+    for (const Comparison::Block& block : fit_.blocks())
+      if (left_out.contains(block.segment)) weights.segment(block.first, block.count()).setZero();
     const Eigen::MatrixXd weighted = weights.asDiagonal() * free;
     Eigen::MatrixXd normal = weighted.transpose() * weighted;
     normal.diagonal().array() += damping;
-    step = kept + normal.ldlt().solve(weighted.transpose() * weights.cwiseProduct(explanation.residual - jacobian * kept));
-    const Eigen::VectorXd possible =
-        clampedAll(explanation.suspects, explanation.z + step.cwiseMax(-reach).cwiseMin(reach)) - explanation.z;
+    step = kept + normal.ldlt().solve(weighted.transpose() * weights.cwiseProduct(fitted.residual - jacobian * kept));
+    const Eigen::VectorXd possible = clampedAll(fitted.members, fitted.z + step.cwiseMax(-longest_step).cwiseMin(longest_step)) - fitted.z;
     for (Eigen::Index k = 0; k < step.size(); ++k)
       if (possible[k] != step[k] && std::abs(possible[k] - step[k]) > 1e-9) {
         kept[k] = step[k] = possible[k];
@@ -40,25 +39,25 @@ Eigen::VectorXd Attributor::stepWithout(const std::set<std::size_t>& left_out, c
   return step;
 }
 
-/// The part of a vector over all stretches that belongs to one of them, in the order of that one's own comparison.
-Eigen::VectorXd Attributor::partOf(std::size_t stretch, const Eigen::VectorXd& all) const {
-  const Comparison& one = one_by_one_[stretch];
+/// The part of a vector over all segments that belongs to one of them, in the order of that segment's own comparison.
+Eigen::VectorXd Attributor::partOf(std::size_t segment, const Eigen::VectorXd& all) const {
+  const Comparison& one = one_by_one_[segment];
   Eigen::VectorXd part(one.size());
-  for (const Comparison::Cell& cell : fit_.cells())
-    if (cell.stretch == stretch) {
-      const Comparison::Cell& same = one.cellLike(cell);
-      part.segment(same.first, same.count()) = all.segment(cell.first, cell.count());
+  for (const Comparison::Block& block : fit_.blocks())
+    if (block.segment == segment) {
+      const Comparison::Block& same = one.blockLike(block);
+      part.segment(same.first, same.count()) = all.segment(block.first, block.count());
     }
   return part;
 }
 
-/// An explanation as it is: what fine steps leave of each stretch, and by how much they differ from coarse ones there.
-Attributor::Unmoved Attributor::unmoved(const Explanation& explanation) const {
+/// The unmoved fit: its misfit per segment with fine time steps, and the difference between fine and coarse prediction.
+Attributor::Unmoved Attributor::unmoved(const FittedHypothesis& fitted) const {
   Unmoved result{std::vector<double>(one_by_one_.size()), std::vector<Eigen::VectorXd>(one_by_one_.size())};
   parallelFor(static_cast<int>(one_by_one_.size()), options_.job_count, [&](int i) {
     const auto k = static_cast<std::size_t>(i);
     const Comparison& one = one_by_one_[k];
-    const Eigen::VectorXd residual = partOf(k, explanation.residual), coarse = one.predicted(modelOf(explanation));
+    const Eigen::VectorXd residual = partOf(k, fitted.residual), coarse = one.predicted(modelOf(fitted));
     on_simulation_();
     result.misfit[k] = one.logMisfit(residual);
     result.shift[k] = coarse.size() ? Eigen::VectorXd(one.measured() - residual - coarse) : Eigen::VectorXd::Zero(one.size());
@@ -66,13 +65,13 @@ Attributor::Unmoved Attributor::unmoved(const Explanation& explanation) const {
   return result;
 }
 
-/// The explanation moved by a step, or by a half or quarter of it where that fits the stretches that are not left out worse than it does
-/// unmoved. In coarse steps, with what these change in the explanation as it is.
-Explanation Attributor::movedWithout(const std::set<std::size_t>& left_out, const Explanation& explanation, Eigen::VectorXd step,
-                                     const Unmoved& unmoved) const {
+/// The fit moved by a step, or by a half or a quarter of it if the full step fits the segments that are kept worse than the unmoved fit.
+/// Coarse predictions are corrected by the fine-minus-coarse difference of the unmoved fit.
+FittedHypothesis Attributor::movedWithout(const std::set<std::size_t>& left_out, const FittedHypothesis& fitted, Eigen::VectorXd step,
+                                          const Unmoved& unmoved) const {
   constexpr int halving_count = 3;
-  const double worse = 0.02 * fit_.affectedCells(nominal_residual_);  // misfit that is no reason to go less far
-  Explanation moved = explanation;
+  const double worse = 0.02 * fit_.affectedBlocks(nominal_residual_);  // increase of the misfit that is tolerated
+  FittedHypothesis moved = fitted;
   auto gainOf = [&](std::size_t k) {
     const Eigen::VectorXd coarse = one_by_one_[k].predicted(modelOf(moved));
     on_simulation_();
@@ -81,112 +80,113 @@ Explanation Attributor::movedWithout(const std::set<std::size_t>& left_out, cons
   };
   double gain = 0;
   for (int i = 0; i < halving_count && step.size(); ++i, step *= 0.5) {
-    moved.z = clampedAll(explanation.suspects, explanation.z + step);
+    moved.z = clampedAll(fitted.members, fitted.z + step);
     gain = worse;
     for (std::size_t k = 0; k < one_by_one_.size(); ++k)
       if (!left_out.contains(k)) gain += gainOf(k);
     if (gain > 0) break;
   }
-  return std::isfinite(gain) ? moved : explanation;
+  return std::isfinite(gain) ? moved : fitted;
 }
 
-/// Leave-one-out cross-validation (Stone 1974): each stretch as predicted by the numbers that fit the others; one with the same commands is
-/// none of those. They differ from the fit to all by the steps of the linearised problem with and without it, made shorter where that fits
-/// the others worse. Where the model diverges with them, the gap is what is left. Tuned numbers stay, since the model without effects keeps
-/// them too.
-void Attributor::predictFromOthers(Explanation& explanation) const {
-  FitProblem problem = problemOf(explanation, fit_, Fidelity::coarse);
-  const Eigen::Index effect_count = explanation.z.size();
+/// Leave-one-out cross-validation (Stone 1974): predicts each segment with parameters fitted to the others; repeats of the segment are left
+/// out too. These parameters differ from the fit to all segments by the steps of the linearised problem with and without the segment,
+/// shortened if they fit the others worse. If the model diverges with them, the residual without effects is used. Tuned parameters stay
+/// fixed, because the model without effects keeps them too.
+void Attributor::predictFromOthers(FittedHypothesis& fitted) const {
+  FitProblem problem = problemOf(fitted, fit_, Fidelity::coarse);
+  const Eigen::Index effect_count = fitted.z.size();
   const Eigen::MatrixXd jacobian =
       effect_count ? derivatives(fit_, problem, problem.start).leftCols(effect_count).eval() : Eigen::MatrixXd(fit_.size(), 0);
-  const Eigen::VectorXd with_all = stepWithout({}, explanation, jacobian);
-  const Unmoved as_it_is = effect_count ? unmoved(explanation) : Unmoved{};
-  Eigen::VectorXd unseen = explanation.residual;
+  const Eigen::VectorXd with_all = stepWithout({}, fitted, jacobian);
+  const Unmoved as_it_is = effect_count ? unmoved(fitted) : Unmoved{};
+  Eigen::VectorXd cross_validated = fitted.residual;
   parallelFor(static_cast<int>(one_by_one_.size()), options_.job_count, [&](int i) {
     if (plant_.interrupted()) return;
     const auto k = static_cast<std::size_t>(i);
     const std::set<std::size_t> left_out = sameCommandsAs(k);
-    const Eigen::VectorXd step = stepWithout(left_out, explanation, jacobian) - with_all;
-    const Explanation without = movedWithout(left_out, explanation, step, as_it_is);
+    const Eigen::VectorXd step = stepWithout(left_out, fitted, jacobian) - with_all;
+    const FittedHypothesis without = movedWithout(left_out, fitted, step, as_it_is);
     const Comparison& one = one_by_one_[k];
     Eigen::VectorXd left = one.predicted(modelOf(without), Fidelity::fine);
     on_simulation_();
     const bool goes_on = left.size() == one.size() && left.allFinite();
     if (goes_on) left = one.measured() - left;
-    for (const Comparison::Cell& cell : fit_.cells()) {
-      if (cell.stretch != k) continue;
+    for (const Comparison::Block& block : fit_.blocks()) {
+      if (block.segment != k) continue;
       const Eigen::VectorXd& source = goes_on ? left : nominal_residual_;
-      unseen.segment(cell.first, cell.count()) = source.segment(goes_on ? one.cellLike(cell).first : cell.first, cell.count());
+      cross_validated.segment(block.first, block.count()) =
+          source.segment(goes_on ? one.blockLike(block).first : block.first, block.count());
     }
   });
-  if (!plant_.interrupted()) explanation.unseen = unseen;
+  if (!plant_.interrupted()) fitted.cross_validated = cross_validated;
 }
 
-/// The stretch itself and its repeats.
-std::set<std::size_t> Attributor::sameCommandsAs(std::size_t stretch) const {
+/// The segment itself and its repeats.
+std::set<std::size_t> Attributor::sameCommandsAs(std::size_t segment) const {
   auto recordingOf = [&](std::size_t k) -> const Recording& {
-    return plant_.recordings()[static_cast<std::size_t>(fit_.stretches()[k].recording)];
+    return plant_.recordings()[static_cast<std::size_t>(fit_.segments()[k].recording)];
   };
-  std::set<std::size_t> result = {stretch};
-  for (std::size_t k = 0; k < fit_.stretches().size(); ++k)
-    if (isRepeat(recordingOf(k), recordingOf(stretch))) result.insert(k);
+  std::set<std::size_t> result = {segment};
+  for (std::size_t k = 0; k < fit_.segments().size(); ++k)
+    if (isRepeat(recordingOf(k), recordingOf(segment))) result.insert(k);
   return result;
 }
 
-/// Whether one of its effects does as well, as far as odds are made of it, at next to no strength, with its shape as it is: a leak without
-/// a leak is its regulator's lag.
-bool Attributor::isHollow(const Explanation& explanation) const {
-  constexpr double next_to_nothing = 1e-3, noticeable = 0.45;  // typical strengths; ln of the odds
-  if (explanation.residual.size() != fit_.size()) return false;
-  const Eigen::VectorXd as_it_is = fit_.predicted(modelOf(explanation));
+/// True if an effect's strength can go to nearly zero at no noticeable loss: its shape parameters explain the data, not the effect. For
+/// example a leak without a leak is the lag of its regulator.
+bool Attributor::hasInactiveEffect(const FittedHypothesis& fitted) const {
+  constexpr double next_to_nothing = 1e-3, noticeable = 0.45;  // typical strengths; ln odds
+  if (fitted.residual.size() != fit_.size()) return false;
+  const Eigen::VectorXd as_it_is = fit_.predicted(modelOf(fitted));
   Eigen::Index first = 0;
-  for (const std::size_t index : explanation.suspects) {
-    const Suspect& suspect = result_.suspects[index];
-    const auto strength_count = static_cast<int>(suspect.strengths().size());
-    if (strength_count > 0 && strength_count < suspect.coordinateCount() && as_it_is.size() && !plant_.interrupted()) {
-      Explanation weak = explanation;
-      for (const int strength : suspect.strengths()) weak.z[first + strength] = next_to_nothing;
-      weak.z = clampedAll(weak.suspects, weak.z);
+  for (const std::size_t index : fitted.members) {
+    const Hypothesis& hypothesis = result_.hypotheses[index];
+    const auto strength_count = static_cast<int>(hypothesis.strengths().size());
+    if (strength_count > 0 && strength_count < hypothesis.coordinateCount() && as_it_is.size() && !plant_.interrupted()) {
+      FittedHypothesis weak = fitted;
+      for (const int strength : hypothesis.strengths()) weak.z[first + strength] = next_to_nothing;
+      weak.z = clampedAll(weak.members, weak.z);
       const Eigen::VectorXd predicted = fit_.predicted(modelOf(weak));
       on_simulation_();
       if (predicted.size() == fit_.size() && predicted.allFinite() &&
-          odds().ofMisfit(explanation.residual + as_it_is - predicted) > odds().ofMisfit(explanation.residual) - noticeable)
+          odds().ofMisfit(fitted.residual + as_it_is - predicted) > odds().ofMisfit(fitted.residual) - noticeable)
         return true;
     }
-    first += suspect.coordinateCount();
+    first += hypothesis.coordinateCount();
   }
   return false;
 }
 
-/// Fits every explanation that is not out of the question to all recordings and judges it by stretches that it has not seen, and its
-/// effects alone with it, until all of those have been.
+/// Fits every hypothesis that is not improbable to all fitting segments and cross-validates it, and each of its effects alone, until none
+/// is left.
 void Attributor::crossCheck() {
   constexpr double out_of_the_question = 0.001;
-  const bool some_unlike = sameCommandsAs(0).size() < fit_.stretches().size();
+  const bool some_unlike = sameCommandsAs(0).size() < fit_.segments().size();
   if (some_unlike && one_by_one_.empty())
-    for (const Stretch& stretch : fit_.stretches()) {
-      Comparison& one = one_by_one_.emplace_back(plant_, std::vector{stretch}, Comparison::Averages::with);
+    for (const Segment& segment : fit_.segments()) {
+      Comparison& one = one_by_one_.emplace_back(plant_, std::vector{segment}, Comparison::Averages::with);
       one.goCoarse(one.predicted(Model{}));
     }
   while (!plant_.interrupted()) {
     std::set<std::size_t> members;
-    for (const Explanation& explanation : result_.explanations)
-      if (explanation.probability > out_of_the_question) members.insert(explanation.suspects.begin(), explanation.suspects.end());
-    std::vector<Explanation*> open;
-    for (Explanation& explanation : result_.explanations) {
-      const bool alone = explanation.suspects.size() == 1 && members.contains(explanation.suspects.front());
-      const bool done = explanation.fitted_to_all && (explanation.unseen.size() > 0 || !some_unlike);
-      if (!done && (alone || explanation.probability > out_of_the_question)) open.push_back(&explanation);
+    for (const FittedHypothesis& fitted : result_.fits)
+      if (fitted.probability > out_of_the_question) members.insert(fitted.members.begin(), fitted.members.end());
+    std::vector<FittedHypothesis*> open;
+    for (FittedHypothesis& fitted : result_.fits) {
+      const bool alone = fitted.members.size() == 1 && members.contains(fitted.members.front());
+      const bool done = fitted.fitted_to_all && (fitted.cross_validated.size() > 0 || !some_unlike);
+      if (!done && (alone || fitted.probability > out_of_the_question)) open.push_back(&fitted);
     }
     if (open.empty()) return;
     parallelFor(static_cast<int>(open.size()), options_.job_count, [&](int i) {
-      Explanation& explanation = *open[static_cast<std::size_t>(i)];
-      if (!explanation.fitted_to_all) refit(explanation, fit_, more_rounds, Fidelity::coarse);
-      fitToAll(explanation);
-      if (some_unlike && explanation.residual.size() == fit_.size()) predictFromOthers(explanation);
+      FittedHypothesis& fitted = *open[static_cast<std::size_t>(i)];
+      if (!fitted.fitted_to_all) refit(fitted, fit_, more_rounds, Fidelity::coarse);
+      fitToAll(fitted);
+      if (some_unlike && fitted.residual.size() == fit_.size()) predictFromOthers(fitted);
     });
-    // Fine steps may diverge where coarse ones go on.
-    std::erase_if(result_.explanations, [&](const Explanation& explanation) { return explanation.residual.size() != fit_.size(); });
+    // The model may diverge with fine time steps though not with coarse ones.
+    std::erase_if(result_.fits, [&](const FittedHypothesis& fitted) { return fitted.residual.size() != fit_.size(); });
     if (!plant_.interrupted()) weigh();
   }
 }

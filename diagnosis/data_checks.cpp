@@ -16,21 +16,9 @@ namespace musclesim {
 namespace {
 
 constexpr double least_change = 0.02;
-constexpr double usual_steps = 10;  ///< a gap is longer than that many usual steps
-constexpr double thousand_low = 300, thousand_high = 3000;
+constexpr double usual_steps = 10;  ///< a dropout is longer than this number of usual steps
 
-/// Median of the sizes of all numbers; 0 if there are none.
-double medianSize(const std::vector<double>& values) {
-  std::vector<double> sizes;
-  for (const double value : values)
-    if (std::isfinite(value)) sizes.push_back(std::abs(value));
-  if (sizes.empty()) return 0;
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::ranges::nth_element(sizes, middle);
-  return *middle;
-}
-
-std::vector<std::string> gapNotes(const Recording& recording) {
+std::vector<std::string> dropoutNotes(const Recording& recording) {
   std::vector<double> steps;
   for (std::size_t row = 1; row < recording.time_s.size(); ++row) steps.push_back(recording.time_s[row] - recording.time_s[row - 1]);
   const double usual_s = medianSize(steps);
@@ -43,6 +31,16 @@ std::vector<std::string> gapNotes(const Recording& recording) {
 }
 
 }  // namespace
+
+double medianSize(const std::vector<double>& values) {
+  std::vector<double> sizes;
+  for (const double value : values)
+    if (std::isfinite(value)) sizes.push_back(std::abs(value));
+  if (sizes.empty()) return 0;
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::ranges::nth_element(sizes, middle);
+  return *middle;
+}
 
 bool commandsMove(const std::vector<Recording>& recordings) {
   for (const Recording& recording : recordings)
@@ -82,8 +80,8 @@ bool neverChanges(const std::vector<Recording>& recordings, const std::string& n
 std::vector<std::string> dataNotes(const std::vector<Recording>& recordings) {
   std::vector<std::string> notes;
   for (const Recording& recording : recordings) {
-    std::ranges::move(gapNotes(recording), std::back_inserter(notes));
-    std::map<std::ptrdiff_t, std::vector<std::string>> missing;  // signals by the number of rows without one
+    std::ranges::move(dropoutNotes(recording), std::back_inserter(notes));
+    std::map<std::ptrdiff_t, std::vector<std::string>> missing;  // signals by the number of rows without a value
     for (const Signal& signal : recording.signals)
       missing[std::ranges::count_if(signal.values, [](double value) { return !std::isfinite(value); })].push_back(signal.name);
     for (const auto& [count, names] : missing)
@@ -128,20 +126,6 @@ void requireDifferentMeasurements(const std::vector<Recording>& recordings) {
       if (sameCommands(recordings[i], recordings[j]) && same(recordings[i], recordings[j]))
         throw BadFile(recordings[j].file,
                       fmt::format("it holds the same numbers as {}: a repeat is a second measurement", recordings[i].file));
-}
-
-void requireUnits(const Plant& plant, int recording, const Prediction& prediction) {
-  for (std::size_t i = 0; i < plant.signals().size(); ++i) {
-    const double measured = medianSize(plant.measured(recording, static_cast<int>(i))), predicted = medianSize(prediction.values[i]);
-    if (measured <= 0 || predicted <= plant.signals()[i].floor.value) continue;
-    const double ratio = measured / predicted;
-    for (const double factor : {ratio, 1 / ratio})
-      if (factor > thousand_low && factor < thousand_high)
-        throw BadFile(plant.recordings()[static_cast<std::size_t>(recording)].file,
-                      fmt::format("{} is about {:.3g}, but must be in the unit of its name: the model's values are about {:.3g}, which is "
-                                  "about a thousand times {}",
-                                  plant.signals()[i].name, measured, predicted, ratio > 1 ? "less" : "more"));
-  }
 }
 
 }  // namespace musclesim

@@ -1,10 +1,10 @@
-/// What is odd about recordings before anything is diagnosed.
+/// Checks of recordings before anything is diagnosed.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "plant.h"
+#include "musclesim/log/recording.h"
 
 namespace musclesim {
 
@@ -17,20 +17,19 @@ int firstChange(const Recording& recording);
 /// Whether a signal has the same value in every row of every recording that has it.
 bool neverChanges(const std::vector<Recording>& recordings, const std::string& name);
 
-/// Gaps in time (more than ten usual steps) and rows without a number, in sentences.
+/// Sentences about dropouts: pauses of more than ten usual steps, and rows without a number.
 std::vector<std::string> dataNotes(const std::vector<Recording>& recordings);
 
 /// Whether both have the same commands at the same times.
 bool sameCommands(const Recording& a, const Recording& b);
 
-/// The same commands at the same times, or what a sidecar calls a repeat.
+/// Whether both have the same commands at the same times, or a sidecar calls one a repeat of the other.
 bool isRepeat(const Recording& a, const Recording& b);
 
-/// Throws BadFile if one recording is another one again: what they differ by would pass for noise, and the held-out one would be known.
+/// Throws BadFile if one recording holds the same measurements as another: a copy would hide the noise and reveal the held-out data.
 void requireDifferentMeasurements(const std::vector<Recording>& recordings);
 
-/// Throws BadFile if a signal's size is about a thousand times that of the model's or a thousandth of it: m in place of mm, kPa in
-/// place of fractions.
-void requireUnits(const Plant& plant, int recording, const Prediction& prediction);
+/// Median of the sizes of all numbers; 0 if there are none.
+double medianSize(const std::vector<double>& values);
 
 }  // namespace musclesim

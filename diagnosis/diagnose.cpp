@@ -1,4 +1,4 @@
-// The order of a diagnosis: gap, where, which, how far, what next.
+// The order of a diagnosis: gap, fault isolation, effects, gap reduction, next experiment.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -10,16 +10,17 @@
 #include <variant>
 
 #include "../base/parallel.h"
+#include "actuation_phases.h"
 #include "attribute.h"
 #include "data_checks.h"
-#include "locate.h"
+#include "fault_isolation.h"
+#include "gap_reduction.h"
 #include "musclesim/diagnosis/diagnosis.h"
 #include "next_experiment.h"
 #include "plant.h"
-#include "regimes.h"
 #include "schedule.h"
-#include "shrink.h"
 #include "tune.h"
+#include "unit_check.h"
 
 namespace musclesim {
 
@@ -27,10 +28,10 @@ namespace {
 
 constexpr double listed = 0.01;   ///< least probability that is listed
 constexpr double named = 0.5;     ///< least probability of none_of_these that makes the verdict `unexplained`
-constexpr double as_good = 0.01;  ///< share of the best explanation's probability from which on one cannot be told from it
-constexpr double excited = 1;     ///< a typical effect must change some signal by that many floors
+constexpr double as_good = 0.01;  ///< explanations with at least this share of the best one's probability cannot be distinguished from it
+constexpr double excited = 1;     ///< least change of a signal by a typical effect, in sigmas, for it to be excited
 
-/// Of the program, for the model that is diagnosed, without what nominal.toml holds. Without a hand there is no task.
+/// The options of the program for the diagnosed model, without the values in nominal.toml. A robot without a hand has no task.
 std::string modelOptions(const Plant& plant, const std::optional<std::string>& initial_state) {
   std::string options = "--robot " + plant.robot();
   if (!plant.hasHand()) options += " --controller hold";
@@ -50,7 +51,7 @@ double secondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Counts simulations and tells the caller.
+/// Counts simulations and reports progress to the caller.
 class Monitor {
  public:
   explicit Monitor(const DiagnosisOptions& options) : options_(options) {}
@@ -89,7 +90,7 @@ class Run {
     const auto start = std::chrono::steady_clock::now();
     describe();
     measureGap();
-    look();
+    screen();
     if (diagnosis_.verdict != Verdict::no_gap && diagnosis_.verdict != Verdict::not_excited) explain();
     finish();
     diagnosis_.simulation_count = plant_.simulationCount();
@@ -112,31 +113,31 @@ class Run {
     for (const auto& [name, value] : plant_.nominalParameters()) diagnosis_.refitted.push_back(name);
     diagnosis_.held_out = plant_.split().held_out_words;
     describeCandidates();
-    noteEstimated(NoiseFloor::Source::quiet_rows, "the noise floor was estimated from quiet rows");
-    noteEstimated(NoiseFloor::Source::range,
+    noteEstimated(NoiseSigma::Source::quiet_rows, "the noise floor was estimated from quiet rows");
+    noteEstimated(NoiseSigma::Source::range,
                   "the readings do not show their noise either, so a thousandth of their range was taken for the noise floor");
   }
 
-  void noteEstimated(NoiseFloor::Source source, const std::string& how) {
+  void noteEstimated(NoiseSigma::Source source, const std::string& how) {
     std::vector<std::string> names;
     for (const ComparedSignal& signal : plant_.signals())
-      if (signal.floor.source == source) names.push_back(signal.name);
+      if (signal.sigma.source == source) names.push_back(signal.name);
     if (!names.empty()) diagnosis_.notes.push_back(fmt::format("no repeats and no noise_std of {}: {}", fmt::join(names, ", "), how));
   }
 
-  /// Throws BadParameter if nothing could be an answer.
+  /// Throws BadParameter if no effect is left as a candidate.
   void describeCandidates() {
     if (options_.candidates.empty() && options_.exclude.empty()) return;
-    for (const Suspect& suspect : suspects(plant_, options_))
-      if (std::ranges::find(diagnosis_.candidates, suspect.info().id) == diagnosis_.candidates.end())
-        diagnosis_.candidates.push_back(suspect.info().id);
+    for (const Hypothesis& hypothesis : hypotheses(plant_, options_))
+      if (std::ranges::find(diagnosis_.candidates, hypothesis.info().id) == diagnosis_.candidates.end())
+        diagnosis_.candidates.push_back(hypothesis.info().id);
     if (diagnosis_.candidates.empty())
       throw BadParameter(fmt::format("--candidates and --exclude leave no effect that could show in recordings of {}", plant_.robot()));
   }
 
   void measureGap() {
     monitor_.phase("comparing the model with the recordings", static_cast<long>(plant_.recordings().size()));
-    std::vector<Stretch> everything = plant_.split().fit;
+    std::vector<Segment> everything = plant_.split().fit;
     everything.insert(everything.end(), plant_.split().held_out.begin(), plant_.split().held_out.end());
     std::vector<Prediction> whole(plant_.recordings().size());
     const auto count = static_cast<int>(whole.size());
@@ -149,8 +150,8 @@ class Run {
     before_residual_ = held_out_.measured() - held;
     diagnosis_.before = diagnosis_.after = held_out_.gap(before_residual_);
     const Eigen::VectorXd residual = all.measured() - predicted;
-    const bool small = isWithinFloor(all, residual);
-    if (!small && isWithinFloor(held_out_, before_residual_))
+    const bool small = isWithinNoise(all, residual);
+    if (!small && isWithinNoise(held_out_, before_residual_))
       diagnosis_.notes.push_back(
           fmt::format("there is no gap in {}: no cause can be confirmed there; put a recording that shows the gap last",
                       plant_.recordings().size() > 1 ? plant_.recordings().back().file : diagnosis_.held_out));
@@ -158,25 +159,26 @@ class Run {
     if (diagnosis_.verdict == Verdict::no_gap) diagnosis_.explanations.push_back({{}, 1});
   }
 
-  /// What the recordings could not have shown is told whatever the verdict: that there is no gap does not mean that there is no effect.
-  void look() {
-    monitor_.phase("looking at every effect once", static_cast<long>(suspects(plant_, DiagnosisOptions{}).size()));
-    attributor_.look();
+  /// Runs for every verdict, since effects that the recordings could not have shown may be present even without a gap.
+  void screen() {
+    monitor_.phase("screening all effects", static_cast<long>(hypotheses(plant_, DiagnosisOptions{}).size()));
+    attributor_.screen();
     diagnosis_.unsteady = attributor_.fitComparison().unsteady();
     listNotExcited();
   }
 
   void explain() {
     const Attribution& attribution = attributor_.result();
-    if (attribution.looked_at_count < attribution.suspects.size())
+    if (attribution.screened_count < attribution.hypotheses.size())
       diagnosis_.notes.push_back(fmt::format("of {} possible causes the {} nearest on the first recording were looked at on the others too",
-                                             attribution.suspects.size(), attribution.looked_at_count));
+                                             attribution.hypotheses.size(), attribution.screened_count));
     if (plant_.interrupted()) return;
-    const Location location = locate(attributor_.fitComparison(), attributor_.nominalResidual(), attributor_.lookComparison(),
-                                     attribution.suspects, attribution.signatures, attributor_.lookResidual());
-    diagnosis_.where = location.places;
-    diagnosis_.where_method = location.method;
-    monitor_.phase("fitting the likely ones", 600);
+    const FaultIsolation isolation =
+        isolateFault(attributor_.fitComparison(), attributor_.nominalResidual(), attributor_.screeningComparison(), attribution.hypotheses,
+                     attribution.sensitivities, attributor_.screeningResidual());
+    diagnosis_.where = isolation.places;
+    diagnosis_.where_method = isolation.method;
+    monitor_.phase("fitting the likely effects", 600);
     attributor_.decide();
     if (!plant_.interrupted()) choose();
     list();
@@ -184,51 +186,52 @@ class Run {
     if (!plant_.interrupted()) proposeExperiment();
   }
 
-  /// What none of its variants would have shown; not what was never simulated.
+  /// Labels none of whose variants would have shown; labels that were never simulated are not listed.
   void listNotExcited() {
     const Attribution& attribution = attributor_.result();
     std::set<std::string> shown = attribution.thinned;
-    for (std::size_t i = 0; i < attribution.suspects.size(); ++i)
-      if (!(attribution.signatures[i].excitation_ratio.value_or(excited) < excited)) shown.insert(labelOf(i));
-    for (std::size_t i = 0; i < attribution.suspects.size(); ++i) {
-      const bool would_be_seen = attribution.suspects[i].info().id == held_effect;
+    for (std::size_t i = 0; i < attribution.hypotheses.size(); ++i)
+      if (!(attribution.sensitivities[i].excitation_ratio.value_or(excited) < excited)) shown.insert(labelOf(i));
+    for (std::size_t i = 0; i < attribution.hypotheses.size(); ++i) {
+      const bool would_be_seen = attribution.hypotheses[i].info().id == held_effect;
       if (attribution.allowed[i] && !would_be_seen && shown.insert(labelOf(i)).second) diagnosis_.not_excited.push_back(labelOf(i));
     }
   }
 
   void choose() {
     const Attribution& attribution = attributor_.result();
-    if (attribution.explanations.empty() || attribution.no_effect > named) return;
+    if (attribution.fits.empty() || attribution.no_effect > named) return;
     const bool none = attribution.none_of_these > named;
-    const Explanation& best = none ? attributor_.nearest() : attribution.explanations.front();
+    const FittedHypothesis& best = none ? attributor_.nearest() : attribution.fits.front();
     const Model model = attributor_.modelOf(best);
     const Eigen::VectorXd predicted = held_out_.predicted(model);
     if (!predicted.size()) return;
     const Eigen::VectorXd after = held_out_.measured() - predicted;
     const Gap gap_after = held_out_.gap(after);
-    monitor_.phase("asking what simpler changes would gain", 60);
+    monitor_.phase("measuring what the controls gain", 60);
     auto count = [this] { monitor_.count(); };
-    const Comparison& fitted = attributor_.fitComparison();
-    Eigen::VectorXd nominal, sham;
+    const Comparison& comparison = attributor_.fitComparison();
+    Eigen::VectorXd nominal, negative_control;
     parallelFor(2, options_.job_count, [&](int i) {
       if (i == 0)
-        nominal = nominalRefitResidual(fitted, held_out_, count);
+        nominal = nominalRefitResidual(comparison, held_out_, count);
       else
-        sham = shamResidual(fitted, held_out_, static_cast<int>(best.z.size()), options_.seed, count);
+        negative_control = negativeControlResidual(comparison, held_out_, static_cast<int>(best.z.size()), options_.seed, count);
     });
     if (plant_.interrupted()) return;
-    auto shrinkOf = [&](const Eigen::VectorXd& residual) {
-      return residual.size() ? shrinkPercent(diagnosis_.before, held_out_.gap(residual)) : 0.0;
+    auto reductionOf = [&](const Eigen::VectorXd& residual) {
+      return residual.size() ? gapReductionPercent(diagnosis_.before, held_out_.gap(residual)) : 0.0;
     };
-    diagnosis_.nominal_refit_shrink_percent = shrinkOf(nominal);
-    diagnosis_.sham_shrink_percent = shrinkOf(sham);
-    const Estimate interval = shrinkInterval({held_out_, before_residual_, after},
-                                             {attributor_.fitComparison(), attributor_.nominalResidual(), best.judged()}, options_.seed);
-    const Attempt attempt{labelsOf(model), model.effects, gap_after, shrinkOf(after), interval.low, interval.high};
+    diagnosis_.nominal_refit_percent = reductionOf(nominal);
+    diagnosis_.negative_control_percent = reductionOf(negative_control);
+    const Estimate interval =
+        gapReductionInterval({held_out_, before_residual_, after},
+                             {attributor_.fitComparison(), attributor_.nominalResidual(), best.validationResidual()}, options_.seed);
+    const Attempt attempt{labelsOf(model), model.effects, gap_after, reductionOf(after), interval.low, interval.high};
     const bool found =
-        !none && clearlyBeats(attempt.shrink_percent, diagnosis_.nominal_refit_shrink_percent, diagnosis_.sham_shrink_percent);
-    // Nothing to build on: it does not hold beyond what it was fitted to, or gains no more than what means nothing.
-    if (!found && attempt.shrink_percent <= std::max({0.0, diagnosis_.nominal_refit_shrink_percent, diagnosis_.sham_shrink_percent}))
+        !none && clearlyBeats(attempt.reduction_percent, diagnosis_.nominal_refit_percent, diagnosis_.negative_control_percent);
+    // Not offered, because it does not hold on the held-out data or gains no more than a control.
+    if (!found && attempt.reduction_percent <= std::max({0.0, diagnosis_.nominal_refit_percent, diagnosis_.negative_control_percent}))
       return;
     diagnosis_.tuned = tunedParameters(plant_, best.tuning, best.tuning_half_width);
     after_residual_ = after;
@@ -243,9 +246,9 @@ class Run {
     diagnosis_.after = attempt.after;
     diagnosis_.chosen = attempt.effects;
     diagnosis_.chosen_effects = attempt.active_effects;
-    diagnosis_.shrink_percent = attempt.shrink_percent;
-    diagnosis_.shrink_low_percent = attempt.shrink_low_percent;
-    diagnosis_.shrink_high_percent = attempt.shrink_high_percent;
+    diagnosis_.reduction_percent = attempt.reduction_percent;
+    diagnosis_.reduction_low_percent = attempt.reduction_low_percent;
+    diagnosis_.reduction_high_percent = attempt.reduction_high_percent;
   }
 
   static std::vector<std::string> labelsOf(const Model& model) {
@@ -254,179 +257,180 @@ class Run {
     return labels;
   }
 
-  std::string labelOf(std::size_t suspect) const { return attributor_.result().suspects[suspect].label(); }
+  std::string labelOf(std::size_t hypothesis) const { return attributor_.result().hypotheses[hypothesis].label(); }
 
-  /// Probabilities per effect and per explanation, and the set that cannot be told apart.
+  /// Lists probabilities per effect and per explanation, and the ambiguity set.
   void list() {
     const Attribution& attribution = attributor_.result();
     diagnosis_.none_of_these = attribution.none_of_these;
     if (attribution.no_effect >= listed) diagnosis_.explanations.push_back({{}, attribution.no_effect});
     std::map<std::string, FoundEffect> found;
-    for (const Explanation& explanation : attribution.explanations) {
-      ExplanationProbability entry{{}, explanation.probability};
+    for (const FittedHypothesis& fitted : attribution.fits) {
+      ExplanationProbability entry{{}, fitted.probability};
       Eigen::Index first = 0;
-      for (const std::size_t index : explanation.suspects) {
-        const Suspect& suspect = attribution.suspects[index];
-        entry.effects.push_back(suspect.label());
-        FoundEffect& effect = found[suspect.label()];
+      for (const std::size_t index : fitted.members) {
+        const Hypothesis& hypothesis = attribution.hypotheses[index];
+        entry.effects.push_back(hypothesis.label());
+        FoundEffect& effect = found[hypothesis.label()];
         if (effect.id.empty()) {
-          effect.id = suspect.info().id;
-          effect.component = suspect.component();
-          effect.parameters = estimates(suspect, explanation, first);
-          effect.choices = suspect.choices();
+          effect.id = hypothesis.info().id;
+          effect.component = hypothesis.component();
+          effect.parameters = estimates(hypothesis, fitted, first);
+          effect.choices = hypothesis.choices();
         }
-        effect.probability += explanation.probability;
-        first += suspect.coordinateCount();
+        effect.probability += fitted.probability;
+        first += hypothesis.coordinateCount();
       }
-      if (explanation.probability >= listed) diagnosis_.explanations.push_back(std::move(entry));
+      if (fitted.probability >= listed) diagnosis_.explanations.push_back(std::move(entry));
     }
     for (auto& [label, effect] : found)
       if (effect.probability >= listed) diagnosis_.effects.push_back(effect);
     std::ranges::stable_sort(diagnosis_.effects, [](const auto& a, const auto& b) { return a.probability > b.probability; });
     ambiguity();
-    // What was found shows, if not where it is as strong as usual.
+    // An effect that was found is excited, though not at its typical strength.
     std::erase_if(diagnosis_.not_excited, [&](const std::string& label) {
       const auto& tried = diagnosis_.attempt.effects;
       return (found.contains(label) && found[label].probability >= listed) || std::ranges::find(tried, label) != tried.end();
     });
     parallelFor(static_cast<int>(diagnosis_.effects.size()), options_.job_count, [&](int i) {
       FoundEffect& effect = diagnosis_.effects[static_cast<std::size_t>(i)];
-      effect.shrink_percent = singleShrink(effect.label());
+      effect.reduction_percent = singleReduction(effect.label());
     });
   }
 
-  /// What was looked at and fitted.
+  /// Lists the screened and the fitted hypotheses.
   void listTrials() {
     const Attribution& attribution = attributor_.result();
-    const double all = attributor_.lookComparison().logMisfit(attributor_.lookResidual());
-    for (std::size_t i = 0; i < attribution.suspects.size(); ++i)
-      if (attribution.allowed[i]) diagnosis_.looks.push_back({labelOf(i), all > 0 ? 1 - attribution.signatures[i].log_misfit / all : 0});
-    std::ranges::stable_sort(diagnosis_.looks, [](const auto& a, const auto& b) { return a.removed > b.removed; });
-    const Comparison& fitted = attributor_.fitComparison();
+    const double all = attributor_.screeningComparison().logMisfit(attributor_.screeningResidual());
+    for (std::size_t i = 0; i < attribution.hypotheses.size(); ++i)
+      if (attribution.allowed[i])
+        diagnosis_.screenings.push_back({labelOf(i), all > 0 ? 1 - attribution.sensitivities[i].log_misfit / all : 0});
+    std::ranges::stable_sort(diagnosis_.screenings, [](const auto& a, const auto& b) { return a.removed > b.removed; });
+    const Comparison& comparison = attributor_.fitComparison();
     auto rmsOf = [&](const Eigen::VectorXd& residual) {
       std::vector<double> rms;
-      for (const Comparison::Cell& cell : fitted.cells()) rms.push_back(std::sqrt(fitted.meanSquare(cell, residual)));
+      for (const Comparison::Block& block : comparison.blocks()) rms.push_back(std::sqrt(comparison.meanSquare(block, residual)));
       return rms;
     };
     const std::vector<double> before = rmsOf(attributor_.nominalResidual());
     for (std::size_t i = 0; i < before.size(); ++i) {
-      const Comparison::Cell& cell = fitted.cells()[i];
-      const auto recording = static_cast<std::size_t>(fitted.stretches()[cell.stretch].recording);
-      diagnosis_.cells.push_back({plant_.recordings()[recording].file, plant_.signals()[static_cast<std::size_t>(cell.signal)].name,
-                                  cell.floor, before[i], static_cast<int>(cell.block)});
+      const Comparison::Block& block = comparison.blocks()[i];
+      const auto recording = static_cast<std::size_t>(comparison.segments()[block.segment].recording);
+      diagnosis_.blocks.push_back({plant_.recordings()[recording].file, plant_.signals()[static_cast<std::size_t>(block.signal)].name,
+                                   block.sigma, before[i], static_cast<int>(block.averaged_rows)});
     }
-    for (const Explanation& explanation : attribution.explanations) {
-      Trial trial{{}, static_cast<int>(explanation.z.size()), rmsOf(explanation.residual), {}, {}};
-      if (explanation.unseen.size()) trial.rms_unseen = rmsOf(explanation.unseen);
+    for (const FittedHypothesis& fitted : attribution.fits) {
+      Trial trial{{}, static_cast<int>(fitted.z.size()), rmsOf(fitted.residual), {}, {}};
+      if (fitted.cross_validated.size()) trial.rms_cross_validated = rmsOf(fitted.cross_validated);
       Eigen::Index first = 0;
-      for (const std::size_t index : explanation.suspects) {
-        const Suspect& suspect = attribution.suspects[index];
-        trial.effects.push_back(suspect.label());
+      for (const std::size_t index : fitted.members) {
+        const Hypothesis& hypothesis = attribution.hypotheses[index];
+        trial.effects.push_back(hypothesis.label());
         auto& values = trial.values.emplace_back();
-        for (const auto& [name, value] : suspect.valuesAt(explanation.z.segment(first, suspect.coordinateCount()))) values[name] = value;
-        first += suspect.coordinateCount();
+        for (const auto& [name, value] : hypothesis.valuesAt(fitted.z.segment(first, hypothesis.coordinateCount()))) values[name] = value;
+        first += hypothesis.coordinateCount();
       }
       diagnosis_.trials.push_back(std::move(trial));
     }
   }
 
-  std::map<std::string, Estimate> estimates(const Suspect& suspect, const Explanation& explanation, Eigen::Index first) const {
-    const Eigen::Index count = suspect.coordinateCount();
-    const Eigen::VectorXd z = explanation.z.segment(first, count), half = explanation.half_width.segment(first, count);
-    const auto at = suspect.valuesAt(z), one = suspect.valuesAt(suspect.clamped(z - half)),
-               other = suspect.valuesAt(suspect.clamped(z + half));
+  std::map<std::string, Estimate> estimates(const Hypothesis& hypothesis, const FittedHypothesis& fitted, Eigen::Index first) const {
+    const Eigen::Index count = hypothesis.coordinateCount();
+    const Eigen::VectorXd z = fitted.z.segment(first, count), half = fitted.half_width.segment(first, count);
+    const auto at = hypothesis.valuesAt(z), one = hypothesis.valuesAt(hypothesis.clamped(z - half)),
+               other = hypothesis.valuesAt(hypothesis.clamped(z + half));
     std::map<std::string, Estimate> result;
     for (std::size_t i = 0; i < at.size(); ++i) {
-      const auto coordinate = static_cast<Eigen::Index>(i);  // those that are not fitted come last
+      const auto coordinate = static_cast<Eigen::Index>(i);  // parameters that are not fitted come last
       result[at[i].first] = {at[i].second, std::min(one[i].second, other[i].second), std::max(one[i].second, other[i].second),
                              coordinate >= count || std::isfinite(half[coordinate])};
     }
     return result;
   }
 
-  /// Explanations with as many effects as the best that are not much less probable, the best among them.
-  std::vector<const Explanation*> asGood() const {
-    std::vector<const Explanation*> result;
-    const auto& all = attributor_.result().explanations;
-    for (const Explanation& explanation : all)
-      if (explanation.suspects.size() == all.front().suspects.size() && explanation.probability > 0 &&
-          explanation.probability >= as_good * all.front().probability)
-        result.push_back(&explanation);
+  /// The best fit and those with as many effects that are not much less probable.
+  std::vector<const FittedHypothesis*> asGood() const {
+    std::vector<const FittedHypothesis*> result;
+    const auto& all = attributor_.result().fits;
+    for (const FittedHypothesis& fitted : all)
+      if (fitted.members.size() == all.front().members.size() && fitted.probability > 0 &&
+          fitted.probability >= as_good * all.front().probability)
+        result.push_back(&fitted);
     return result;
   }
 
   void ambiguity() {
-    const std::vector<const Explanation*> likely = asGood();
-    for (const Explanation* explanation : likely)
-      if (likely.size() > 1) diagnosis_.alternatives.push_back(ownWords(*explanation, likely));
-    for (const Explanation* explanation : likely)
-      for (const std::size_t index : explanation->suspects)
+    const std::vector<const FittedHypothesis*> likely = asGood();
+    for (const FittedHypothesis* fitted : likely)
+      if (likely.size() > 1) diagnosis_.alternatives.push_back(ownWords(*fitted, likely));
+    for (const FittedHypothesis* fitted : likely)
+      for (const std::size_t index : fitted->members)
         if (std::ranges::find(diagnosis_.ambiguity_set, labelOf(index)) == diagnosis_.ambiguity_set.end())
           diagnosis_.ambiguity_set.push_back(labelOf(index));
   }
 
-  /// What tells an explanation from others: its effects but those that all of them hold.
-  std::string ownWords(const Explanation& explanation, const std::vector<const Explanation*>& others) const {
+  /// The effects of a fitted hypothesis that not all the others have.
+  std::string ownWords(const FittedHypothesis& fitted, const std::vector<const FittedHypothesis*>& others) const {
     std::vector<std::string> own;
-    for (const std::size_t index : explanation.suspects)
-      if (!std::ranges::all_of(others, [&](const Explanation* other) {
-            return std::ranges::any_of(other->suspects, [&](std::size_t member) { return labelOf(member) == labelOf(index); });
+    for (const std::size_t index : fitted.members)
+      if (!std::ranges::all_of(others, [&](const FittedHypothesis* other) {
+            return std::ranges::any_of(other->members, [&](std::size_t member) { return labelOf(member) == labelOf(index); });
           }))
         own.push_back(labelOf(index));
     return fmt::format("{}", fmt::join(own, " + "));
   }
 
-  double singleShrink(const std::string& label) const {
+  double singleReduction(const std::string& label) const {
     const Attribution& attribution = attributor_.result();
     if (plant_.interrupted()) return 0;
-    for (const Explanation& explanation : attribution.explanations) {
-      if (explanation.suspects.size() != 1 || labelOf(explanation.suspects.front()) != label) continue;
-      const Eigen::VectorXd predicted = held_out_.predicted(attributor_.modelOf(explanation));
-      return predicted.size() ? shrinkPercent(diagnosis_.before, held_out_.gap(held_out_.measured() - predicted)) : 0;
+    for (const FittedHypothesis& fitted : attribution.fits) {
+      if (fitted.members.size() != 1 || labelOf(fitted.members.front()) != label) continue;
+      const Eigen::VectorXd predicted = held_out_.predicted(attributor_.modelOf(fitted));
+      return predicted.size() ? gapReductionPercent(diagnosis_.before, held_out_.gap(held_out_.measured() - predicted)) : 0;
     }
     return 0;
   }
 
   void proposeExperiment() {
     constexpr std::size_t most = 4;
-    std::vector<const Explanation*> likely = asGood();
+    std::vector<const FittedHypothesis*> likely = asGood();
     if (likely.size() < 2) return;
     likely.resize(std::min(most, likely.size()));
     monitor_.phase("planning the next experiment", static_cast<long>(2 * scheduleBank().size() * likely.size()));
-    std::vector<Contender> contenders;
-    for (const Explanation* explanation : likely) contenders.push_back(attributor_.contender(*explanation, ownWords(*explanation, likely)));
-    const Fidelity fidelity = std::min(attributor_.lookComparison().fidelity(), Fidelity::coarse);
-    diagnosis_.next_experiment = nextExperiment(plant_, contenders, fidelity, options_.job_count, [this] { monitor_.count(); });
+    std::vector<Rival> rivals;
+    for (const FittedHypothesis* fitted : likely) rivals.push_back(attributor_.rival(*fitted, ownWords(*fitted, likely)));
+    const Fidelity fidelity = std::min(attributor_.screeningComparison().fidelity(), Fidelity::coarse);
+    diagnosis_.next_experiment = nextExperiment(plant_, rivals, fidelity, options_.job_count, [this] { monitor_.count(); });
   }
 
   void finish() {
     if (diagnosis_.before.normalised > 0) diagnosis_.unexplained_percent = 100 * diagnosis_.after.normalised / diagnosis_.before.normalised;
-    addRegimes();
+    addPhases();
     addTraces();
     diagnosis_.drawing = plant_.drawing();
   }
 
-  void addRegimes() {
+  void addPhases() {
     if (!before_residual_.size()) return;
-    const RegimeSums before = regimeSums(held_out_, before_residual_),
-                     after = after_residual_.size() ? regimeSums(held_out_, after_residual_) : RegimeSums{};
-    for (const Regime regime : {Regime::filling, Regime::venting, Regime::holding})
-      if (before.rows[static_cast<std::size_t>(regime)] > 0)
-        diagnosis_.regimes.push_back({nameOf(regime), std::sqrt(before.meanSquare(regime)), std::sqrt(after.meanSquare(regime))});
+    const PhaseSums before = phaseSums(held_out_, before_residual_),
+                    after = after_residual_.size() ? phaseSums(held_out_, after_residual_) : PhaseSums{};
+    for (const ActuationPhase phase : {ActuationPhase::filling, ActuationPhase::venting, ActuationPhase::holding})
+      if (before.rows[static_cast<std::size_t>(phase)] > 0)
+        diagnosis_.phases.push_back({nameOf(phase), std::sqrt(before.meanSquare(phase)), std::sqrt(after.meanSquare(phase))});
   }
 
   void addTraces() {
-    for (const Comparison::Cell& cell : held_out_.cells()) {
-      const int recording = held_out_.stretches()[cell.stretch].recording;
+    for (const Comparison::Block& block : held_out_.blocks()) {
+      const int recording = held_out_.segments()[block.segment].recording;
       Trace trace{plant_.recordings()[static_cast<std::size_t>(recording)].file,
-                  plant_.signals()[static_cast<std::size_t>(cell.signal)].name,
+                  plant_.signals()[static_cast<std::size_t>(block.signal)].name,
                   {},
                   {},
                   {},
                   {}};
-      for (std::size_t i = 0; i < cell.rows.size(); ++i) {
-        const auto k = cell.first + static_cast<Eigen::Index>(i);
-        trace.time_s.push_back(plant_.recordings()[static_cast<std::size_t>(recording)].time_s[static_cast<std::size_t>(cell.rows[i])]);
+      for (std::size_t i = 0; i < block.rows.size(); ++i) {
+        const auto k = block.first + static_cast<Eigen::Index>(i);
+        trace.time_s.push_back(plant_.recordings()[static_cast<std::size_t>(recording)].time_s[static_cast<std::size_t>(block.rows[i])]);
         trace.measured.push_back(held_out_.measured()[k]);
         trace.before.push_back(held_out_.measured()[k] - before_residual_[k]);
         if (after_residual_.size()) trace.after.push_back(held_out_.measured()[k] - after_residual_[k]);

@@ -1,4 +1,4 @@
-// The contract's diagnosis.json, format musclesim-diagnosis-1, and the summary for the terminal.
+// diagnosis.json, format musclesim-diagnosis-1, and the summary for the terminal.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -21,7 +21,7 @@ Json toJson(double value) {
 
 Json toJson(const Gap& gap) {
   Json signals = Json::object();
-  for (const auto& [name, signal] : gap.per_signal) signals[name] = {{"rmse", signal.rmse}, {"noise_floor", signal.noise_floor}};
+  for (const auto& [name, signal] : gap.per_signal) signals[name] = {{"rmse", signal.rmse}, {"noise_floor", signal.noise_sigma}};
   return {{"normalised", gap.normalised}, {"per_signal", signals}};
 }
 
@@ -35,14 +35,14 @@ Json toJson(const FoundEffect& effect) {
                {"component", effect.component},
                {"probability", effect.probability},
                {"parameters", parameters},
-               {"shrink_percent", effect.shrink_percent}};
+               {"shrink_percent", effect.reduction_percent}};
   if (!effect.choices.empty()) json["choices"] = effect.choices;
   return json;
 }
 
 Json toJson(const Place& place) {
   Json json = {{"stage", place.stage}, {"component", place.component}, {"share", place.share}, {"ruled_out", place.is_ruled_out}};
-  if (!place.regime.empty()) json["regime"] = place.regime;
+  if (!place.phase.empty()) json["regime"] = place.phase;
   return json;
 }
 
@@ -67,28 +67,28 @@ Json listOf(const std::vector<Value>& values) {
 Json gapJson(const Diagnosis& d) {
   return {{"before", toJson(d.before)},
           {"after", toJson(d.after)},
-          {"shrink_percent", d.shrink_percent},
-          {"shrink_ci95_percent", {d.shrink_low_percent, d.shrink_high_percent}},
+          {"shrink_percent", d.reduction_percent},
+          {"shrink_ci95_percent", {d.reduction_low_percent, d.reduction_high_percent}},
           {"held_out", true},
-          {"nominal_refit_shrink_percent", d.nominal_refit_shrink_percent},
-          {"sham_shrink_percent", d.sham_shrink_percent}};
+          {"nominal_refit_shrink_percent", d.nominal_refit_percent},
+          {"sham_shrink_percent", d.negative_control_percent}};
 }
 
-/// What was tried and what it left: enough to weigh the answers in another way without simulating again.
+/// The hypotheses that were tried and their residuals: enough to compute other odds without simulating again.
 Json fittedJson(const Diagnosis& d) {
   Json json = {{"looks", Json::array()}, {"cells", Json::array()}, {"trials", Json::array()}};
-  for (const FirstLook& look : d.looks) json["looks"].push_back({look.effect, look.removed});
-  for (const FittedCell& cell : d.cells)
-    json["cells"].push_back({{"recording", cell.recording},
-                             {"signal", cell.signal},
-                             {"floor", cell.floor},
-                             {"rms_before", cell.rms_before},
-                             {"averaged_rows", cell.averaged_rows}});
+  for (const Screening& screening : d.screenings) json["looks"].push_back({screening.effect, screening.removed});
+  for (const FittedBlock& block : d.blocks)
+    json["cells"].push_back({{"recording", block.recording},
+                             {"signal", block.signal},
+                             {"floor", block.sigma},
+                             {"rms_before", block.rms_before},
+                             {"averaged_rows", block.averaged_rows}});
   for (const Trial& trial : d.trials)
     json["trials"].push_back({{"effects", trial.effects},
                               {"parameters", trial.parameter_count},
                               {"rms", trial.rms},
-                              {"rms_unseen", trial.rms_unseen},
+                              {"rms_unseen", trial.rms_cross_validated},
                               {"values", trial.values}});
   return json;
 }
@@ -101,8 +101,8 @@ std::string diagnosisJson(const Diagnosis& d, const std::string& schedule_file) 
   json["effects"] = listOf(d.effects);
   json["none_of_these"] = d.none_of_these;
   json["explanations"] = Json::array();
-  for (const ExplanationProbability& explanation : d.explanations)
-    json["explanations"].push_back({{"effects", explanation.effects}, {"probability", explanation.probability}});
+  for (const ExplanationProbability& fitted : d.explanations)
+    json["explanations"].push_back({{"effects", fitted.effects}, {"probability", fitted.probability}});
   if (!d.candidates.empty()) json["candidates"] = d.candidates;
   json["chosen"] = d.chosen;
   json["ambiguity_set"] = d.ambiguity_set;
@@ -110,8 +110,8 @@ std::string diagnosisJson(const Diagnosis& d, const std::string& schedule_file) 
   if (!d.attempt.effects.empty())
     json["attempt"] = {{"effects", d.attempt.effects},
                        {"after", toJson(d.attempt.after)},
-                       {"shrink_percent", d.attempt.shrink_percent},
-                       {"shrink_ci95_percent", {d.attempt.shrink_low_percent, d.attempt.shrink_high_percent}}};
+                       {"shrink_percent", d.attempt.reduction_percent},
+                       {"shrink_ci95_percent", {d.attempt.reduction_low_percent, d.attempt.reduction_high_percent}}};
   if (!d.tuned.empty()) json["tuned"] = listOf(d.tuned);
   json["unexplained_percent"] = d.unexplained_percent;
   json["not_excited"] = d.not_excited;
@@ -123,7 +123,7 @@ std::string diagnosisJson(const Diagnosis& d, const std::string& schedule_file) 
   json["notes"] = d.notes;
   if (!d.unsteady.signal.empty())
     json["unsteady"] = {
-        {"signal", d.unsteady.signal}, {"in_noise_floors", d.unsteady.in_floors}, {"share_of_gap", d.unsteady.share_of_gap}};
+        {"signal", d.unsteady.signal}, {"in_noise_floors", d.unsteady.in_sigmas}, {"share_of_gap", d.unsteady.share_of_gap}};
   json["where_method"] = d.where_method;
   json["partial"] = d.partial;
   json["cost"] = {{"simulated_s", d.simulated_s}, {"wall_s", d.wall_s}, {"simulations", d.simulation_count}};
@@ -132,17 +132,17 @@ std::string diagnosisJson(const Diagnosis& d, const std::string& schedule_file) 
 
 std::string diagnosisSummary(const Diagnosis& d) {
   std::string text = verdictSentence(d) + "\n";
-  if (d.partial) text = "Interrupted: what follows is only what was known by then.\n" + text;
-  if (!d.tuned.empty()) text += fmt::format("tuned     {} of the model first, see nominal.toml\n", counted(d.tuned.size(), "number"));
+  if (d.partial) text = "Interrupted: these are only the results up to the interruption.\n" + text;
+  if (!d.tuned.empty()) text += fmt::format("tuned     {} of the model first, see nominal.toml\n", counted(d.tuned.size(), "parameter"));
   if (!d.where.empty()) text += fmt::format("where     {}\n", whereSentence(d));
   for (std::size_t i = 0; i < std::min<std::size_t>(3, d.effects.size()); ++i)
     text +=
         fmt::format("{:<9} {:>11}  {}\n", i == 0 ? "which" : "", probabilityWords(d.effects[i].probability), effectSentence(d.effects[i]));
   if (d.none_of_these > 0) text += fmt::format("{:<9} {:>11}  none of these\n", "", probabilityWords(d.none_of_these));
   if (!d.chosen.empty())
-    text += fmt::format("how far   {} of the gap on {}; nominal refit {:.1f} %, sham {:.1f} %\n          {}\n",
-                        percentWords(d.shrink_percent), d.held_out, d.nominal_refit_shrink_percent, d.sham_shrink_percent,
-                        elsewhereSentence({d.shrink_percent, d.shrink_low_percent, d.shrink_high_percent}));
+    text += fmt::format("how far   {} of the gap on {}; nominal refit {:.1f} %, negative control {:.1f} %\n          {}\n",
+                        percentWords(d.reduction_percent), d.held_out, d.nominal_refit_percent, d.negative_control_percent,
+                        elsewhereSentence({d.reduction_percent, d.reduction_low_percent, d.reduction_high_percent}));
   if (!d.next_experiment.commands.empty()) text += fmt::format("next      record next.csv, {}\n", d.next_experiment.why);
   return text;
 }

@@ -4,13 +4,13 @@
 
 #include <Eigen/Geometry>
 
-#include "../simulation/scene/snapshot.h"
+#include "../simulation/snapshot.h"
 
 namespace musclesim {
 
 namespace {
 
-/// A bone as a thick line: along its longest extent.
+/// A bone as a thick line along its longest extent.
 RobotDrawing::Line lineOf(const DrawnPart& part) {
   Eigen::Vector3f half = Eigen::Vector3f::Zero();
   float width = 2 * part.size_mm.x();

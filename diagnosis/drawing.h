@@ -1,4 +1,4 @@
-/// What a report needs to draw a robot.
+/// The drawing of a robot for the report.
 #pragma once
 
 #include "musclesim/diagnosis/diagnosis.h"

@@ -23,11 +23,11 @@ namespace musclesim {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double scatter = 4;      ///< noise floors that readings scatter by
-constexpr double worth_it = 2e-4;  ///< probability that a schedule tells contenders apart, below which it is not proposed
-constexpr double apart = 0.5;      ///< noise floors that contenders differ by whom a schedule is said to separate
+constexpr double scatter = 4;      ///< noise sigmas by which readings scatter
+constexpr double worth_it = 2e-4;  ///< least probability of distinguishing the rivals for a schedule to be proposed
+constexpr double apart = 0.5;      ///< least difference, in noise sigmas, of rivals that a schedule is said to separate
 
-/// Between which values a signal is, or may be predicted to stay; nowhere as yet.
+/// An interval of a signal's values; initially empty.
 struct Span {
   double low = infinity, high = -infinity;
   void include(double value) { low = std::min(low, value), high = std::max(high, value); }
@@ -39,7 +39,7 @@ bool isPosition(const std::string& signal) {
   return signal.starts_with("length_") || signal.starts_with("angle_") || signal.starts_with("hand_");
 }
 
-/// What stops allow an angle or a length, and where it is as built.
+/// The range of an angle or a length between its stops, and its value as built.
 struct Travel {
   Span stops;
   double built;
@@ -58,8 +58,9 @@ std::map<std::string, Travel> travelsOf(Simulation& model) {
   return travels;
 }
 
-/// Measured positions may go a quarter of their range farther than they have been. All keep a thirtieth of their travel from stops, but for
-/// where they have been or are as built, and a hundredth more: what rests on a stop is pressed into it.
+/// Allowed intervals of positions. Measured positions may exceed their recorded range by a quarter of it. All keep a thirtieth of their
+/// travel from the stops, except where they have been recorded or are as built; there they may exceed that by a hundredth, since a part
+/// that rests on a stop is pressed into it.
 Spans roomsOf(const Plant& plant) {
   constexpr double farther = 0.25, margin = 1.0 / 30, pressed_in = 0.01;
   Spans been, rooms;
@@ -69,7 +70,7 @@ Spans roomsOf(const Plant& plant) {
     Span& span = been[signal.name];
     for (std::size_t i = 0; i < plant.recordings().size(); ++i)
       for (const double y : plant.measured(static_cast<int>(i), static_cast<int>(s)))
-        if (std::isfinite(y)) span.include(y - scatter * signal.floor.value), span.include(y + scatter * signal.floor.value);
+        if (std::isfinite(y)) span.include(y - scatter * signal.sigma.value), span.include(y + scatter * signal.sigma.value);
     const double more = farther * (span.high - span.low);
     rooms[signal.name] = {span.low - more, span.high + more};
   }
@@ -91,45 +92,45 @@ bool keepsWithin(const Spans& rooms, const Recording& predicted) {
   });
 }
 
-/// A schedule with what the contenders predict.
+/// A schedule with the predictions of the rivals.
 struct TriedSchedule {
   ScheduleChoice choice;
   Recording commands;
-  std::vector<Recording> predicted;  ///< of every contender; fewer: one of them would go too far
-  std::optional<Recording> nominal;  ///< without effects; none if that diverges
+  std::vector<Recording> predicted;  ///< one per rival; fewer if one of them would move too far
+  std::optional<Recording> nominal;  ///< without effects; empty if the model diverges
 };
 
-/// The schedule at the largest of a few shares of its amplitude at which all contenders keep within the rooms.
-TriedSchedule triedOut(const Plant& plant, ScheduleChoice choice, const std::vector<Contender>& contenders, const Spans& rooms,
-                       Fidelity fidelity, const OnSimulation& on_simulation) {
+/// The schedule at the largest of a few amplitudes at which all rivals stay within the allowed intervals.
+TriedSchedule triedOut(const Plant& plant, ScheduleChoice choice, const std::vector<Rival>& rivals, const Spans& rooms, Fidelity fidelity,
+                       const OnSimulation& on_simulation) {
   constexpr double smaller = 0.7, smallest = 0.2;
   TriedSchedule trial;
-  for (; choice.amplitude > smallest && trial.predicted.size() < contenders.size(); choice.amplitude *= smaller) {
+  for (; choice.amplitude > smallest && trial.predicted.size() < rivals.size(); choice.amplitude *= smaller) {
     trial = {choice, scheduled(choice, plant.recordings()), {}, {}};
-    for (const Contender& contender : contenders) {
-      std::optional<Recording> predicted = plant.predictSchedule(trial.commands, contender.model, fidelity);
+    for (const Rival& rival : rivals) {
+      std::optional<Recording> predicted = plant.predictSchedule(trial.commands, rival.model, fidelity);
       on_simulation();
       if (!predicted || !keepsWithin(rooms, *predicted)) break;
       trial.predicted.push_back(std::move(*predicted));
     }
   }
-  if (trial.predicted.size() == contenders.size()) trial.nominal = plant.predictSchedule(trial.commands, Model{}, fidelity);
+  if (trial.predicted.size() == rivals.size()) trial.nominal = plant.predictSchedule(trial.commands, Model{}, fidelity);
   return trial;
 }
 
-/// What a schedule's readings and their averages over blocks of rows are, in units of their floors: signal after signal, readings first.
-class InFloors {
+/// The readings under a schedule and their block averages in units of their sigmas: signal after signal, readings first.
+class InSigmas {
  public:
-  InFloors(const Plant& plant, const Recording& commands)
+  InSigmas(const Plant& plant, const Recording& commands)
       : plant_(plant),
         row_count_(static_cast<Eigen::Index>(commands.time_s.size())),
-        block_count_(row_count_ / block),
+        block_count_(row_count_ / static_cast<Eigen::Index>(averaging_rows)),
         signal_count_(static_cast<Eigen::Index>(plant.signals().size())) {
     for (std::size_t s = 0; s < plant.signals().size(); ++s) {
-      double floor = 1;
-      for (std::size_t i = 0; i < plant.recordings().size() && plant.signals()[s].floor.source != NoiseFloor::Source::repeats; ++i)
-        floor = std::min(floor, averagedShareOfFloor(plant.measured(static_cast<int>(i), static_cast<int>(s))));
-      averaged_floors_.push_back(floor);
+      double sigma = 1;
+      for (std::size_t i = 0; i < plant.recordings().size() && plant.signals()[s].sigma.source != NoiseSigma::Source::repeats; ++i)
+        sigma = std::min(sigma, averagedShareOfSigma(plant.measured(static_cast<int>(i), static_cast<int>(s))));
+      averaged_sigmas_.push_back(sigma);
     }
   }
 
@@ -139,14 +140,13 @@ class InFloors {
     for (Eigen::Index s = 0; s < signal_count_; ++s) {
       const ComparedSignal& signal = plant_.signals()[static_cast<std::size_t>(s)];
       auto readings = result.segment(s * perSignal(), row_count_);
-      readings = (valuesOf(a, signal) - valuesOf(b, signal)) / signal.floor.value;
+      readings = (valuesOf(a, signal) - valuesOf(b, signal)) / signal.sigma.value;
       for (Eigen::Index k = 0; k < block_count_; ++k)
-        result[s * perSignal() + row_count_ + k] =
-            readings.segment(k * block, block).mean() / averaged_floors_[static_cast<std::size_t>(s)];
+        result[s * perSignal() + row_count_ + k] = meanOfBlock(result, s * perSignal(), k) / averaged_sigmas_[static_cast<std::size_t>(s)];
     }
     return result;
   }
-  /// Every part of mean square 1 becomes one of length 1.
+  /// Scales every part so that mean square 1 becomes length 1.
   Eigen::VectorXd perPart(const Eigen::VectorXd& difference) const {
     Eigen::VectorXd result = difference;
     for (Eigen::Index s = 0; s < signal_count_; ++s) {
@@ -158,8 +158,8 @@ class InFloors {
   double meanSquare(const Eigen::VectorXd& difference, Eigen::Index signal) const {
     return difference.segment(signal * perSignal(), row_count_).squaredNorm() / static_cast<double>(row_count_);
   }
-  /// Mean over signals and averages of ln(RMS over floor) where a difference is measured on top of the noise and of what the law of the
-  /// right cause, which is not quite ours, leaves of a gap (Odds).
+  /// Mean over signals and averages of ln(RMS / sigma), where sigma combines the noise and the share of the gap that the right cause may
+  /// leave because its law differs from ours (Odds).
   double logMisfit(const Eigen::VectorXd& difference, const Eigen::VectorXd& gap) const {
     const double mismatch = Weighing{}.law_mismatch;
     double sum = 0;
@@ -175,7 +175,6 @@ class InFloors {
   }
 
  private:
-  static constexpr auto block = static_cast<Eigen::Index>(block_rows);
   Eigen::Index perSignal() const { return row_count_ + block_count_; }
   Eigen::Map<const Eigen::VectorXd> valuesOf(const Recording& recording, const ComparedSignal& signal) const {
     return {recording.find(signal.name)->values.data(), row_count_};
@@ -183,110 +182,109 @@ class InFloors {
 
   const Plant& plant_;
   Eigen::Index row_count_, block_count_, signal_count_;
-  std::vector<double> averaged_floors_;  ///< in units of the floor, as Comparison takes them
+  std::vector<double> averaged_sigmas_;  ///< in units of sigma, as in Comparison
 };
 
-/// What changes of a contender's numbers change under a schedule; without columns where they are not looked at.
+/// Derivatives of the readings under a schedule with respect to each rival's parameters; without columns if not computed.
 using Slopes = std::vector<Eigen::MatrixXd>;
 
-Slopes slopesOf(const Plant& plant, const TriedSchedule& trial, const std::vector<Contender>& contenders, Fidelity fidelity, int job_count,
+Slopes slopesOf(const Plant& plant, const TriedSchedule& trial, const std::vector<Rival>& rivals, Fidelity fidelity, int job_count,
                 const OnSimulation& on_simulation) {
-  const InFloors in_floors(plant, trial.commands);
-  Slopes slopes(contenders.size());
-  parallelFor(static_cast<int>(contenders.size()), job_count, [&](int i) {
+  const InSigmas in_sigmas(plant, trial.commands);
+  Slopes slopes(rivals.size());
+  parallelFor(static_cast<int>(rivals.size()), job_count, [&](int i) {
     const auto index = static_cast<std::size_t>(i);
-    const Contender& contender = contenders[index];
+    const Rival& rival = rivals[index];
     const Recording& predicted = trial.predicted[index];
-    slopes[index].resize(in_floors.difference(predicted, predicted).size(), static_cast<Eigen::Index>(contender.beside.size()));
-    parallelFor(static_cast<int>(contender.beside.size()), job_count, [&](int k) {
-      const auto moved = plant.predictSchedule(trial.commands, contender.beside[static_cast<std::size_t>(k)], fidelity);
+    slopes[index].resize(in_sigmas.difference(predicted, predicted).size(), static_cast<Eigen::Index>(rival.beside.size()));
+    parallelFor(static_cast<int>(rival.beside.size()), job_count, [&](int k) {
+      const auto moved = plant.predictSchedule(trial.commands, rival.beside[static_cast<std::size_t>(k)], fidelity);
       on_simulation();
-      slopes[index].col(k) = in_floors.difference(moved ? *moved : predicted, predicted);
+      slopes[index].col(k) = in_sigmas.difference(moved ? *moved : predicted, predicted);
     });
   });
   return slopes;
 }
 
-/// What is left of a difference when the contender is fitted to its recordings and to that difference together.
-Eigen::VectorXd leftBy(const Contender& contender, const Eigen::MatrixXd& slopes, const InFloors& in_floors,
-                       const Eigen::VectorXd& difference) {
+/// The part of a difference that remains after the rival has been refitted to its recordings and that difference together.
+Eigen::VectorXd leftBy(const Rival& rival, const Eigen::MatrixXd& slopes, const InSigmas& in_sigmas, const Eigen::VectorXd& difference) {
   if (slopes.cols() == 0) return difference;
-  Eigen::MatrixXd both(contender.slopes.rows() + slopes.rows(), slopes.cols());
-  for (Eigen::Index k = 0; k < slopes.cols(); ++k) both.col(k) << contender.slopes.col(k), in_floors.perPart(slopes.col(k));
+  Eigen::MatrixXd both(rival.slopes.rows() + slopes.rows(), slopes.cols());
+  for (Eigen::Index k = 0; k < slopes.cols(); ++k) both.col(k) << rival.slopes.col(k), in_sigmas.perPart(slopes.col(k));
   Eigen::VectorXd aim(both.rows());
-  aim << Eigen::VectorXd::Zero(contender.slopes.rows()), in_floors.perPart(difference);
+  aim << Eigen::VectorXd::Zero(rival.slopes.rows()), in_sigmas.perPart(difference);
   Eigen::MatrixXd normal = both.transpose() * both;
   normal.diagonal().array() += 1e-9 * (1 + normal.diagonal().maxCoeff());
   return difference - slopes * normal.ldlt().solve(both.transpose() * aim);
 }
 
-/// How far a contender's prediction is from the likeliest one's.
+/// Difference between a rival's prediction and that of the most probable one.
 struct Difference {
-  double overall = infinity;  ///< RMS over all signals and rows in units of the floor
-  std::string signal;         ///< that differs most
+  double overall = infinity;  ///< RMS over all signals and rows in units of sigma
+  std::string signal;         ///< the signal that differs most
   double in_signal = 0;
 };
 
-Difference differenceOf(const Plant& plant, const InFloors& in_floors, const Eigen::VectorXd& difference) {
+Difference differenceOf(const Plant& plant, const InSigmas& in_sigmas, const Eigen::VectorXd& difference) {
   double sum = 0, largest = 0;
   std::size_t most = 0;
   for (std::size_t s = 0; s < plant.signals().size(); ++s) {
-    const double mean_square = in_floors.meanSquare(difference, static_cast<Eigen::Index>(s));
+    const double mean_square = in_sigmas.meanSquare(difference, static_cast<Eigen::Index>(s));
     sum += mean_square;
     if (mean_square > largest) largest = mean_square, most = s;
   }
   return {std::sqrt(sum / static_cast<double>(plant.signals().size())), plant.signals()[most].name, std::sqrt(largest)};
 }
 
-/// What a schedule is worth, and how far every contender is from the likeliest there; 0 for itself.
+/// The worth of a schedule, and the difference of every rival from the most probable one; 0 for that one itself.
 struct Worth {
   double told = 0;
   std::vector<Difference> from_likeliest;
 };
 
-Worth worthOf(const Plant& plant, const TriedSchedule& trial, const std::vector<Contender>& contenders, const Slopes& slopes) {
+Worth worthOf(const Plant& plant, const TriedSchedule& trial, const std::vector<Rival>& rivals, const Slopes& slopes) {
   const double per_log_misfit = Weighing{}.per_misfit / (static_cast<double>(plant.split().fit.size()) + 1);
-  const InFloors in_floors(plant, trial.commands);
+  const InSigmas in_sigmas(plant, trial.commands);
   const Recording& likeliest = trial.predicted.front();
-  const Eigen::VectorXd gap = in_floors.difference(likeliest, trial.nominal ? *trial.nominal : likeliest);
+  const Eigen::VectorXd gap = in_sigmas.difference(likeliest, trial.nominal ? *trial.nominal : likeliest);
   double all = 0;
-  for (const Contender& contender : contenders) all += contender.probability;
-  Worth worth{0, std::vector<Difference>(contenders.size())};
+  for (const Rival& rival : rivals) all += rival.probability;
+  Worth worth{0, std::vector<Difference>(rivals.size())};
   worth.from_likeliest.front() = {0, "", 0};
-  for (std::size_t a = 0; a < contenders.size(); ++a)
-    for (std::size_t b = a + 1; b < contenders.size(); ++b) {
-      const Eigen::VectorXd between = in_floors.difference(trial.predicted[a], trial.predicted[b]);
+  for (std::size_t a = 0; a < rivals.size(); ++a)
+    for (std::size_t b = a + 1; b < rivals.size(); ++b) {
+      const Eigen::VectorXd between = in_sigmas.difference(trial.predicted[a], trial.predicted[b]);
       for (const std::size_t refitted : {a, b}) {
-        const Eigen::VectorXd left = slopes.empty() ? between : leftBy(contenders[refitted], slopes[refitted], in_floors, between);
-        const double told = -std::expm1(-per_log_misfit * in_floors.logMisfit(left, gap));
-        worth.told += contenders[a].probability / all * contenders[b].probability / all * told;
+        const Eigen::VectorXd left = slopes.empty() ? between : leftBy(rivals[refitted], slopes[refitted], in_sigmas, between);
+        const double told = -std::expm1(-per_log_misfit * in_sigmas.logMisfit(left, gap));
+        worth.told += rivals[a].probability / all * rivals[b].probability / all * told;
         if (a > 0) continue;
-        const Difference difference = differenceOf(plant, in_floors, left);
+        const Difference difference = differenceOf(plant, in_sigmas, left);
         if (difference.overall < worth.from_likeliest[b].overall) worth.from_likeliest[b] = difference;
       }
     }
   return worth;
 }
 
-/// Says what the schedule separates from the likeliest; where that is nothing, what it separates best.
-Experiment experimentOf(const TriedSchedule& trial, const std::vector<Contender>& contenders, const Worth& worth) {
+/// States which rivals the schedule separates from the most probable one, or the best separated one if there are none.
+Experiment experimentOf(const TriedSchedule& trial, const std::vector<Rival>& rivals, const Worth& worth) {
   const double farthest = std::ranges::max(worth.from_likeliest, {}, &Difference::overall).overall;
   Experiment result;
   result.schedule = trial.choice.name;
   result.amplitude = trial.choice.amplitude;
   result.level = trial.choice.level;
-  result.separates = {contenders.front().label};
+  result.separates = {rivals.front().label};
   std::size_t nearest = 0;
-  for (std::size_t i = 1; i < contenders.size(); ++i) {
+  for (std::size_t i = 1; i < rivals.size(); ++i) {
     if (worth.from_likeliest[i].overall < std::min(apart, farthest)) continue;
-    result.separates.push_back(contenders[i].label);
+    result.separates.push_back(rivals[i].label);
     if (nearest == 0 || worth.from_likeliest[i].overall < worth.from_likeliest[nearest].overall) nearest = i;
   }
   const Difference& difference = worth.from_likeliest[nearest];
   result.difference = difference.overall;
   result.why =
       fmt::format("{}; {} and {}, the most alike of these, fitted anew, differ by {:.1f} times the noise there, most in {} ({:.1f})",
-                  scheduleWords(trial.choice), contenders.front().label, contenders[nearest].label, difference.overall, difference.signal,
+                  scheduleWords(trial.choice), rivals.front().label, rivals[nearest].label, difference.overall, difference.signal,
                   difference.in_signal);
   result.time_s = trial.commands.time_s;
   result.commands.resize(result.time_s.size());
@@ -297,29 +295,29 @@ Experiment experimentOf(const TriedSchedule& trial, const std::vector<Contender>
 
 }  // namespace
 
-Experiment nextExperiment(const Plant& plant, const std::vector<Contender>& contenders, Fidelity fidelity, int job_count,
+Experiment nextExperiment(const Plant& plant, const std::vector<Rival>& rivals, Fidelity fidelity, int job_count,
                           const OnSimulation& on_simulation) {
-  constexpr std::size_t closer_look = 6;
-  if (contenders.size() < 2) return {};
+  constexpr std::size_t refined_count = 6;
+  if (rivals.size() < 2) return {};
   const std::vector<ScheduleChoice> bank = scheduleBank();
   const Spans rooms = roomsOf(plant);
   std::vector<TriedSchedule> trials(bank.size());
   parallelFor(static_cast<int>(bank.size()), job_count, [&](int i) {
     const auto index = static_cast<std::size_t>(i);
-    trials[index] = triedOut(plant, bank[index], contenders, rooms, fidelity, on_simulation);
+    trials[index] = triedOut(plant, bank[index], rivals, rooms, fidelity, on_simulation);
   });
-  std::erase_if(trials, [&](const TriedSchedule& trial) { return trial.predicted.size() < contenders.size(); });
+  std::erase_if(trials, [&](const TriedSchedule& trial) { return trial.predicted.size() < rivals.size(); });
   std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t i = 0; i < trials.size(); ++i) order.emplace_back(-worthOf(plant, trials[i], contenders, {}).told, i);
+  for (std::size_t i = 0; i < trials.size(); ++i) order.emplace_back(-worthOf(plant, trials[i], rivals, {}).told, i);
   std::ranges::sort(order);
   Experiment best;
   double most = worth_it;
-  for (std::size_t rank = 0; rank < std::min(closer_look, order.size()); ++rank) {
+  for (std::size_t rank = 0; rank < std::min(refined_count, order.size()); ++rank) {
     const TriedSchedule& trial = trials[order[rank].second];
-    const Worth worth = worthOf(plant, trial, contenders, slopesOf(plant, trial, contenders, fidelity, job_count, on_simulation));
+    const Worth worth = worthOf(plant, trial, rivals, slopesOf(plant, trial, rivals, fidelity, job_count, on_simulation));
     if (worth.told <= most) continue;
     most = worth.told;
-    best = experimentOf(trial, contenders, worth);
+    best = experimentOf(trial, rivals, worth);
   }
   return best;
 }

@@ -1,36 +1,24 @@
-/// Which commands would tell explanations apart that the recordings do not.
+/// Plans the next experiment: commands that distinguish hypotheses which the recordings do not.
 #pragma once
 
-#include <Eigen/Core>
-#include <string>
 #include <vector>
 
 #include "musclesim/diagnosis/diagnosis.h"
 #include "plant.h"
-#include "screen.h"
+#include "rival.h"
+#include "sensitivity.h"
 
 namespace musclesim {
 
-/// An explanation as fitted, with what is made of it so far and what its numbers can still take up.
-struct Contender {
-  std::string label;
-  Model model;
-  double probability;           ///< need not sum to 1
-  std::vector<Model> beside{};  ///< with one coordinate each moved by any step
-  Eigen::MatrixXd
-      slopes{};  ///< what those steps change in the recordings that it was fitted to, times the weights of the fit: [rows, steps]
-};
-
-/// Simulates contenders, the likeliest first, under the schedules of the bank and returns the one that is expected to tell most: the sum
-/// over pairs of the product of their probabilities and 1 - exp(-e), e = per_misfit / (recordings + 1) * mean of ln(RMS difference over
-/// floor) over signals and their averages, the floor that of Odds, about what a recording of it would add to the log odds (a sum over pairs
-/// of models as in Box and Hill 1967, eq. 3.5, but bounded, so that it counts pairs and not how far apart they are). Of the six best by
-/// that, the best by what is left of the differences when either contender is fitted anew to its recordings and the other's prediction
-/// together, linearised (T-optimality, Atkinson and Fedorov 1975): what a change of its numbers takes up tells nothing. Schedules are made
-/// smaller until every contender is predicted to keep about where the plant has been, and clear of the stops of joints and muscles, where
-/// small differences decide what happens next. Without commands if there are fewer than two contenders, or if nothing tells any of them
-/// apart.
-Experiment nextExperiment(const Plant& plant, const std::vector<Contender>& contenders, Fidelity fidelity, int job_count,
+/// Simulates the rivals, the most probable first, under all schedules of the bank and returns the most informative one. Its worth is the
+/// sum over pairs of the product of their probabilities and 1 - exp(-e), with e = per_misfit / (recordings + 1) * mean over signals and
+/// their averages of ln(RMS difference / sigma), sigma as in Odds: about what a recording of the schedule would add to the log odds (a sum
+/// over pairs of models as in Box and Hill 1967, eq. 3.5, but bounded, so that it counts pairs and not how far apart they are). Of the six
+/// best schedules it takes the best after either rival has been refitted, linearised, to its recordings and the other's prediction together
+/// (T-optimality, Atkinson and Fedorov 1975): a difference that refitting removes tells nothing. Amplitudes are reduced until every rival
+/// is predicted to stay about where the plant has been and clear of the stops of joints and muscles, where small differences decide how the
+/// motion continues. Returns no commands for fewer than two rivals, or if no schedule distinguishes any of them.
+Experiment nextExperiment(const Plant& plant, const std::vector<Rival>& rivals, Fidelity fidelity, int job_count,
                           const OnSimulation& on_simulation);
 
 }  // namespace musclesim

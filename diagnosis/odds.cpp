@@ -7,15 +7,15 @@
 
 namespace musclesim {
 
-/// Mean over affected cells of ln(RMS / floor), no less than 0 each, floor^2 = noise floor^2 + (mismatch gap)^2.
+/// Mean over affected blocks of ln(RMS / s), at least 0 each, with s^2 = sigma^2 + (mismatch RMS gap)^2.
 double Odds::misfitBeyond(double mismatch, const Eigen::VectorXd& residual) const {
   double sum = 0;
-  for (const Comparison::Cell& cell : comparison_.cells()) {
-    const double gap_square = comparison_.meanSquare(cell, nominal_residual_);
-    const double floor_square = cell.floor * cell.floor + mismatch * mismatch * gap_square;
-    sum += 0.5 * std::log(std::max(1.0, comparison_.meanSquare(cell, residual) / floor_square));
+  for (const Comparison::Block& block : comparison_.blocks()) {
+    const double gap_square = comparison_.meanSquare(block, nominal_residual_);
+    const double sigma_square = block.sigma * block.sigma + mismatch * mismatch * gap_square;
+    sum += 0.5 * std::log(std::max(1.0, comparison_.meanSquare(block, residual) / sigma_square));
   }
-  return sum / comparison_.affectedCells(nominal_residual_);
+  return sum / comparison_.affectedBlocks(nominal_residual_);
 }
 
 double Odds::ofMisfit(const Eigen::VectorXd& residual) const {
@@ -23,20 +23,20 @@ double Odds::ofMisfit(const Eigen::VectorXd& residual) const {
          weighing_.per_closer_misfit * misfitBeyond(weighing_.close_law_mismatch, residual);
 }
 
-/// Whether an effect acts where one before it does: on the same muscle, on the same signal, both on the body.
-bool Odds::actsWhereOthersDo(const Explanation& explanation, std::size_t member) const {
+/// Whether an effect shares its place with an earlier one: the same muscle, the same signal, or both the body.
+bool Odds::actsWhereOthersDo(const FittedHypothesis& fitted, std::size_t member) const {
   enum class Part { muscle, body, sensor };
   auto place = [&](std::size_t i) -> std::pair<Part, std::string> {
-    const Suspect& suspect = suspects_[explanation.suspects[i]];
-    switch (suspect.info().acts_on.front()) {
+    const Hypothesis& hypothesis = hypotheses_[fitted.members[i]];
+    switch (hypothesis.info().acts_on.front()) {
       case ComponentKind::signal:
-        return {Part::sensor, suspect.component()};
+        return {Part::sensor, hypothesis.component()};
       case ComponentKind::joint:
       case ComponentKind::hand:
       case ComponentKind::base:
         return {Part::body, "all"};
       default:
-        return {Part::muscle, suspect.component()};
+        return {Part::muscle, hypothesis.component()};
     }
   };
   auto overlap = [](const std::string& one, const std::string& other) {
@@ -52,49 +52,49 @@ bool Odds::actsWhereOthersDo(const Explanation& explanation, std::size_t member)
   return false;
 }
 
-/// What speaks against an explanation before its misfit is looked at.
-double Odds::beforehand(const Explanation& explanation) const {
-  double odds = -weighing_.per_parameter * static_cast<double>(explanation.z.size()) -
-                weighing_.per_effect * (static_cast<double>(explanation.suspects.size()) - 1);
-  for (std::size_t i = 1; i < explanation.suspects.size(); ++i)
-    if (actsWhereOthersDo(explanation, i)) odds -= weighing_.per_same_place;
+/// Log prior of a fitted hypothesis.
+double Odds::logPrior(const FittedHypothesis& fitted) const {
+  double odds = -weighing_.per_parameter * static_cast<double>(fitted.z.size()) -
+                weighing_.per_effect * (static_cast<double>(fitted.members.size()) - 1);
+  for (std::size_t i = 1; i < fitted.members.size(); ++i)
+    if (actsWhereOthersDo(fitted, i)) odds -= weighing_.per_same_place;
   Eigen::Index first = 0;
-  for (const std::size_t index : explanation.suspects) {
-    const Suspect& suspect = suspects_[index];
-    odds -= weighing_.per_excess * suspect.excess(explanation.z.segment(first, suspect.coordinateCount()));
-    if (suspect.info().stage == Stage::sensor && suspect.component() == "all") odds -= weighing_.shared_sensor;
-    first += suspect.coordinateCount();
+  for (const std::size_t index : fitted.members) {
+    const Hypothesis& hypothesis = hypotheses_[index];
+    odds -= weighing_.per_excess * hypothesis.excess(fitted.z.segment(first, hypothesis.coordinateCount()));
+    if (hypothesis.info().stage == Stage::sensor && hypothesis.component() == "all") odds -= weighing_.shared_sensor;
+    first += hypothesis.coordinateCount();
   }
   return odds;
 }
 
-double Odds::ofExplanation(const Explanation& explanation) const {
-  if (explanation.is_hollow) return -std::numeric_limits<double>::infinity();
-  return beforehand(explanation) + ofMisfit(explanation.judged());
+double Odds::ofHypothesis(const FittedHypothesis& fitted) const {
+  if (fitted.is_inactive) return -std::numeric_limits<double>::infinity();
+  return logPrior(fitted) + ofMisfit(fitted.validationResidual());
 }
 
 double Odds::ofNoEffect() const {
   return ofMisfit(nominal_residual_);
 }
 
-double Odds::ofNoneOfThese(const std::vector<Explanation>& explanations) const {
+double Odds::ofNoneOfThese(const std::vector<FittedHypothesis>& fits) const {
   double best = ofNoEffect(), share_left = 1, further_strengths = 0;
   const double gap = misfitBeyond(weighing_.law_mismatch, nominal_residual_);
-  for (const Explanation& explanation : explanations)
-    if (const double odds = ofExplanation(explanation); odds > best) {
+  for (const FittedHypothesis& fitted : fits)
+    if (const double odds = ofHypothesis(fitted); odds > best) {
       best = odds;
-      share_left = gap > 0 ? misfitBeyond(weighing_.law_mismatch, explanation.judged()) / gap : 1;
+      share_left = gap > 0 ? misfitBeyond(weighing_.law_mismatch, fitted.validationResidual()) / gap : 1;
       further_strengths = 0;
-      for (const std::size_t index : explanation.suspects)
-        further_strengths += std::max(0.0, static_cast<double>(suspects_[index].strengths().size()) - 1);
+      for (const std::size_t index : fitted.members)
+        further_strengths += std::max(0.0, static_cast<double>(hypotheses_[index].strengths().size()) - 1);
     }
   const double of_unknown =
       best + weighing_.per_share_left * (share_left - weighing_.share_of_unknown) + weighing_.per_further_strength * further_strengths;
   return std::min(of_unknown, -weighing_.per_parameter);
 }
 
-double Odds::hopeBeyond(const Explanation& explanation) const {
-  return -ofMisfit(explanation.judged()) - weighing_.per_effect - weighing_.per_parameter;
+double Odds::optimisticBound(const FittedHypothesis& fitted) const {
+  return -ofMisfit(fitted.validationResidual()) - weighing_.per_effect - weighing_.per_parameter;
 }
 
 }  // namespace musclesim

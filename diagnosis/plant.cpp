@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "../effect/components.h"
-#include "comparison.h"
 #include "data_checks.h"
 #include "drawing.h"
 #include "musclesim/base/error.h"
@@ -17,9 +16,9 @@ namespace musclesim {
 
 namespace {
 
-constexpr int fewest_to_coarsen = 8;  ///< with fewer internal steps than that a simulation is cheap and as coarse as it can be
+constexpr int fewest_to_coarsen = 8;  ///< with fewer internal steps a simulation is cheap and cannot be coarser
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-/// Friction within the muscles and the curvature of Eq. 1.
+/// Parameters of the nominal refit: friction within the muscles and the curvature of Eq. 1.
 constexpr const char* hinge_friction = "muscle.hinge_friction_Nm";
 constexpr const char* nominal_names[] = {"muscle.slider_friction_N", hinge_friction, "force_law.b"};
 
@@ -38,12 +37,12 @@ void requireDiagnosable(const std::vector<Recording>& recordings) {
   requireDifferentMeasurements(recordings);
 }
 
-/// Without its folder.
+/// The file name without its folder.
 std::string nameOf(const Recording& recording) {
   return std::filesystem::path(recording.file).filename().string();
 }
 
-/// With several recordings the last is held out; with one, the last two fifths of its rows.
+/// Of several recordings the last is held out; of one recording, the last two fifths of its rows.
 Split splitOf(const std::vector<Recording>& recordings) {
   Split split;
   const int count = static_cast<int>(recordings.size());
@@ -57,11 +56,11 @@ Split splitOf(const std::vector<Recording>& recordings) {
   }
   for (int i = 0; i + 1 < count; ++i) split.fit.push_back({i, 0, rows(i)});
   split.held_out = {{count - 1, 0, rows(count - 1)}};
-  split.held_out_words = fmt::format("{}, which neither fitting nor choosing has seen", nameOf(recordings.back()));
+  split.held_out_words = fmt::format("{}, held out from fitting and choosing", nameOf(recordings.back()));
   return split;
 }
 
-/// Everything that a simulation depends on but the recording.
+/// All that a simulation depends on except the recording.
 std::string keyOf(const Model& model) {
   auto written = [](const Parameter::Value& value) {
     return std::holds_alternative<double>(value) ? fmt::format("{:a}", std::get<double>(value)) : std::get<std::string>(value);
@@ -76,7 +75,7 @@ std::string keyOf(const Model& model) {
   return key;
 }
 
-/// Internal steps that a simulation makes one of.
+/// Ratio of the time step to the fine one.
 int ratioOf(Fidelity fidelity) {
   return 1 << static_cast<int>(fidelity);
 }
@@ -108,27 +107,28 @@ Plant::Plant(std::vector<Recording> recordings, const DiagnosisOptions& options)
   for (const auto* part : {&split_.fit, &split_.held_out}) requireNumbers(*part);
 }
 
-/// Enough of some signal in a part of the recordings.
-void Plant::requireNumbers(const std::vector<Stretch>& part) const {
-  const auto numbersIn = [&](const Stretch& stretch, std::size_t signal) {
-    const std::vector<double>& y = measured(stretch.recording, static_cast<int>(signal));
-    const auto end = std::min(static_cast<std::size_t>(stretch.end_row), y.size());
+/// Throws BadFile unless a part of the recordings has enough numbers of at least one signal.
+void Plant::requireNumbers(const std::vector<Segment>& part) const {
+  const auto numbersIn = [&](const Segment& segment, std::size_t signal) {
+    const std::vector<double>& y = measured(segment.recording, static_cast<int>(signal));
+    const auto end = std::min(static_cast<std::size_t>(segment.end_row), y.size());
     int count = 0;
-    for (auto row = static_cast<std::size_t>(stretch.first_row); row < end; ++row) count += std::isfinite(y[row]) ? 1 : 0;
+    for (auto row = static_cast<std::size_t>(segment.first_row); row < end; ++row) count += std::isfinite(y[row]) ? 1 : 0;
     return count;
   };
-  for (const Stretch& stretch : part)
+  for (const Segment& segment : part)
     for (std::size_t signal = 0; signal < signals_.size(); ++signal)
-      if (numbersIn(stretch, signal) >= Comparison::fewest_rows) return;
-  const Stretch& stretch = part.front();
-  throw BadFile(recordings_[static_cast<std::size_t>(stretch.recording)].file,
-                fmt::format("its rows {} to {}, {}, hold fewer than {} numbers of every signal that can be compared", stretch.first_row + 1,
-                            stretch.end_row, &part == &split_.fit ? "which the effects are fitted to" : "on which the result is measured",
-                            Comparison::fewest_rows));
+      if (numbersIn(segment, signal) >= fewest_compared_rows) return;
+  const Segment& segment = part.front();
+  throw BadFile(recordings_[static_cast<std::size_t>(segment.recording)].file,
+                fmt::format("its rows {} to {}, {}, hold fewer than {} numbers of every signal that can be compared", segment.first_row + 1,
+                            segment.end_row, &part == &split_.fit ? "which the effects are fitted to" : "on which the result is measured",
+                            fewest_compared_rows));
 }
 
-/// A sensor that shows one value throughout a recording in which commands change, but not in all: there it is dead.
-void Plant::dropDeadStretches() {
+/// Removes a signal from a recording in which it never changes although commands do, if it changes in another recording: the sensor is dead
+/// there.
+void Plant::dropDeadSegments() {
   for (Recording& recording : recordings_) {
     const std::vector<Recording> one = {recording};
     if (!commandsMove(one)) continue;
@@ -145,7 +145,7 @@ void Plant::dropDeadStretches() {
 void Plant::compareSignals() {
   measured_.resize(recordings_.size());
   notes_ = dataNotes(recordings_);
-  dropDeadStretches();
+  dropDeadSegments();
   const bool moves = commandsMove(recordings_);
   for (const std::string& name : reference_->robot().signalNames()) {
     if (name.starts_with("command_")) continue;
@@ -158,7 +158,7 @@ void Plant::compareSignals() {
       notes_.push_back(name + " has the same value in every row although commands change: a dead sensor, left out");
       continue;
     }
-    signals_.push_back({name, noiseFloor(recordings_, name)});
+    signals_.push_back({name, noiseSigma(recordings_, name)});
     for (std::size_t i = 0; i < recordings_.size(); ++i) {
       const Signal* found = recordings_[i].find(name);
       measured_[i].push_back(found ? found->values : std::vector<double>{});
@@ -176,25 +176,25 @@ const std::vector<double>& Plant::measured(int recording, int signal) const {
   return measured_[static_cast<std::size_t>(recording)][static_cast<std::size_t>(signal)];
 }
 
-std::vector<Stretch> Plant::lookStretches() const {
+std::vector<Segment> Plant::screeningSegments() const {
   constexpr std::size_t most_recordings = 3;
   constexpr int row_count = 1200;
   constexpr double duration_s = 12, rounding_s = 1e-9;
-  std::vector<Stretch> result;
-  auto recordingOf = [&](const Stretch& s) -> const Recording& { return recordings_[static_cast<std::size_t>(s.recording)]; };
-  for (const Stretch& stretch : split_.fit) {
+  std::vector<Segment> result;
+  auto recordingOf = [&](const Segment& s) -> const Recording& { return recordings_[static_cast<std::size_t>(s.recording)]; };
+  for (const Segment& segment : split_.fit) {
     const bool repeated =
-        std::ranges::any_of(result, [&](const Stretch& other) { return isRepeat(recordingOf(stretch), recordingOf(other)); });
-    if (!repeated && result.size() < most_recordings) result.push_back(stretch);
+        std::ranges::any_of(result, [&](const Segment& other) { return isRepeat(recordingOf(segment), recordingOf(other)); });
+    if (!repeated && result.size() < most_recordings) result.push_back(segment);
   }
   const auto count = static_cast<int>(result.size());
-  for (Stretch& stretch : result) {
-    const std::vector<double>& time_s = recordingOf(stretch).time_s;
-    const int from = firstChange(recordingOf(stretch));
+  for (Segment& segment : result) {
+    const std::vector<double>& time_s = recordingOf(segment).time_s;
+    const int from = firstChange(recordingOf(segment));
     const double until_s = time_s[static_cast<std::size_t>(from)] + duration_s / count - rounding_s;
     const auto in_time = static_cast<int>(std::ranges::lower_bound(time_s, until_s) - time_s.begin());
-    stretch.end_row = std::min(stretch.end_row, std::max(from + row_count / count, in_time));
-    stretch.every = std::max(1, (stretch.end_row - from) * count / row_count);
+    segment.end_row = std::min(segment.end_row, std::max(from + row_count / count, in_time));
+    segment.every = std::max(1, (segment.end_row - from) * count / row_count);
   }
   return result;
 }
@@ -224,7 +224,7 @@ Plant::MuscleRange Plant::muscleRange(int muscle) const {
   return {actuator.minimumLengthMm(), actuator.maximumLengthMm()};
 }
 
-/// Throws BadParameter with the nearest name if the model has no such number, and for one that a factor cannot change.
+/// Throws BadParameter, with the nearest name, if the model has no such number, and for a number that a factor cannot change.
 Parameter Plant::numberNamed(const std::string& name) const {
   std::vector<std::string> names;
   for (const Parameter& parameter : reference_->parameters().declared()) {
@@ -261,7 +261,7 @@ bool Plant::hasHand() const {
   return reference_->robot().getState().hand_mm.has_value();
 }
 
-/// Coarse steps only where there is something to gain.
+/// The fidelity itself if coarser steps save time on this robot, otherwise fine.
 Fidelity Plant::possible(Fidelity fidelity) const {
   return reference_->substeps() >= fewest_to_coarsen ? fidelity : Fidelity::fine;
 }
@@ -296,7 +296,8 @@ Prediction Plant::predict(int recording, const Model& model, const std::vector<s
   return replay(std::move(changed), model, end_row, fidelity);
 }
 
-/// Whether changed numbers of the model, a force that grows a millionfold towards full length, need far more internal steps than it has.
+/// Whether changed parameters need far more internal steps than the model, for example a force that grows a millionfold towards full
+/// length.
 bool Plant::takesForEver(const Recording& recording, const ReplayOptions& options) const {
   constexpr int most_ratio = 20;
   Simulation changed(simulationOptionsFor(recording.info, sidecarPath(recording.file), options));
@@ -304,12 +305,12 @@ bool Plant::takesForEver(const Recording& recording, const ReplayOptions& option
   return changed.substeps() > most_ratio * reference_->substeps();
 }
 
-/// Nothing if such an effect cannot act on this plant, for example a payload that takes away more than there is, or if it would take for
-/// ever.
+/// Empty if such an effect cannot act on this plant (a payload that removes more mass than there is), or if the simulation would take too
+/// long.
 std::optional<ReplayResult> Plant::simulated(const Recording& recording, const Model& model, Fidelity fidelity, HeldSamples held) const {
   ReplayOptions options = options_.model;
   const bool unchanged = model.effects.empty() && model.parameters.empty();
-  if (!unchanged) options.interrupted = options_.interrupted;  // a partial report compares with the unchanged model too
+  if (!unchanged) options.interrupted = options_.interrupted;  // a partial report also compares with the unchanged model
   if (const int ratio = ratioOf(possible(fidelity)); ratio > 1) options.substeps = (reference_->substeps() + ratio - 1) / ratio;
   for (const ActiveEffect& effect : model.effects)
     if (effect.id != held_effect || held == HeldSamples::drawn) options.effects.push_back(effect);
@@ -347,7 +348,7 @@ std::optional<Recording> Plant::predictSchedule(const Recording& schedule, const
   return std::move(result->simulated);
 }
 
-/// The same held samples in a stored prediction, which does not depend on them.
+/// Applies held samples to a stored prediction, which does not depend on them.
 void Plant::holdSamples(int recording, const Model& model, Prediction& prediction) const {
   for (const ActiveEffect& effect : model.effects) {
     if (effect.id != held_effect) continue;

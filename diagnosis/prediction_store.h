@@ -1,4 +1,4 @@
-/// Predictions that were made before are not simulated again.
+/// A cache of predictions, so that no simulation runs twice.
 #pragma once
 
 #include <cstddef>
@@ -12,22 +12,22 @@
 
 namespace musclesim {
 
-/// What a model predicts for one recording: values[signal][row], NaN after a divergence.
+/// Prediction of a model for one recording: values[signal][row], NaN after a divergence.
 struct Prediction {
   std::vector<std::vector<double>> values;
   bool diverged = false;
-  bool refused = false;  ///< not simulated: such an effect cannot act on this plant
+  bool refused = false;  ///< not simulated, because such an effect cannot act on this plant
 };
 
-/// Predictions by what they were made of. May be used from several threads; what two ask for at the same time may be made twice.
+/// Predictions by key. Thread-safe; if two threads ask for the same key at the same time, both may make it.
 class PredictionStore {
  public:
-  /// It forgets everything when it would hold more numbers than that.
+  /// Clears itself when it would hold more numbers than the limit.
   explicit PredictionStore(std::size_t number_limit = 8'000'000) : number_limit_(number_limit) {}
 
-  /// The prediction of this key, by `make` if it is not there.
+  /// The prediction of this key; calls `make` if it is not stored.
   Prediction get(const std::string& key, const std::function<Prediction()>& make);
-  /// Whether the key has never been asked for before, forgotten ones included. It counts as asked for from now on.
+  /// Whether the key is asked for for the first time, forgotten ones included. Marks it as asked for.
   bool isNew(const std::string& key);
 
  private:

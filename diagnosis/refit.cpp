@@ -11,11 +11,17 @@ namespace musclesim {
 
 namespace {
 
-constexpr double enough = 0.01;  ///< a fall of logMisfit that is not worth another round
+constexpr double enough = 0.01;  ///< a decrease of logMisfit that does not justify another round
 constexpr double normal_95 = 1.96;
-/// Differences for derivatives, in coordinates. Wide ones first: dry friction swallows what is small, so that the tangent is flatter than
-/// the way to go.
+/// Differences for derivatives, in coordinates. Wide ones first: dry friction hides small changes, so that the tangent is flatter than the
+/// secant.
 constexpr double wide = 0.2, narrow = 0.05;
+
+/// z with one coordinate moved by `difference` times its size, or times 1 if that is larger.
+Eigen::VectorXd movedBy(Eigen::VectorXd z, Eigen::Index coordinate, double difference) {
+  z[coordinate] += difference * std::max(1.0, std::abs(z[coordinate]));
+  return z;
+}
 
 struct Point {
   Eigen::VectorXd z, residual;
@@ -35,8 +41,7 @@ Eigen::MatrixXd derivatives(const Comparison& comparison, const FitProblem& prob
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(comparison.size(), at.z.size());
   parallelFor(static_cast<int>(at.z.size()), comparison.plant().jobCount(), [&](int i) {
     for (const double side : {1.0, -1.0}) {
-      Eigen::VectorXd z = at.z;
-      z[i] += side * difference * std::max(1.0, std::abs(z[i]));
+      const Eigen::VectorXd z = movedBy(at.z, i, side * difference);
       if (problem.clamped(z)[i] == at.z[i]) continue;  // at a bound
       const Point beside = evaluate(comparison, problem, z);
       if (!beside.residual.size()) continue;
@@ -47,15 +52,15 @@ Eigen::MatrixXd derivatives(const Comparison& comparison, const FitProblem& prob
   return jacobian;
 }
 
-/// Samples per independent sample, from the autocorrelation up to its first zero, averaged over cells.
+/// Number of samples per independent sample, from the autocorrelation up to its first zero, averaged over blocks.
 double samplesPerIndependent(const Comparison& comparison, const Eigen::VectorXd& residual) {
   double sum = 0;
-  int cell_count = 0;
-  for (const Comparison::Cell& cell : comparison.cells()) {
-    if (cell.block > 0) continue;
-    ++cell_count;
-    const Eigen::Index count = cell.count();
-    const Eigen::VectorXd r = residual.segment(cell.first, count);
+  int block_count = 0;
+  for (const Comparison::Block& block : comparison.blocks()) {
+    if (block.averaged_rows > 0) continue;
+    ++block_count;
+    const Eigen::Index count = block.count();
+    const Eigen::VectorXd r = residual.segment(block.first, count);
     const double power = std::max(r.squaredNorm(), 1e-300);
     double correlation_length = 1;
     for (Eigen::Index lag = 1; lag < count / 4; ++lag) {
@@ -65,20 +70,20 @@ double samplesPerIndependent(const Comparison& comparison, const Eigen::VectorXd
     }
     sum += correlation_length;
   }
-  return sum / cell_count;
+  return sum / block_count;
 }
 
-/// Half of the 95 % interval of every coordinate; infinite where the data do not determine it, alone or beside the others.
+/// Half of the 95 % interval of every coordinate; infinite if the data do not determine it, alone or together with the others.
 Eigen::VectorXd halfWidths(const Comparison& comparison, const Point& point, const Eigen::MatrixXd& jacobian) {
   constexpr double nothing = 1e-12, flat = 1e-8, takes_part = 0.1;
-  // Weighted residuals have mean square 1 / rows per cell where the misfit is the residual's own size.
+  // Weighted residuals have mean square 1 / rows per block if the misfit is the residual's own size.
   Eigen::VectorXd per_sample = comparison.weights(point.residual);
-  for (const Comparison::Cell& cell : comparison.cells())
-    per_sample.segment(cell.first, cell.count()) *= cell.block > 0 ? 0 : std::sqrt(static_cast<double>(cell.count()));
+  for (const Comparison::Block& block : comparison.blocks())
+    per_sample.segment(block.first, block.count()) *= block.averaged_rows > 0 ? 0 : std::sqrt(static_cast<double>(block.count()));
   const Eigen::MatrixXd weighted = per_sample.asDiagonal() * jacobian;
   const Eigen::MatrixXd information = weighted.transpose() * weighted / samplesPerIndependent(comparison, point.residual);
   const Eigen::ArrayXd size = information.diagonal().array().max(0).sqrt();
-  // Of unit size, so that a direction that changes nothing shows whatever the units.
+  // Scaled to unit size, so that a direction without influence shows in any units.
   const Eigen::VectorXd per_size = (size > nothing).select(size.inverse(), 0.0);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> directions(per_size.asDiagonal() * information * per_size.asDiagonal());
   constexpr double unbounded = std::numeric_limits<double>::infinity();
@@ -97,7 +102,7 @@ Eigen::VectorXd halfWidths(const Comparison& comparison, const Point& point, con
 
 namespace {
 
-/// One step downhill with at most three dampings; false if none goes down.
+/// One step that decreases the misfit, with at most three dampings; false if there is none.
 bool stepDown(const Comparison& comparison, const FitProblem& problem, const Eigen::MatrixXd& jacobian, double& damping, Point& best) {
   const Eigen::VectorXd weights = comparison.weights(best.residual);
   const Eigen::MatrixXd weighted = weights.asDiagonal() * jacobian;
@@ -118,13 +123,19 @@ bool stepDown(const Comparison& comparison, const FitProblem& problem, const Eig
   return false;
 }
 
-/// The change of the derivatives that the step just made tells of.
+/// Rank-one update of the derivatives from the step just made.
 void update(Eigen::MatrixXd& jacobian, const Point& from, const Point& to) {
   const Eigen::VectorXd step = to.z - from.z;
   if (step.squaredNorm() > 0) jacobian += (from.residual - to.residual - jacobian * step) * step.transpose() / step.squaredNorm();
 }
 
 }  // namespace
+
+double stepOf(const FitProblem& problem, const Eigen::VectorXd& z, Eigen::Index coordinate) {
+  for (const double side : {1.0, -1.0})
+    if (const double step = problem.clamped(movedBy(z, coordinate, side * wide))[coordinate] - z[coordinate]; step != 0) return step;
+  return 0;
+}
 
 Eigen::MatrixXd derivatives(const Comparison& comparison, const FitProblem& problem, const Eigen::VectorXd& z) {
   const Point at = evaluate(comparison, problem, z);

@@ -1,4 +1,4 @@
-/// Fits a few numbers of a model to recordings.
+/// Fits a few parameters of a model to recordings.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,20 +24,23 @@ struct FitResult {
   Eigen::VectorXd half_width;  ///< half of the 95 % interval of every coordinate; infinite: not determined
 };
 
-/// d(prediction)/dz at z, column by column: differences of 5 % of the coordinate, at least 0.02, to the side where the model goes on; zero
-/// where it does on neither.
+/// d(prediction)/dz at z, column by column, from one-sided differences: 20 % of the coordinate, at least 0.2, to the side where the model
+/// does not diverge; zero if it diverges on both sides.
 Eigen::MatrixXd derivatives(const Comparison& comparison, const FitProblem& problem, const Eigen::VectorXd& z);
 
-/// Minimises Comparison::logMisfit with Levenberg and Marquardt's method on residuals that are weighted anew in every round (Marquardt
-/// 1963); the response may have kinks, so the differences for derivatives are not small. They are found anew when a step
-/// gains nothing, otherwise carried on by rank-one updates (Broyden 1965), since simulations are what a fit costs.
-/// The intervals are those of the linearised problem with the residual's own variance, widened by the number of samples over the
-/// effective number of samples (from the residual's autocorrelation).
+/// The step of one coordinate that derivatives() tries first, within the bounds; 0 between two bounds.
+double stepOf(const FitProblem& problem, const Eigen::VectorXd& z, Eigen::Index coordinate);
+
+/// Minimises Comparison::logMisfit with Levenberg and Marquardt's method (Marquardt 1963) on residuals that are reweighted in every round.
+/// The response may have kinks, so the differences for derivatives are not small. Because simulations dominate the cost, derivatives are
+/// recomputed only when a step gains nothing; otherwise rank-one updates carry them on (Broyden 1965). The intervals are those of the
+/// linearised problem with the residual's own variance, widened by the number of samples over the effective number of samples (from the
+/// residual's autocorrelation).
 FitResult fit(const Comparison& comparison, const FitProblem& problem, int round_count);
 
-/// The same for an exact prediction that costs more than the one of the problem. That one is fitted with what it lacks at the start added,
-/// the result is predicted exactly, and once more from there (additive correction, Alexandrov and Lewis 2001). The residual is the exact
-/// one, and never worse than that at the start.
+/// Two-fidelity fit: minimises the misfit of the cheap prediction plus the exact-minus-cheap difference at the start, predicts the result
+/// exactly, and repeats once from there (additive correction, Alexandrov and Lewis 2001). The residual is that of the exact prediction,
+/// never worse than at the start.
 FitResult fitCorrected(const Comparison& comparison, const FitProblem& cheap, const Predicted& exact, int round_count);
 
 }  // namespace musclesim

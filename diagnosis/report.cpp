@@ -12,6 +12,7 @@
 #include "musclesim/diagnosis/diagnosis.h"
 #include "musclesim/effect/catalogue.h"
 #include "musclesim/version.h"
+#include "noise_sigma.h"
 #include "report_figures.h"
 #include "sentences.h"
 
@@ -36,7 +37,7 @@ std::string heading(const std::string& words) {
   return "<h2>" + words + "</h2>\n";
 }
 
-/// A label that may be broken after every word of it.
+/// A label with a possible line break after each of its words.
 std::string breakable(const std::string& label) {
   std::string text;
   for (const char c : escapedXml(label)) text += c == '_' || c == '@' || c == '.' ? std::string(1, c) + "<wbr>" : std::string(1, c);
@@ -51,7 +52,7 @@ std::string paragraph(const std::string& words) {
   return "<p>" + escapedXml(words) + "</p>\n";
 }
 
-/// What introduces the figure or table behind it.
+/// A paragraph that introduces the following figure or table.
 std::string lead(const std::string& words) {
   return "<p class=lead>" + escapedXml(words) + "</p>\n";
 }
@@ -60,12 +61,12 @@ std::string small(const std::string& words) {
   return "<p class=small>" + escapedXml(words) + "</p>\n";
 }
 
-/// Slides sideways where the page is narrow.
+/// Content that scrolls sideways on narrow pages.
 std::string sliding(const std::string& content) {
   return "<div class=scroll>" + content + "</div>\n";
 }
 
-/// The robot with the place that the signals show in colour, or else the one where the best explanation acts.
+/// The robot with the located component in colour, or else the component of the best explanation.
 std::string drawing(const Diagnosis& d) {
   if (d.drawing.lines.empty()) return "";
   Place place;
@@ -74,12 +75,12 @@ std::string drawing(const Diagnosis& d) {
       std::ranges::find_if(d.effects, [&](const FoundEffect& effect) { return !d.chosen.empty() && effect.label() == d.chosen.front(); });
   if (isLocated(d.where)) {
     place = d.where.front();
-    words += fmt::format(" In colour, where it can be drawn: {}, where the gap arises.", componentWords(place.component));
+    words += fmt::format(" In colour, if it can be drawn: {}, where the gap arises.", componentWords(place.component));
   } else if (best != d.effects.end()) {
     place = {nameOf(effectInfo(best->id).stage), best->component, {}};
     words += fmt::format(
-        " In colour, where it can be drawn: {}, where the best explanation acts; that is told from the search for causes below, not from "
-        "the boxes.",
+        " In colour, if it can be drawn: {}, where the best explanation acts; this follows from the search for causes below, not from the "
+        "boxes.",
         componentWords(place.component));
   }
   return "<div class=robot>" + robotFigure(d.drawing, place) + small(words) + "</div>\n";
@@ -89,19 +90,19 @@ std::string where(const Diagnosis& d) {
   if (d.where.empty()) return "";
   return heading("Where") + "<div class=place><div>" +
          lead("A sample goes from command to pressure, force, body and sensor: the darker a box, the likelier the gap arises there.") +
-         stagesFigure(d.where) + paragraph("How this was told: " + d.where_method + ".") + "</div>" + drawing(d) + "</div>\n";
+         stagesFigure(d.where) + paragraph("Evidence: " + d.where_method + ".") + "</div>" + drawing(d) + "</div>\n";
 }
 
 bool triedAlone(const Diagnosis& d, const FoundEffect& effect) {
   return std::ranges::any_of(d.trials, [&](const Trial& trial) { return trial.effects.size() == 1 && trial.effects[0] == effect.label(); });
 }
 
-/// What a reader should know of a fitted number: that it could not go on, or that no plant is known to be like that.
+/// A remark on a fitted number at its bound or outside the usual range.
 std::string remarkOn(const EffectParameter& parameter, double value) {
   if (!parameter.choices.empty() || value == parameter.neutral) return "";
   if (value == parameter.minimum || value == parameter.maximum) return ", at its bound";
   if (value >= parameter.usual_low && value <= parameter.usual_high) return "";
-  return fmt::format(", usual are {:.4g} to {:.4g}", parameter.usual_low, parameter.usual_high);
+  return fmt::format(", usual range {:.4g} to {:.4g}", parameter.usual_low, parameter.usual_high);
 }
 
 std::string parameterRows(const FoundEffect& effect) {
@@ -117,13 +118,13 @@ std::string parameterRows(const FoundEffect& effect) {
   return rows;
 }
 
-/// Where effects act together, what is likely is a set of them.
+/// The probabilities of sets of effects, if any set has several.
 std::string togetherWords(const Diagnosis& d) {
-  if (std::ranges::none_of(d.explanations, [](const auto& explanation) { return explanation.effects.size() > 1; })) return "";
+  if (std::ranges::none_of(d.explanations, [](const auto& fitted) { return fitted.effects.size() > 1; })) return "";
   std::vector<std::string> words;
-  for (const ExplanationProbability& explanation : d.explanations)
-    if (!explanation.effects.empty())
-      words.push_back(fmt::format("{} {}", fmt::join(explanation.effects, " + "), probabilityWords(explanation.probability)));
+  for (const ExplanationProbability& fitted : d.explanations)
+    if (!fitted.effects.empty())
+      words.push_back(fmt::format("{} {}", fmt::join(fitted.effects, " + "), probabilityWords(fitted.probability)));
   return fmt::format(" By explanation: {}.", fmt::join(words, ", "));
 }
 
@@ -133,82 +134,82 @@ std::string which(const Diagnosis& d) {
   for (const FoundEffect& effect : d.effects)
     rows += fmt::format("<tr><td>{}</td><td class=number>{}</td><td>{}</td><td class=number>{}</td></tr>\n", breakableCode(effect.label()),
                         probabilityWords(effect.probability), parameterRows(effect),
-                        triedAlone(d, effect) ? percentWords(effect.shrink_percent) : "not tried alone");
+                        triedAlone(d, effect) ? percentWords(effect.reduction_percent) : "not tried alone");
   rows += fmt::format("<tr><td>none of these</td><td class=number>{}</td><td></td><td></td></tr>\n", probabilityWords(d.none_of_these));
   std::string text = heading("Which") + sliding(
-                                            "<table><tr><th>effect</th><th class=number>probability</th><th>parameters (95 % interval)</th>"
-                                            "<th class=number>removes alone</th></tr>\n" +
+                                            "<table><tr><th>effect</th><th class=number>probability</th><th>parameters (95 % "
+                                            "interval)</th><th class=number>removes alone</th></tr>\n" +
                                             rows + "</table>");
   if (!d.effects.empty())
     text += small(
-        "Probabilities are of each effect by itself, summed over all explanations that hold it: effects that act together are "
-        "likely together." +
+        "The probability of an effect is the sum over all explanations that contain it, so effects that act together can all be probable." +
         togetherWords(d) +
-        " Intervals hold for our law of the effect; the machine's may be another one: believe the place and the kind before the "
-        "last digit.");
+        " The intervals assume our law of the effect. The machine may follow another law: trust the place and the kind of the effect more "
+        "than the last digit.");
   if (!d.effects.empty() && !d.alternatives.empty())
-    text += paragraph(fmt::format("These recordings cannot tell apart: {}.", fmt::join(d.alternatives, ", ")));
+    text += paragraph(fmt::format("These recordings cannot distinguish: {}.", fmt::join(d.alternatives, ", ")));
   return text;
 }
 
-/// Whether there is a model with effects to set against the one without.
+/// Whether there is a model with effects to compare with the one without.
 bool hasAfter(const Diagnosis& d) {
   return !d.chosen.empty() || !d.attempt.effects.empty();
 }
 
 std::string signalTable(const Diagnosis& d) {
   const auto cell = [](double value) { return fmt::format("<td class=number>{:.3g}</td>", value); };
-  const auto pair = [&](const SignalGap& gap) { return cell(gap.rmse) + fmt::format("<td class=number>{:.2f}</td>", overFloor(gap)); };
+  const auto pair = [&](const SignalGap& gap) { return cell(gap.rmse) + fmt::format("<td class=number>{:.2f}</td>", overNoise(gap)); };
   std::string rows;
   const Gap& gap_after = d.attempt.effects.empty() ? d.after : d.attempt.after;
   for (const auto& [name, before] : d.before.per_signal) {
     const auto found = gap_after.per_signal.find(name);
     const SignalGap& after = hasAfter(d) && found != gap_after.per_signal.end() ? found->second : before;
-    rows += "<tr><td>" + breakableCode(name) + "</td>" + cell(before.noise_floor) + pair(before) + (hasAfter(d) ? pair(after) : "") +
+    rows += "<tr><td>" + breakableCode(name) + "</td>" + cell(before.noise_sigma) + pair(before) + (hasAfter(d) ? pair(after) : "") +
             "<td>" + shapeOfRest(d, name) + "</td></tr>\n";
   }
   const auto heads = [](const std::string& when) {
     return "<th class=number>RMSE" + when + "</th><th class=number>over floor" + when + "</th>";
   };
   return sliding("<table><tr><th>signal</th><th class=number>noise floor</th>" +
-                 (hasAfter(d) ? heads(" before") + heads(" after") : heads("")) + "<th>what is left</th></tr>\n" + rows + "</table>");
+                 (hasAfter(d) ? heads(" before") + heads(" after") : heads("")) + "<th>shape of the residual</th></tr>\n" + rows +
+                 "</table>");
 }
 
-/// What an explanation gains beside what gains nothing in understanding.
-std::string shrinkFigure(const Diagnosis& d) {
+/// Bars of the remaining gap: with the effects found and with both controls.
+std::string reductionFigure(const Diagnosis& d) {
   std::vector<Bar> all;
   auto add = [&](const std::string& label, double left_percent, bool strong) {
     all.push_back({label, left_percent, leftWords(left_percent), strong});
   };
   add("gap before", 100, false);
-  add("after re-tuning the model (nominal refit)", 100 - d.nominal_refit_shrink_percent, false);
-  add("after a sham disturbance", 100 - d.sham_shrink_percent, false);
+  add("after re-tuning the model (nominal refit)", 100 - d.nominal_refit_percent, false);
+  add("after a disturbance without meaning (negative control)", 100 - d.negative_control_percent, false);
   if (d.attempt.effects.empty())
-    add("after adding what was found", d.unexplained_percent, true);
+    add("after adding the effects found", d.unexplained_percent, true);
   else
-    add("after adding what comes nearest", 100 - d.attempt.shrink_percent, true);
-  return barsFigure("What is left of the gap", all, std::max({100.0, 100 - d.nominal_refit_shrink_percent, 100 - d.sham_shrink_percent})) +
-         small(fmt::format("The nominal refit re-tunes numbers of the model without any effect ({}); the sham is a disturbance without "
-                           "physical meaning with as many parameters.",
+    add("after adding the best rejected hypothesis", 100 - d.attempt.reduction_percent, true);
+  return barsFigure("Remaining gap", all, std::max({100.0, 100 - d.nominal_refit_percent, 100 - d.negative_control_percent})) +
+         small(fmt::format("The nominal refit re-tunes parameters of the model without any effect ({}). The negative control is a "
+                           "disturbance of the commands that has no physical meaning and as many parameters.",
                            fmt::join(d.refitted, ", ")));
 }
 
-std::string regimeFigure(const Diagnosis& d) {
+std::string phaseFigure(const Diagnosis& d) {
   std::vector<Bar> all;
   double full = 1;
-  for (const RegimeGap& regime : d.regimes) {
-    full = std::max({full, regime.before, regime.after});
-    all.push_back({"while " + regime.regime + (hasAfter(d) ? ", before" : ""), regime.before, fmt::format("{:.3g}", regime.before), false});
-    if (hasAfter(d) && regime.after > 0) all.push_back({"after", regime.after, fmt::format("{:.3g}", regime.after), true});
+  for (const PhaseGap& phase : d.phases) {
+    full = std::max({full, phase.before, phase.after});
+    all.push_back({"while " + phase.phase + (hasAfter(d) ? ", before" : ""), phase.before, fmt::format("{:.3g}", phase.before), false});
+    if (hasAfter(d) && phase.after > 0) all.push_back({"after", phase.after, fmt::format("{:.3g}", phase.after), true});
   }
   if (all.empty()) return "";
   return lead(
              "Residual in units of the noise floor (1 is as good as it gets), while the commands rise (filling), fall (venting) and rest "
              "(holding):") +
-         barsFigure("Residual by regime", all, full);
+         barsFigure("Residual by actuation phase", all, full);
 }
 
-/// Of what comes nearest; the table of effects may not list it.
+/// The parameters of the best rejected hypothesis, which the table of effects may not list.
 std::string attemptWords(const Attempt& attempt) {
   std::vector<std::string> words;
   for (const ActiveEffect& effect : attempt.active_effects) {
@@ -227,13 +228,13 @@ std::string attemptWords(const Attempt& attempt) {
   return fmt::format("{}", fmt::join(words, " together with "));
 }
 
-/// Signals that stand farthest out of their floors first.
+/// Traces by RMS over sigma, largest first.
 std::vector<const Trace*> tracesByGap(const Diagnosis& d) {
   std::vector<const Trace*> traces;
   for (const Trace& trace : d.traces) traces.push_back(&trace);
   std::ranges::stable_sort(traces, std::greater{}, [&](const Trace* trace) {
     const auto gap = d.before.per_signal.find(trace->signal);
-    return gap == d.before.per_signal.end() ? 0 : overFloor(gap->second);
+    return gap == d.before.per_signal.end() ? 0 : overNoise(gap->second);
   });
   return traces;
 }
@@ -242,33 +243,35 @@ std::string howFar(const Diagnosis& d) {
   const bool searched = d.verdict == Verdict::effects_found || d.verdict == Verdict::unexplained;
   std::string text = heading(hasAfter(d) ? "How far" : "How close the model comes");
   text += paragraph(searched ? "Measured on " + d.held_out + "."
-                             : fmt::format("Looked at: all {} recordings; what follows is of {}.", d.recordings.size(),
+                             : fmt::format("All {} recordings were compared; the figures below are of {}.", d.recordings.size(),
                                            std::filesystem::path(d.recordings.back()).filename().string()));
   if (!d.chosen.empty())
-    text += shrinkFigure(d) + paragraph(fmt::format("Normalised gap (0 is the noise floor) before {:.3g}, after {:.3g}: {} removed. {}",
-                                                    d.before.normalised, d.after.normalised, percentWords(d.shrink_percent),
-                                                    elsewhereSentence({d.shrink_percent, d.shrink_low_percent, d.shrink_high_percent})));
+    text += reductionFigure(d) +
+            paragraph(fmt::format("Normalised gap (0 is the noise floor) before {:.3g}, after {:.3g}: {} removed. {}", d.before.normalised,
+                                  d.after.normalised, percentWords(d.reduction_percent),
+                                  elsewhereSentence({d.reduction_percent, d.reduction_low_percent, d.reduction_high_percent})));
   if (!d.attempt.effects.empty())
-    text += shrinkFigure(d) +
+    text += reductionFigure(d) +
             paragraph(fmt::format(
-                "Nothing was found that deserves belief. What comes nearest: {}. Normalised gap (0 is the noise floor) before {:.3g}, with "
-                "it {:.3g}: {} removed. {} \"After\" below means: with this.",
-                attemptWords(d.attempt), d.before.normalised, d.attempt.after.normalised, percentWords(d.attempt.shrink_percent),
-                elsewhereSentence({d.attempt.shrink_percent, d.attempt.shrink_low_percent, d.attempt.shrink_high_percent})));
-  text += regimeFigure(d) + signalTable(d);
+                "No hypothesis was accepted. Best rejected hypothesis: {}. Normalised gap (0 is the noise floor) before {:.3g}, with this "
+                "hypothesis {:.3g}: {} removed. {} Below, \"after\" means: with this hypothesis.",
+                attemptWords(d.attempt), d.before.normalised, d.attempt.after.normalised, percentWords(d.attempt.reduction_percent),
+                elsewhereSentence({d.attempt.reduction_percent, d.attempt.reduction_low_percent, d.attempt.reduction_high_percent})));
+  text += phaseFigure(d) + signalTable(d);
   if (!searched)
-    text += paragraph(
-        "A signal agrees up to 1.15 times its floor, 1.3 times where the floor was estimated from quiet rows. What is smaller "
-        "stays unseen, and so does what these commands did not bring out: no effect was fitted.");
+    text +=
+        paragraph(fmt::format("A signal agrees up to {} times its noise floor, {} times where the floor was estimated from quiet rows. A "
+                              "smaller difference is not seen, nor is an effect that these commands do not excite: no effect was fitted.",
+                              out_of_noise, out_of_estimated_noise));
   if (!d.traces.empty())
     text +=
-        "<p class=screen>Drag over a plot to zoom all of them in time; double click, or <button type=button id=whole>show "
-        "all</button>, to see everything.</p>\n";
+        "<p class=screen>Drag over a plot to zoom all of them in time; double click, or <button type=button id=whole>show all</button>, to "
+        "see everything.</p>\n";
   for (const Trace* trace : tracesByGap(d)) text += traceFigure(*trace, hasAfter(d));
   return text;
 }
 
-/// The model that everything is measured against, where parts of it were fitted.
+/// The tuned parameters of the model that everything is compared with.
 std::string tuned(const Diagnosis& d) {
   if (d.tuned.empty()) return "";
   std::string rows;
@@ -281,39 +284,41 @@ std::string tuned(const Diagnosis& d) {
   }
   return heading("The model") +
          paragraph(
-             "Nobody measured these numbers of the model. They were fitted first, without any effect and without the held-out data; every "
-             "gap \"before\" on this page is that of the model with these numbers. They were fitted again together with every effect that "
-             "was tried, since either could stand in for the other. nominal.toml holds the last column, for --config.") +
-         sliding("<table><tr><th>number</th><th class=number>given</th><th class=number>fitted (95 % interval)</th>" +
+             "Nobody measured these parameters of the model. They were fitted first, without any effect and without the held-out data; "
+             "every gap \"before\" on this page is the gap of the model with these values. They were fitted again together with every "
+             "effect that was tried, because a parameter and an effect can stand in for each other. nominal.toml holds the last column, "
+             "for --config.") +
+         sliding("<table><tr><th>parameter</th><th class=number>given</th><th class=number>fitted (95 % interval)</th>" +
                  std::string(together ? "<th class=number>fitted with the effects</th>" : "") + "</tr>\n" + rows + "</table>");
 }
 
-/// What each effect alone could remove by the first look: the strongest, and what was chosen wherever it stood.
-std::string looks(const Diagnosis& d) {
+/// Bars of the share of the log misfit that each effect would remove by screening: the strongest effects, and the chosen ones at any rank.
+std::string screenings(const Diagnosis& d) {
   constexpr std::size_t shown = 12;
-  std::vector<std::pair<FirstLook, std::size_t>> places;  // the best variant of each label, with its rank
-  for (const FirstLook& look : d.looks)
-    if (std::ranges::none_of(places, [&](const auto& place) { return place.first.effect == look.effect; }))
-      places.emplace_back(look, places.size() + 1);
+  std::vector<std::pair<Screening, std::size_t>> places;  // the best variant of each label, with its rank
+  for (const Screening& screening : d.screenings)
+    if (std::ranges::none_of(places, [&](const auto& place) { return place.first.effect == screening.effect; }))
+      places.emplace_back(screening, places.size() + 1);
   if (places.empty()) return "";
   std::vector<Bar> all;
   bool some_not_fitted = false;
   for (const auto& place : places) {
-    const FirstLook& look = place.first;
+    const Screening& screening = place.first;
     const std::size_t rank = place.second;
-    const bool chosen = std::ranges::find(d.chosen, look.effect) != d.chosen.end();
+    const bool chosen = std::ranges::find(d.chosen, screening.effect) != d.chosen.end();
     if (rank > shown && !chosen) continue;
     const bool fitted = std::ranges::any_of(
-        d.trials, [&](const Trial& trial) { return std::ranges::find(trial.effects, look.effect) != trial.effects.end(); });
+        d.trials, [&](const Trial& trial) { return std::ranges::find(trial.effects, screening.effect) != trial.effects.end(); });
     some_not_fitted |= !fitted;
-    all.push_back({fmt::format("{}. {}", rank, look.effect), look.removed, fmt::format("{:.0f} %", 100 * look.removed), fitted});
+    all.push_back(
+        {fmt::format("{}. {}", rank, screening.effect), screening.removed, fmt::format("{:.0f} %", 100 * screening.removed), fitted});
   }
-  const std::string which = places.size() <= shown ? "" : fmt::format("; these are the first {} and what was chosen", shown);
-  return lead(fmt::format("{} looked at{}. How much of the logarithm of the gap each would remove if its response "
-                          "were proportional to its strength; a fit, which follows the response, may remove more{}:",
+  const std::string which = places.size() <= shown ? "" : fmt::format("; these are the first {} and the chosen ones", shown);
+  return lead(fmt::format("{} screened{}. Each bar is the share of the logarithm of the gap that the effect would remove if its response "
+                          "were proportional to its strength; a fit follows the true response and may remove more{}:",
                           counted(places.size(), "effect on a component was", "effects on components were"), which,
                           some_not_fitted ? "; the dark ones were fitted" : "")) +
-         barsFigure("First look", all, 1);
+         barsFigure("Screening", all, 1);
 }
 
 /// "leak (all components, muscle 0), creep (muscle 0)" from labels in this order.
@@ -338,26 +343,26 @@ std::string whatElse(const Diagnosis& d) {
   if (!d.next_experiment.commands.empty())
     text += heading("Next experiment") +
             paragraph(fmt::format(
-                "{} {} apart, play the {:.0f} s of commands in next.csv, {}. Give what you record to diagnose as the first "
-                "file, together with the recordings of this page.",
-                d.verdict == Verdict::unexplained ? "Should one of the known effects be the cause after all: to tell" : "To tell",
+                "{} {} apart, play the {:.0f} s of commands in next.csv, {}. Then run diagnose with the new recording as the first file, "
+                "followed by the recordings of this page.",
+                d.verdict == Verdict::unexplained ? "In case one of the known effects is the cause after all: to tell" : "To tell",
                 fmt::join(d.next_experiment.separates, ", "), d.next_experiment.time_s.back(), d.next_experiment.why));
   if (!d.not_excited.empty())
-    text += heading("Not excited") +
-            paragraph("These recordings could not have shown: " + groupedWords(d.not_excited) + ". They may be present.");
+    text += heading("Not excited") + paragraph("These recordings could not have shown the following effects, which may be present: " +
+                                               groupedWords(d.not_excited) + ".");
   if (!d.chosen.empty() || !d.attempt.effects.empty()) {
     const std::string options =
         std::string(d.tuned.empty() ? "" : "--config nominal.toml ") + "--effects " + (d.chosen.empty() ? "attempt.json" : "effects.json");
-    text += heading("Use it") + "<p><code>musclesim replay NEW.csv " + options + "</code> and <code>musclesim " +
-            escapedXml(d.model_options) + " " + options + "</code> run the model with what " +
-            (d.chosen.empty() ? "comes nearest" : "was found") +
-            (d.model_options.find("--set") == std::string::npos ? "" : "; replay takes the robot's numbers from the recording's sidecar") +
-            ".</p>\n";
+    text +=
+        heading("Use it") + "<p><code>musclesim replay NEW.csv " + options + "</code> and <code>musclesim " + escapedXml(d.model_options) +
+        " " + options + "</code> run the model with " + (d.chosen.empty() ? "the best rejected hypothesis" : "the effects found") +
+        (d.model_options.find("--set") == std::string::npos ? "" : "; replay takes the robot's parameters from the recording's sidecar") +
+        ".</p>\n";
   }
   text += heading("How it was computed") +
           paragraph(fmt::format("musclesim {}; robot {}; recordings {}; {} simulations of {:.0f} s in all, {:.0f} s on the clock.",
                                 MUSCLESIM_VERSION, d.robot, fmt::join(d.recordings, ", "), d.simulation_count, d.simulated_s, d.wall_s));
-  text += looks(d);
+  text += screenings(d);
   if (d.notes.empty()) return text;
   text += "<p>Notes:</p><ul>\n";
   for (const std::string& note : d.notes) text += "<li>" + escapedXml(note) + "</li>\n";
@@ -383,11 +388,10 @@ std::string subject(const Diagnosis& d) {
 
 std::string diagnosisReport(const Diagnosis& d) {
   return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
-         "content=\"width=device-width,initial-scale=1\">"
-         "<title>Diagnosis of the sim-to-real gap</title><style>" +
+         "content=\"width=device-width,initial-scale=1\"><title>Diagnosis of the sim-to-real gap</title><style>" +
          std::string(style) + "</style></head><body>\n<h1>Diagnosis of the sim-to-real gap</h1>\n" + small(subject(d)) +
-         (d.partial ? paragraph("Interrupted: this page holds only what was known by then.") : "") + verdict(d) + where(d) + which(d) +
-         howFar(d) + tuned(d) + whatElse(d) + zoomScript() + "</body></html>\n";
+         (d.partial ? paragraph("Interrupted: this page holds only the results up to the interruption.") : "") + verdict(d) + where(d) +
+         which(d) + howFar(d) + tuned(d) + whatElse(d) + zoomScript() + "</body></html>\n";
 }
 
 }  // namespace musclesim

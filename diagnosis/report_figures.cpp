@@ -20,7 +20,7 @@ namespace {
 
 constexpr const char* guilty_color = "#b00020";
 
-/// A drawing with further markup before its end.
+/// A drawing with further markup inserted before its end.
 std::string with(const Svg& svg, const std::string& markup) {
   std::string document = svg.document();
   return document.insert(document.rfind("</svg>"), markup);
@@ -33,7 +33,7 @@ std::string pathData(const std::vector<std::vector<SvgPoint>>& pieces) {
   return data;
 }
 
-/// "pressure_0" of "signal_pressure_0": what is below the sensor's box must be no wider than it.
+/// "pressure_0" of "signal_pressure_0": the label below the sensor's box must not be wider than the box.
 std::string withoutPrefix(const std::string& component) {
   const std::string prefix = "signal_";
   return component.starts_with(prefix) ? component.substr(prefix.size()) : component;
@@ -86,7 +86,7 @@ std::string stagesFigure(const std::vector<Place>& where) {
 
 namespace {
 
-/// What of the drawing a place means: "signal_length_0" the muscle, "signal_angle_elbow" the joint, "muscle_0+muscle_1" both.
+/// The drawn components that a place stands for: "signal_length_0" the muscle, "signal_angle_elbow" the joint, "muscle_0+muscle_1" both.
 std::vector<std::string> drawnComponents(const RobotDrawing& drawing, const Place& place) {
   std::string name = place.component;
   for (const char* quantity : {"length_", "force_", "pressure_"})
@@ -190,7 +190,7 @@ std::string traceFigure(const Trace& trace, bool has_after) {
     curves += fmt::format("<path d=\"{}\" {} vector-effect=\"non-scaling-stroke\"/>",
                           pathData(curvePieces(trace.time_s, kind.y, time_axis, value_axis, Between::straight)), stroke);
   }
-  // The curves in a window of their own: the script narrows what it shows.
+  // The curves have their own viewport, which the script narrows.
   markup += fmt::format(
       "<svg class=\"view\" x=\"{0}\" y=\"{1}\" width=\"{2}\" height=\"{3}\" viewBox=\"{0} {1} {2} {3}\" preserveAspectRatio=\"none\" "
       "data-start=\"{4}\" data-end=\"{5}\">{6}</svg>",

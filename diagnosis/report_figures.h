@@ -1,4 +1,4 @@
-/// The figures of report.html. All of them read in black and white as well: what matters is darker, thicker or labelled.
+/// The figures of report.html. All are readable in black and white: important parts are darker, thicker or labelled.
 #pragma once
 
 #include <string>
@@ -8,8 +8,7 @@
 
 namespace musclesim {
 
-/// Bars with a label on the left, or above where the page is narrow, and a number on the right; `full` is the value of a bar over the whole
-/// width.
+/// Bars with a label on the left (above on narrow pages) and a number on the right; `full` is the value of a bar of full width.
 struct Bar {
   std::string label;
   double value;
@@ -18,16 +17,16 @@ struct Bar {
 };
 std::string barsFigure(const std::string& title, const std::vector<Bar>& bars, double full);
 
-/// The way of a sample through the five stages, each as dark as its share of the gap.
+/// The five stages that a sample passes, each as dark as its share of the gap.
 std::string stagesFigure(const std::vector<Place>& where);
 
 /// The robot from the front with the component of the first place marked.
 std::string robotFigure(const RobotDrawing& drawing, const Place& place);
 
-/// Measured, before and, if there is one, after over time. The page's script zooms all of them together.
+/// Measured values, simulation before and, if there is one, after, over time. The page's script zooms all traces together.
 std::string traceFigure(const Trace& trace, bool has_after);
 
-/// JavaScript that zooms every trace of the page: drag to select a stretch of time, double click to see all.
+/// JavaScript that zooms all traces of the page: drag to select a time range, double click to see everything.
 std::string zoomScript();
 
 }  // namespace musclesim

@@ -13,7 +13,7 @@ namespace musclesim {
 namespace {
 
 constexpr Eigen::Index fewest_rows = 64;
-constexpr double enough = 0.5;  ///< share of the power that names the shape
+constexpr double enough = 0.5;  ///< least share of the power for a shape to be named
 
 bool evenlySpaced(const Eigen::VectorXd& time_s) {
   const Eigen::Index last = time_s.size() - 1;
@@ -23,7 +23,7 @@ bool evenlySpaced(const Eigen::VectorXd& time_s) {
   return step_s > 0;
 }
 
-/// Power at the frequencies 1 / T, 2 / T, ... of evenly spaced rows; those from `first_hz` on, 0 below. They sum up to that of the rows.
+/// Power of evenly spaced rows at the frequencies 1 / T, 2 / T, ... from `first_hz` on, 0 below it. All powers add up to that of the rows.
 std::vector<double> spectrum(const Eigen::VectorXd& residual, double step_s, double first_hz) {
   const Eigen::Index count = residual.size();
   const double duration_s = static_cast<double>(count) * step_s;
@@ -40,7 +40,7 @@ std::vector<double> spectrum(const Eigen::VectorXd& residual, double step_s, dou
   return power;
 }
 
-ResidualLook rippleIn(const Eigen::VectorXd& residual, double step_s, double all_power) {
+ResidualDescription rippleIn(const Eigen::VectorXd& residual, double step_s, double all_power) {
   constexpr double lowest_hz = 2, band = 0.1;
   const std::vector<double> power = spectrum(residual, step_s, lowest_hz);
   const auto peak = std::ranges::max_element(power);
@@ -58,7 +58,8 @@ ResidualLook rippleIn(const Eigen::VectorXd& residual, double step_s, double all
 
 }  // namespace
 
-ResidualLook lookOf(const std::vector<double>& time_s, const std::vector<double>& measured, const std::vector<double>& simulated) {
+ResidualDescription describeResidual(const std::vector<double>& time_s, const std::vector<double>& measured,
+                                     const std::vector<double>& simulated) {
   std::vector<double> times, values;
   for (std::size_t i = 0; i < std::min({time_s.size(), measured.size(), simulated.size()}); ++i)
     if (const double r = measured[i] - simulated[i]; std::isfinite(r)) {
@@ -78,16 +79,16 @@ ResidualLook lookOf(const std::vector<double>& time_s, const std::vector<double>
   return rippleIn(centred, (t[count - 1] - t[0]) / static_cast<double>(count - 1), all_power);
 }
 
-std::string wordsFor(const ResidualLook& look) {
-  switch (look.shape) {
+std::string wordsFor(const ResidualDescription& description) {
+  switch (description.shape) {
     case ResidualShape::none:
       return "";
     case ResidualShape::offset:
-      return fmt::format("mostly an offset of {:.2g}", look.value);
+      return fmt::format("mostly an offset of {:.2g}", description.value);
     case ResidualShape::drift:
-      return fmt::format("mostly a drift of {:.2g} per second", look.value);
+      return fmt::format("mostly a drift of {:.2g} per second", description.value);
     case ResidualShape::ripple:
-      return fmt::format("mostly a ripple of {:.2g} Hz", look.value);
+      return fmt::format("mostly a ripple of {:.2g} Hz", description.value);
   }
   return "";
 }

@@ -14,10 +14,10 @@ namespace musclesim {
 namespace {
 
 constexpr double duration_s = 12, step_s = 0.01;
-constexpr double beside = 0.5;  ///< of a command's range, by which levels lie apart
+constexpr double beside = 0.5;  ///< distance between levels, in units of a command's range
 
-/// -1..1 for each muscle at a time, of the range that its command has in the recordings.
-struct Excitation {
+/// A shape from -1 to 1 over time for each muscle, in units of half the range that its command has in the recordings.
+struct ScheduleShape {
   std::string name, words;
   std::function<double(double time_s, int muscle)> shape;
 };
@@ -31,9 +31,9 @@ double sign(int muscle) {
   return muscle % 2 == 0 ? 1 : -1;
 }
 
-/// Muscles with even and odd numbers move against each other unless the schedule is a co-contraction.
-const std::vector<Excitation>& excitations() {
-  static const std::vector<Excitation> all = {
+/// Muscles with even and odd numbers move in opposition unless the schedule is a co-contraction.
+const std::vector<ScheduleShape>& scheduleShapes() {
+  static const std::vector<ScheduleShape> all = {
       {"slow reversals", "triangles of six seconds", [](double t, int m) { return sign(m) * triangle(t, 6); }},
       {"three speeds", "the same path in 6, 1.5 and 0.5 s",
        [](double t, int m) {
@@ -52,9 +52,9 @@ const std::vector<Excitation>& excitations() {
   return all;
 }
 
-const Excitation& excitationOf(const ScheduleChoice& choice) {
-  const auto found = std::ranges::find(excitations(), choice.name, &Excitation::name);
-  if (found == excitations().end()) throw BadParameter("schedule", choice.name, "be one that a diagnosis proposed");
+const ScheduleShape& shapeOf(const ScheduleChoice& choice) {
+  const auto found = std::ranges::find(scheduleShapes(), choice.name, &ScheduleShape::name);
+  if (found == scheduleShapes().end()) throw BadParameter("schedule", choice.name, "be one that a diagnosis proposed");
   return *found;
 }
 
@@ -62,7 +62,7 @@ struct CommandRange {
   double low = 1, high = 0;
 };
 
-/// The range of a muscle's command over all recordings: where the plant is known to go.
+/// The range of a muscle's command over all recordings, where the plant is known to operate.
 CommandRange rangeOf(const std::vector<Recording>& recordings, int muscle) {
   CommandRange range;
   for (const Recording& recording : recordings)
@@ -78,17 +78,17 @@ CommandRange rangeOf(const std::vector<Recording>& recordings, int muscle) {
 std::vector<ScheduleChoice> scheduleBank() {
   std::vector<ScheduleChoice> bank;
   for (const double level : {0.0, -beside, beside})
-    for (const Excitation& excitation : excitations()) bank.push_back({excitation.name, 1, level});
+    for (const ScheduleShape& shape : scheduleShapes()) bank.push_back({shape.name, 1, level});
   return bank;
 }
 
 std::string scheduleWords(const ScheduleChoice& choice) {
   const char* level = choice.level < 0 ? ", at lower pressures than in the recordings" : choice.level > 0 ? ", at higher pressures" : "";
-  return fmt::format("{} ({}){}", choice.name, excitationOf(choice).words, level);
+  return fmt::format("{} ({}){}", choice.name, shapeOf(choice).words, level);
 }
 
 Recording scheduled(const ScheduleChoice& choice, const std::vector<Recording>& recordings) {
-  const Excitation& excitation = excitationOf(choice);
+  const ScheduleShape& shape = shapeOf(choice);
   Recording recording;
   recording.info = recordings.front().info;
   recording.info.trial = choice.name;
@@ -98,7 +98,7 @@ Recording scheduled(const ScheduleChoice& choice, const std::vector<Recording>& 
     const double size = range.high - range.low, middle = (range.low + range.high) / 2 + choice.level * size;
     Signal signal{fmt::format("command_{}", muscle), {}};
     for (const double t : recording.time_s)
-      signal.values.push_back(std::clamp(middle + choice.amplitude * size / 2 * excitation.shape(t, muscle), 0.0, 1.0));
+      signal.values.push_back(std::clamp(middle + choice.amplitude * size / 2 * shape.shape(t, muscle), 0.0, 1.0));
     recording.signals.push_back(std::move(signal));
   }
   return recording;

@@ -8,17 +8,17 @@
 #include <cmath>
 
 #include "musclesim/effect/catalogue.h"
+#include "noise_sigma.h"
 #include "residual_shape.h"
 
 namespace musclesim {
 
 namespace {
 
-constexpr double stands_out = 2;      ///< floors
-constexpr double no_gap = 1.15;       ///< floors up to which there is none
-constexpr double nearly_all = 99.95;  ///< percent; what is above must not read as 100.0
+constexpr double stands_out = 2;      ///< RMS over sigma
+constexpr double nearly_all = 99.95;  ///< percent; larger values must not read as 100.0
 
-/// "a = 1.0 (0.9 to 1.1), b = 2 (1 to 3)", without what the data left out.
+/// "a = 1.0 (0.9 to 1.1), b = 2 (1 to 3)", without parameters that the data left out.
 std::string parameterWords(const FoundEffect& effect) {
   std::vector<std::string> words;
   for (const auto& [name, word] : effect.choices) words.push_back(fmt::format("{} = {}", name, word));
@@ -71,11 +71,12 @@ std::string probabilityWords(double probability) {
   return probability < 1 - nearly_certain ? "under 1 %" : fmt::format("{:.0f} %", 100 * probability);
 }
 
-std::string elsewhereSentence(const Estimate& shrink_percent) {
-  if (shrink_percent.low > nearly_all) return "On another recording of this plant as much is expected.";
-  // An interval that reaches below 0 tells of the recordings, not of the effect.
-  if (shrink_percent.low < 0) return "The recordings are too few or differ too much to say how much it would be on another one.";
-  return fmt::format("On another recording of this plant {:.1f} to {:.1f} % are expected (95 %).", shrink_percent.low, shrink_percent.high);
+std::string elsewhereSentence(const Estimate& reduction_percent) {
+  if (reduction_percent.low > nearly_all) return "On another recording of this plant the same is expected.";
+  // An interval that extends below 0 says something about the recordings, not about the effect.
+  if (reduction_percent.low < 0) return "The recordings are too few or too different to predict how much is removed on another one.";
+  return fmt::format("On another recording of this plant, {:.1f} to {:.1f} % is expected to be removed (95 % interval).",
+                     reduction_percent.low, reduction_percent.high);
 }
 
 std::string componentWords(const std::string& component) {
@@ -85,16 +86,16 @@ std::string componentWords(const std::string& component) {
   return words;
 }
 
-double overFloor(const SignalGap& gap) {
-  return gap.noise_floor > 0 ? gap.rmse / gap.noise_floor : 0;
+double overNoise(const SignalGap& gap) {
+  return gap.noise_sigma > 0 ? gap.rmse / gap.noise_sigma : 0;
 }
 
 std::string shapeOfRest(const Diagnosis& d, const std::string& signal) {
   const Gap& rest = d.attempt.effects.empty() ? d.after : d.attempt.after;
   const auto gap = rest.per_signal.find(signal);
   const auto trace = std::ranges::find(d.traces, signal, &Trace::signal);
-  if (gap == rest.per_signal.end() || trace == d.traces.end() || overFloor(gap->second) < stands_out) return "";
-  return wordsFor(lookOf(trace->time_s, trace->measured, trace->after.empty() ? trace->before : trace->after));
+  if (gap == rest.per_signal.end() || trace == d.traces.end() || overNoise(gap->second) < stands_out) return "";
+  return wordsFor(describeResidual(trace->time_s, trace->measured, trace->after.empty() ? trace->before : trace->after));
 }
 
 bool isTold(const std::vector<Place>& where) {
@@ -104,7 +105,7 @@ bool isTold(const std::vector<Place>& where) {
 
 namespace {
 
-/// The stages but the first that the signals do not speak against.
+/// The stages after the first that the signals do not contradict.
 std::vector<std::string> othersPossible(const std::vector<Place>& where) {
   std::vector<std::string> others;
   for (auto place = where.begin() + 1; place != where.end(); ++place)
@@ -121,7 +122,7 @@ bool isBeforeTheForce(const std::string& stage) {
 bool isLocated(const std::vector<Place>& where) {
   if (!isTold(where) || where.front().is_ruled_out) return false;
   const std::vector<std::string> others = othersPossible(where);
-  // A pressure is commanded: what is before the force is one place.
+  // A pressure follows its command, so the stages before the force count as one place.
   return isBeforeTheForce(where.front().stage) ? std::ranges::all_of(others, isBeforeTheForce) : others.empty();
 }
 
@@ -132,46 +133,48 @@ bool mayBeAt(const std::vector<Place>& where, const std::string& stage) {
 
 namespace {
 
-/// ", mostly while venting" where the data held back, of which the page shows bars, say so as well.
-std::string regimeWords(const Diagnosis& d) {
-  const std::string& regime = d.where.front().regime;
-  const auto largest = std::ranges::max_element(d.regimes, {}, &RegimeGap::before);
-  if (regime.empty() || (largest != d.regimes.end() && largest->regime != regime)) return "";
-  return ", mostly while " + regime;
+/// ", mostly while venting" if the held-out data, whose bars the page shows, agree.
+std::string phaseWords(const Diagnosis& d) {
+  const std::string& phase = d.where.front().phase;
+  const auto largest = std::ranges::max_element(d.phases, {}, &PhaseGap::before);
+  if (phase.empty() || (largest != d.phases.end() && largest->phase != phase)) return "";
+  return ", mostly while " + phase;
 }
 
 }  // namespace
 
 std::string whereSentence(const Diagnosis& d) {
   const Place& place = d.where.front();
-  const std::string regime = regimeWords(d), component = componentWords(place.component);
+  const std::string phase = phaseWords(d), component = componentWords(place.component);
   const double percent = 100 * place.share;
   if (!isTold(d.where) && d.where.size() > 1) {
     const Place& next = d.where[1];
-    return fmt::format("These signals do not tell at which stage the gap arises: {} ({}, {:.0f} %) or {} ({}, {:.0f} %) come nearest{}",
-                       place.stage, component, percent, next.stage, componentWords(next.component), 100 * next.share, regime);
+    return fmt::format(
+        "These signals do not show at which stage the gap arises; the most likely are {} ({}, {:.0f} %) and {} ({}, {:.0f} %){}",
+        place.stage, component, percent, next.stage, componentWords(next.component), 100 * next.share, phase);
   }
   const std::vector<std::string> others = othersPossible(d.where);
   if (isLocated(d.where) && others.empty())
-    return fmt::format("The gap arises in the {} stage ({}, {} likely){}", place.stage, component, probabilityWords(place.share), regime);
+    return fmt::format("The gap arises in the {} stage ({}, {} likely){}", place.stage, component, probabilityWords(place.share), phase);
   if (isLocated(d.where))
-    return fmt::format("The gap arises before the force, in command or pressure ({}; by its shape rather {}, {} likely){}", component,
-                       place.stage, probabilityWords(place.share), regime);
+    return fmt::format("The gap arises before the force stage, in command or pressure ({}; its shape favours {}, {} likely){}", component,
+                       place.stage, probabilityWords(place.share), phase);
   constexpr std::size_t all_others = 4;
-  const std::string against = place.is_ruled_out ? ", though what the signals say of each other speaks against it" : "";
-  return fmt::format("By its shape the gap is of the {} stage ({}, {:.0f} %){}{}; these signals do not rule out {}", place.stage, component,
-                     percent, regime, against, others.size() == all_others ? "any other" : fmt::format("{}", fmt::join(others, " or ")));
+  const std::string against = place.is_ruled_out ? ", although the signals contradict it" : "";
+  return fmt::format("The shape of the gap favours the {} stage ({}, {:.0f} %){}{}; the signals do not rule out {}", place.stage, component,
+                     percent, phase, against,
+                     others.size() == all_others ? "any other stage" : fmt::format("{}", fmt::join(others, " or ")));
 }
 
 namespace {
 
-/// " (94.0 to 97.5)", where the recordings tell how much is to be expected elsewhere.
+/// " (94.0 to 97.5)" if the recordings allow a prediction for another one.
 std::string intervalWords(const Diagnosis& d) {
-  if (d.shrink_low_percent > nearly_all || d.shrink_low_percent < 0) return "";
-  return fmt::format(" ({:.1f} to {:.1f})", d.shrink_low_percent, d.shrink_high_percent);
+  if (d.reduction_low_percent > nearly_all || d.reduction_low_percent < 0) return "";
+  return fmt::format(" ({:.1f} to {:.1f})", d.reduction_low_percent, d.reduction_high_percent);
 }
 
-constexpr double likely = 0.5;  ///< probability from which a candidate must have failed on data held back
+constexpr double likely = 0.5;  ///< a candidate above this probability must have failed on the held-out data
 
 /// "valve lag on muscle 1".
 std::string labelWords(const std::string& label) {
@@ -202,14 +205,15 @@ std::string chosenWords(const Diagnosis& d) {
   return fmt::format("{}", fmt::join(words, " together with "));
 }
 
-/// What no explanation should hide: a rest that stands far out of the noise. RMS / floor = sqrt(1 + normalised gap).
+/// A sentence about a residual that stands far out of the noise, which no explanation should hide. RMS / sigma = sqrt(1 + normalised gap).
 std::string remainder(const Gap& after) {
-  const double over_floor = std::sqrt(1 + after.normalised);
-  if (over_floor < stands_out) return "";
-  const auto most = std::ranges::max_element(after.per_signal, {}, [](const auto& entry) { return overFloor(entry.second); });
+  const double over_noise = std::sqrt(1 + after.normalised);
+  if (over_noise < stands_out) return "";
+  const auto most = std::ranges::max_element(after.per_signal, {}, [](const auto& entry) { return overNoise(entry.second); });
   const std::string where =
-      most == after.per_signal.end() ? "" : fmt::format(" ({:.1f} times in {})", overFloor(most->second), most->first);
-  return fmt::format("What is left is still {:.1f} times the noise{}: something else acts too, or acts by another law.", over_floor, where);
+      most == after.per_signal.end() ? "" : fmt::format(" ({:.1f} times in {})", overNoise(most->second), most->first);
+  return fmt::format("The residual is still {:.1f} times the noise{}: another effect acts as well, or this one follows another law.",
+                     over_noise, where);
 }
 
 /// "valve lag on muscle 1 together with payload on hand" of "valve_lag@muscle_1 + payload@hand".
@@ -223,7 +227,7 @@ std::string explanationWords(const std::string& labels) {
   return words;
 }
 
-/// What the next experiment tells from what, and how surely.
+/// What the next experiment distinguishes, and how clearly.
 std::string separatedWords(const Diagnosis& d) {
   const std::vector<std::string>& separates = d.next_experiment.separates;
   std::string words = "them apart";
@@ -233,12 +237,12 @@ std::string separatedWords(const Diagnosis& d) {
     words = fmt::format("{} from {}", explanationWords(separates.front()), fmt::join(others, " and "));
   }
   if (d.next_experiment.difference < 1)
-    words += fmt::format(", though even there {} differ by only {:.1f} times the noise",
-                         separates.size() > 2 ? "the two most alike" : "they", d.next_experiment.difference);
+    words += fmt::format(", although even then {} differ by only {:.1f} times the noise",
+                         separates.size() > 2 ? "the two most similar" : "they", d.next_experiment.difference);
   return words;
 }
 
-/// What else would do, and how to find out.
+/// The alternatives, and how to distinguish them.
 std::string otherwise(const Diagnosis& d) {
   if (d.alternatives.size() < 2) return "";
   std::vector<std::string> others;
@@ -248,27 +252,26 @@ std::string otherwise(const Diagnosis& d) {
   const bool pairs = std::ranges::any_of(d.alternatives, [](const std::string& labels) { return labels.find(" + ") != std::string::npos; });
   std::string experiment;
   if (!d.next_experiment.commands.empty()) experiment = "; record the schedule in next.csv to tell " + separatedWords(d);
-  return fmt::format("{} would explain it as well{}{}.", fmt::join(others, pairs ? "; or " : " or "), place, experiment);
+  return fmt::format("{} would explain the gap as well{}{}.", fmt::join(others, pairs ? "; or " : " or "), place, experiment);
 }
 
-/// Where a hair's difference in a cause changes the motion as much as the cause does, a free rollout hardly tells causes.
+/// A warning if the motion is so sensitive that the time step changes it by a noticeable share of the gap.
 std::string unsteadyWords(const Unsteady& unsteady) {
   constexpr double worth_saying = 0.1;
   if (unsteady.share_of_gap < worth_saying) return "";
   return fmt::format(
-      "Under these commands the model does not repeat itself: internal steps twice as long move {} by {:.0f} times the noise, {:.0f} % of "
-      "the "
-      "gap, as after impacts on stops. Such motions hardly tell causes apart; record gentler ones.",
-      unsteady.signal, unsteady.in_floors, 100 * unsteady.share_of_gap);
+      "Under these commands the simulated motion depends on the step size: internal steps twice as long move {} by {:.0f} times the noise, "
+      "{:.0f} % of the gap, as happens after impacts on stops. Such motions hardly distinguish causes; record gentler ones.",
+      unsteady.signal, unsteady.in_sigmas, 100 * unsteady.share_of_gap);
 }
 
-/// Where that the catalogue holds the cause is not taken for granted.
+/// The probability that the cause is not among the candidates, if it is worth saying.
 std::string noneWords(const Diagnosis& d) {
   constexpr double worth_saying = 0.1;
   if (d.none_of_these < worth_saying) return "";
   if (d.candidates.empty())
-    return fmt::format("That none of the known effects is the cause is {} likely.", probabilityWords(d.none_of_these));
-  return fmt::format("That {} is {} likely; other effects were not asked about.",
+    return fmt::format("The probability that none of the known effects is the cause is {}.", probabilityWords(d.none_of_these));
+  return fmt::format("The probability that {} is {}; other effects were not considered.",
                      d.candidates.size() == 1 ? d.candidates.front() + " is not the cause"
                                               : fmt::format("none of {} is the cause", fmt::join(d.candidates, ", ")),
                      probabilityWords(d.none_of_these));
@@ -279,16 +282,16 @@ std::string mostProbable(const Diagnosis& d) {
   return fmt::format(": the best candidate, {}, has a probability of {}", labelWords(first.label()), probabilityWords(first.probability));
 }
 
-/// The likeliest effect explains what it was fitted to and nothing else.
+/// The most probable effect explains the fitted recordings but not the held-out data.
 std::string notConfirmed(const Diagnosis& d) {
   const FoundEffect& first = d.effects.front();
   std::string text = fmt::format(
-      ": the best candidate, {}, fits the data that it was fitted to ({} likely without that), but on data held back it removes {} of the "
-      "gap",
+      ": the best candidate, {}, has a probability of {} on the recordings that it was fitted to, but removes {} of the gap on the "
+      "held-out data",
       labelWords(first.label()), probabilityWords(first.probability),
-      first.shrink_percent > 0 ? percentWords(first.shrink_percent) : "nothing");
-  if (d.nominal_refit_shrink_percent > 0)
-    text += fmt::format("; re-tuning the model without any effect removes {}", percentWords(d.nominal_refit_shrink_percent));
+      first.reduction_percent > 0 ? percentWords(first.reduction_percent) : "nothing");
+  if (d.nominal_refit_percent > 0)
+    text += fmt::format("; re-tuning the model without any effect removes {}", percentWords(d.nominal_refit_percent));
   return text;
 }
 
@@ -296,36 +299,36 @@ std::string notConfirmed(const Diagnosis& d) {
 
 namespace {
 
-/// What somebody who looks for a cause that is not in the catalogue should see: the largest gap that has a simple shape.
+/// The shape of the signal with the largest gap that has a simple one, for a reader who looks for a cause outside the catalogue.
 std::string shape(const Diagnosis& d) {
   std::string words;
   double most = 0;
   for (const auto& [signal, gap] : d.before.per_signal)
-    if (const std::string shape = shapeOfRest(d, signal); !shape.empty() && overFloor(gap) > most) {
-      most = overFloor(gap);
-      words = fmt::format("In {} it is {}.", signal, shape);
+    if (const std::string shape = shapeOfRest(d, signal); !shape.empty() && overNoise(gap) > most) {
+      most = overNoise(gap);
+      words = fmt::format("In {} the residual is {}.", signal, shape);
     }
   return words;
 }
 
 std::vector<std::string> unexplainedSentences(const Diagnosis& d) {
   if (d.partial) return {"There is a gap; the search for its cause was interrupted."};
-  const bool is_small = std::ranges::all_of(d.before.per_signal, [](const auto& entry) { return overFloor(entry.second) < no_gap; });
+  const bool is_small = std::ranges::all_of(d.before.per_signal, [](const auto& entry) { return overNoise(entry.second) < out_of_noise; });
   if (is_small && !d.before.per_signal.empty()) {
     std::vector<std::string> sentences = {
-        "I cannot tell: there is a gap in the recordings that were fitted, but none in the data held back, so no cause can be confirmed "
-        "there; put a recording that shows the gap last."};
-    if (!d.effects.empty()) sentences.push_back("In what was fitted" + mostProbable(d).substr(1) + ".");
+        "I cannot tell: the fitted recordings show a gap, but the held-out data does not, so no cause can be confirmed; put a recording "
+        "that shows the gap last."};
+    if (!d.effects.empty()) sentences.push_back("On the fitted recordings" + mostProbable(d).substr(1) + ".");
     return sentences;
   }
   std::string text = "There is a gap that I cannot explain";
   if (!d.effects.empty()) text += d.effects.front().probability > likely ? notConfirmed(d) : mostProbable(d);
   std::vector<std::string> sentences = {text + ".", noneWords(d), d.where.empty() ? "" : whereSentence(d) + ".", shape(d)};
   if (d.attempt.effects.empty()) return sentences;
-  sentences.push_back(fmt::format(
-      "What comes nearest, {}, removes {} of the gap on data that neither fitting nor choosing had seen; attempt.json holds it, to build "
-      "on, not to believe.",
-      listWords(d.attempt.effects), percentWords(d.attempt.shrink_percent)));
+  sentences.push_back(
+      fmt::format("The best rejected hypothesis, {}, removes {} of the gap on held-out data; attempt.json holds it as a starting point, "
+                  "not as a finding.",
+                  listWords(d.attempt.effects), percentWords(d.attempt.reduction_percent)));
   sentences.push_back(remainder(d.attempt.after));
   return sentences;
 }
@@ -333,10 +336,9 @@ std::vector<std::string> unexplainedSentences(const Diagnosis& d) {
 std::vector<std::string> foundSentences(const Diagnosis& d) {
   const auto best = std::ranges::find(d.explanations, d.chosen, &ExplanationProbability::effects);
   return {d.where.empty() ? "" : whereSentence(d) + ".",
-          fmt::format("The best explanation ({} likely) is {}; adding {} removes {}{} of the gap on data that neither fitting nor choosing "
-                      "had seen.",
+          fmt::format("The best explanation ({} likely) is {}; adding {} to the model removes {}{} of the gap on held-out data.",
                       probabilityWords(best == d.explanations.end() ? 0 : best->probability), chosenWords(d),
-                      d.chosen.size() > 1 ? "them" : "it", percentWords(d.shrink_percent), intervalWords(d)),
+                      d.chosen.size() > 1 ? "them" : "it", percentWords(d.reduction_percent), intervalWords(d)),
           remainder(d.after), noneWords(d), otherwise(d)};
 }
 
@@ -348,7 +350,7 @@ std::vector<std::string> verdictSentences(const Diagnosis& d) {
     case Verdict::no_gap:
       return {"No gap: the recordings agree with the model up to the noise."};
     case Verdict::not_excited:
-      return {"I cannot tell: the commands rest, so the recordings do not show what the plant does."};
+      return {"I cannot tell: the commands do not change, so the recordings do not show how the plant responds."};
     case Verdict::unexplained:
       sentences = unexplainedSentences(d);
       break;

@@ -1,4 +1,4 @@
-/// What a diagnosis says, in sentences; shared by terminal and report.
+/// The sentences of a diagnosis, shared by terminal and report.
 #pragma once
 
 #include <string>
@@ -8,13 +8,13 @@
 
 namespace musclesim {
 
-/// The answer in a few sentences: where, which and how far; what is left; what else would do.
+/// The answer in a few sentences: stage, effects, gap reduction, remaining gap and alternatives.
 std::vector<std::string> verdictSentences(const Diagnosis& diagnosis);
-/// All of them in a row.
+/// All of them, joined.
 std::string verdictSentence(const Diagnosis& diagnosis);
-/// The first place is likelier than all others together.
+/// Whether the first place is more probable than all others together.
 bool isTold(const std::vector<Place>& where);
-/// And the signals rule out that it is anywhere else; command and pressure count as one place.
+/// Whether, besides, the signals rule out all other places; command and pressure count as one place.
 bool isLocated(const std::vector<Place>& where);
 /// Whether the gap is located and this stage is, or may be, the place.
 bool mayBeAt(const std::vector<Place>& where, const std::string& stage);
@@ -24,22 +24,23 @@ std::string componentWords(const std::string& component);
 /// "valve_lag@muscle_1: vent_time_constant_s = 0.081 (0.077 to 0.085)".
 std::string effectSentence(const FoundEffect& effect);
 
-/// "0.081 (0.077 to 0.085)": as many decimals as the interval bears. "8" where there is none, and words where nothing determines it.
+/// "0.081 (0.077 to 0.085)": as many decimals as the interval justifies. "8" without an interval; a remark if the recordings do not
+/// determine the value.
 std::string estimateWords(const Estimate& estimate);
-/// Whether a parameter was not fitted since nothing in the data depends on it.
+/// Whether a parameter was not fitted because nothing in the data depends on it.
 bool isLeftOut(const Estimate& estimate);
-/// "mostly a ripple of 4.6 Hz": what a signal's residual looks like on the data held back, where it stands out; empty otherwise.
+/// "mostly a ripple of 4.6 Hz": the shape of a signal's residual on the held-out data, if it stands out; empty otherwise.
 std::string shapeOfRest(const Diagnosis& diagnosis, const std::string& signal);
-/// RMS residual over the noise floor; 0 without a floor.
-double overFloor(const SignalGap& gap);
+/// RMS residual over sigma; 0 if sigma is 0.
+double overNoise(const SignalGap& gap);
 
 /// "1 number", "2 numbers".
 std::string counted(std::size_t count, const std::string& one, const std::string& several = "");
-/// "96.2 %"; "more than 99.9 %" rather than 100 % of what is nearly all.
+/// "96.2 %"; "more than 99.9 %" instead of a rounded 100 %.
 std::string percentWords(double percent);
-/// "On another recording of this plant 94.0 to 97.5 % are expected (95 %)."
-std::string elsewhereSentence(const Estimate& shrink_percent);
-/// "3.8 %"; "less than 0.1 %" of what is nearly nothing.
+/// "On another recording of this plant, 94.0 to 97.5 % is expected to be removed (95 % interval)."
+std::string elsewhereSentence(const Estimate& reduction_percent);
+/// "3.8 %"; "less than 0.1 %" instead of a rounded 0.
 std::string leftWords(double percent);
 /// "93 %"; "over 99 %": nothing is certain.
 std::string probabilityWords(double probability);

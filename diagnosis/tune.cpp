@@ -21,7 +21,7 @@ Tuning tune(const std::vector<Recording>& recordings, DiagnosisOptions& options)
   const Plant plant(recordings, options);
   const Comparison fitted(plant, plant.split().fit);
   std::mutex mutex;  // derivatives are simulated by several threads
-  DiagnosisProgress progress{"fitting the model's own numbers", 0, round_count * static_cast<long>(plant.tunedCount() + 2)};
+  DiagnosisProgress progress{"fitting parameters of the model", 0, round_count * static_cast<long>(plant.tunedCount() + 2)};
   FitProblem problem;
   problem.start = Eigen::VectorXd::Zero(plant.tunedCount());
   problem.clamped = Plant::clampedTuning;
@@ -58,7 +58,8 @@ std::vector<TunedParameter> tunedParameters(const Plant& plant, const Eigen::Vec
 }
 
 std::string tunedToml(const std::vector<TunedParameter>& parameters) {
-  std::string text = "# Numbers of the model that musclesim diagnose --tune fitted to recordings, together with what effects.json holds.\n";
+  std::string text =
+      "# Parameters of the model that musclesim diagnose --tune fitted to recordings, together with the effects in effects.json.\n";
   for (const TunedParameter& parameter : parameters)
     text += fmt::format("{} = {}  # {}; {:.4g} .. {:.4g}, from {:.4g}\n", parameter.name, parameter.with_effects.value, parameter.unit,
                         parameter.with_effects.low, parameter.with_effects.high, parameter.start);

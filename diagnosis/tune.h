@@ -1,4 +1,4 @@
-/// Numbers of the model itself that nobody measured, fitted before the gap is asked about.
+/// Fits parameters of the model that nobody measured, before the gap is diagnosed.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,11 +15,11 @@ struct Tuning {
   double simulated_s = 0;
 };
 
-/// Fits options.tune to the fitting part of the recordings (never to what is held out) without any further effect, puts the values into
-/// options.model.parameters and returns them. Throws BadParameter for a name that is not a number of the model, or whose value is 0.
+/// Fits options.tune to the fitting part of the recordings (never to held-out data) without any effect, stores the values in
+/// options.model.parameters and returns them. Throws BadParameter for a name that is no number of the model, or whose value is 0.
 Tuning tune(const std::vector<Recording>& recordings, DiagnosisOptions& options);
 
-/// The plant's tuned numbers at coordinates, with 95 % intervals from the half widths; `start` is the value in force.
+/// The plant's tuned parameters at coordinates z, with 95 % intervals from the half widths; `start` is the value in force.
 std::vector<TunedParameter> tunedParameters(const Plant& plant, const Eigen::VectorXd& z, const Eigen::VectorXd& half_width);
 
 }  // namespace musclesim

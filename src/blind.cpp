@@ -102,7 +102,7 @@ int followCases(FollowArguments& arguments) {
 Action addFollow(CLI::App& command) {
   auto arguments = std::make_shared<FollowArguments>();
   command.add_option("folder", arguments->folder, "Folder with cases and answers")->required();
-  command.add_option("--keys", arguments->key, "The key's file")->required();
+  command.add_option("--keys", arguments->key, "File of the key")->required();
   command.add_option("--jobs", arguments->follow.job_count, "Cases at once (default: one per core); the results do not depend on it")
       ->check(CLI::Range(1, 1024));
   addList(command, "--candidates", arguments->follow.candidates, "Only these effects, by id, separated by commas");
@@ -144,7 +144,7 @@ int scoreCases(const ScoreArguments& arguments) {
 Action addScore(CLI::App& command) {
   auto arguments = std::make_shared<ScoreArguments>();
   command.add_option("folder", arguments->folder, "Folder with cases and answers")->required();
-  command.add_option("--keys", arguments->key, "The key's file")->required();
+  command.add_option("--keys", arguments->key, "File of the key")->required();
   command.add_option("--docs", arguments->docs, "Also write FOLDER/blind.md and its figures");
   command.add_flag("--json", arguments->json, "Print the totals as one JSON object");
   return [arguments] { return scoreCases(*arguments); };

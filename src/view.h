@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "simulation/scene/camera.h"
-#include "simulation/scene/snapshot.h"
+#include "simulation/snapshot.h"
 
 namespace musclesim::program {
 

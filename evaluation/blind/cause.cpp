@@ -25,7 +25,7 @@ double sign(RandomStream& random) {
   return happens(random, 0.5) ? 1 : -1;
 }
 
-/// A whole number of something: larger is weaker, and half of the levels are one bit less.
+/// Parameters that are whole numbers: a larger number is a weaker effect, and half as many levels are one bit less.
 bool countsBits(const EffectParameter& parameter) {
   return parameter.unit == "bit";
 }
@@ -48,7 +48,7 @@ double drawSize(const EffectParameter& p, bool first, RandomStream& random) {
   return p.neutral - logUniform(random, std::max(-above, smallest_share * below), below);
 }
 
-/// How far from neutral a size may lie: three times as far as usual.
+/// Largest distance of a size from neutral: three times the usual one.
 bool isPlausible(const EffectParameter& p, double value) {
   constexpr double most = 3;
   if (value < p.minimum || value > p.maximum) return false;
@@ -57,7 +57,7 @@ bool isPlausible(const EffectParameter& p, double value) {
   return std::abs(value - p.neutral) <= most * usual;
 }
 
-/// NaN for a law that cannot act there (a bracket needs a joint) and for a plant that diverges.
+/// NaN for a law that cannot act on this component (a bracket needs a joint) and for a plant that diverges.
 double gapOf(const ActiveEffect& law, const Truth& truth) {
   try {
     return truth.gapOverNoise(truth.rmse({law}));

@@ -1,4 +1,4 @@
-/// Drawing a cause: which law, on which component, how strong.
+/// Draws a cause: which law acts, on which component, how strongly.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,8 @@ class Robot;
 
 namespace musclesim::blind {
 
-/// Largest RMSE of any signal over its noise that a cause of a size class makes: weak 2..6, clear 6..40, strong 40..200.
+/// Range of the largest ratio of RMSE to noise of any signal that a cause of a size class makes: weak 2..6, clear 6..40, strong 40..200.
+/// Throws BadParameter for another name. An exchange of channels has no size and counts as strong, however large its gap.
 struct Band {
   double low = 0, high = 0;
   bool holds(double gap) const { return gap >= low && gap <= high; }
@@ -26,29 +27,30 @@ Band bandOf(const std::string& size, const std::string& stands_for = "");
 
 /// A cause with the law that simulates it.
 struct Cause {
-  std::string id;         ///< of the catalogue; the law's own for a cause that the catalogue does not have
+  std::string id;         ///< id of the catalogue; the law's own id for a cause that the catalogue does not have
   std::string component;  ///< of the robot
-  ActiveEffect law;       ///< a foreign law; its parameters mean something else than the catalogue's
+  ActiveEffect law;       ///< an out-of-catalogue law; its parameters differ in meaning from the catalogue's
   Stage stage = Stage::command;
-  double gap_over_noise = 0;  ///< that it alone makes
+  double gap_over_noise = 0;  ///< of this cause alone
 };
 
-/// The laws that can act on this robot and on what is measured, in an order that the seed gives, from the `turn`-th on: over many turns all
-/// come equally often. `open`: laws of causes that the catalogue does not have; otherwise those of `causes`, ids of the catalogue, or of
-/// all if that is empty.
+/// The laws that can act on this robot and change what is measured, in an order drawn from the seed, starting at the `turn`-th: over many
+/// turns all are used equally often. `open`: laws of causes that the catalogue does not have; otherwise laws of `causes` (ids of the
+/// catalogue; empty: all).
 std::vector<OutOfCatalogueLaw> lawsInTurn(const Robot& robot, const std::vector<std::string>& signals, bool open,
                                           const std::vector<std::string>& causes, std::uint64_t seed, std::size_t turn);
 
-/// The components of a law: those of the robot on which the cause that it stands for does something; of sensors only those that are read.
+/// The components of the robot on which the cause that a law stands for has an effect; of sensors only those that are recorded.
 std::vector<std::string> componentsOf(const OutOfCatalogueLaw& law, const Robot& robot, const std::vector<std::string>& signals);
 
-/// Sizes within the usual ranges: the first parameter log-uniform, signed where the range is, shapes anywhere in their range.
+/// Draws parameters within the usual ranges: the first log-uniform, with either sign if the range has both, shape parameters anywhere in
+/// their range.
 std::vector<double> drawSizes(const EffectInfo& law, RandomStream& random);
-/// The same effect `factor` times as strong: all parameters but shapes move away from neutral. Nothing if that leaves what is accepted or
-/// three times the usual range.
+/// The effect made `factor` times as strong: all parameters except shapes move away from neutral. Empty if a parameter leaves its allowed
+/// range or three times its usual range.
 std::optional<std::vector<double>> scaled(const EffectInfo& law, std::vector<double> values, double factor);
 
-/// Draws and scales sizes up to ten times until the gap lies in the band; nothing if it never does.
+/// Draws and scales sizes up to ten times until the gap lies in the band; empty if it never does.
 std::optional<Cause> causeOfSize(const OutOfCatalogueLaw& law, const std::string& component, const std::string& size, const Truth& truth,
                                  RandomStream& random);
 

@@ -14,7 +14,7 @@ inline bool happens(RandomStream& random, double probability) {
   return random.uniform() < probability;
 }
 
-/// Evenly distributed on a logarithmic scale between two positive numbers.
+/// Log-uniform between two positive numbers.
 inline double logUniform(RandomStream& random, double low, double high) {
   return low * std::pow(high / low, random.uniform());
 }
@@ -30,7 +30,7 @@ const Item& oneOf(RandomStream& random, const std::vector<Item>& items) {
   return items[indexBelow(random, items.size())];
 }
 
-/// To a whole multiple of 1 / per_unit.
+/// Rounds to a whole multiple of 1 / per_unit.
 inline double rounded(double value, double per_unit) {
   return std::round(value * per_unit) / per_unit;
 }

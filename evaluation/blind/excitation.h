@@ -1,4 +1,4 @@
-/// What is commanded in recordings with a withheld cause.
+/// The commands of recordings with a withheld cause.
 #pragma once
 
 #include <string>
@@ -9,23 +9,23 @@
 
 namespace musclesim::blind {
 
-/// One recording's excitation. `speed` 1: moves that take seconds; amplitude: of the difference between antagonists or of the single
-/// muscle, fraction of full scale.
+/// The excitation of one recording. `speed` 1: moves that take seconds; amplitude: of the difference between antagonists, or of a single
+/// muscle, as a fraction of full scale.
 struct Excitation {
   std::string kind;  ///< "triangle", "steps", "reversals", "multisine", "holds"
   double amplitude = 0, speed = 1;
 };
 
-/// Numbers between -1 and 1, 100 per second, 0 in the first 0.3 s. Throws BadParameter for an unknown kind.
+/// Values between -1 and 1, 100 per second, 0 in the first 0.3 s. Throws BadParameter for an unknown kind.
 std::vector<double> shapeOf(const std::string& kind, double speed, double duration_s, RandomStream& random);
 
-/// Three excitations to fit to (triangle; steps of several sizes; reversals, multisine or holds), then one of another kind of speed and
-/// amplitude to measure the result on.
+/// Three excitations for fitting (triangle; steps of several sizes; reversals, multisine or holds), then one of another kind, speed and
+/// amplitude for measuring the result.
 std::vector<Excitation> drawExcitations(const std::string& robot, RandomStream& random);
 
-/// The commands as a recording without measurements. Rig: one muscle around 0.32..0.48. Elbow: both around 0.3..0.48, against each other,
-/// sometimes with co-contraction; the caller keeps it from its stops. Arm: all around one value in 0.06..0.18, each with a small motion of
-/// its own, so that it moves quietly.
+/// The commands as a recording without measurements. Rig: one muscle around 0.32..0.48. Elbow: both muscles around 0.3..0.48, against each
+/// other, sometimes with co-contraction; the caller keeps the joint off its stops. Arm: all muscles around one value in 0.06..0.18, each
+/// with a small motion of its own, so that the arm moves gently.
 Recording planned(const std::string& robot, const Excitation& excitation, double duration_s, RandomStream& random);
 
 }  // namespace musclesim::blind

@@ -1,4 +1,4 @@
-/// Figures of a blind check.
+/// Figures of a check on withheld causes.
 #pragma once
 
 #include <string>
@@ -7,11 +7,11 @@
 
 namespace musclesim::blind {
 
-/// Share of right answers over the probability that was given for them, ten bins with 95 % intervals.
+/// Reliability: share of right answers over the probability given, ten bins with 95 % intervals.
 std::string reliabilitySvg(const Score& score);
-/// Of single causes: share seen ("effects_found") and share named acceptably over the size of the gap.
+/// Detectability of single causes: share found ("effects_found") and share named acceptably, over the size of the gap.
 std::string detectabilitySvg(const Score& score);
-/// True stage against the stage of the answer.
+/// Confusion: true stage against the stage of the answer.
 std::string confusionSvg(const Score& score);
 
 /// The class of an answer in the confusion figure: a stage, "none of these" or "no gap".

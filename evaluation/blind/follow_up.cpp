@@ -5,7 +5,8 @@
 
 #include "../../base/parallel.h"
 #include "../../diagnosis/schedule.h"
-#include "follow_up_score.h"
+#include "follow_up_files.h"
+#include "judge.h"
 #include "musclesim/base/error.h"
 #include "musclesim/diagnosis/diagnosis.h"
 #include "musclesim/effect/effects_file.h"
@@ -40,7 +41,7 @@ std::vector<ActiveEffect> lawsOf(const json& key) {
   return laws;
 }
 
-/// What the plant measures under other commands.
+/// Measurements of the plant under other commands.
 Recording measuredUnder(Recording schedule, const Answered& one, const std::string& file, std::uint64_t seed) {
   schedule.info.noise_std.clear();
   const Truth truth({schedule}, one.key.at("signals").get<std::vector<std::string>>(),
@@ -76,7 +77,7 @@ json leftOut(const Answered& one, const FollowUpOptions& options) {
   return diagnosed(one.recordings, how);
 }
 
-/// The proposed schedule is recorded and comes first; what was held out stays so.
+/// The answer after recording the proposed schedule, which comes first so that the held-out recording stays the last.
 json experimented(const Answered& one, const FollowUpOptions& options) {
   if (!one.answer.contains("next_experiment")) return {{"verdict", "failed"}, {"message", "no schedule was proposed"}};
   const json& proposed = one.answer["next_experiment"];
@@ -87,16 +88,16 @@ json experimented(const Answered& one, const FollowUpOptions& options) {
   return diagnosed(std::move(recordings), oneThread(options));
 }
 
-double meanSquareOverFloor(const Recording& measured, const Recording& simulated, const json& floors) {
+double meanSquareOverNoise(const Recording& measured, const Recording& simulated, const json& sigmas) {
   double sum = 0;
   for (const SignalError& error : compareSignals(measured, simulated)) {
-    const double floor = floors.value(error.name, 0.0);
-    if (floor > 0) sum += std::max(0.0, error.rmse * error.rmse / (floor * floor) - 1);
+    const double sigma = sigmas.value(error.name, 0.0);
+    if (sigma > 0) sum += std::max(0.0, error.rmse * error.rmse / (sigma * sigma) - 1);
   }
   return sum;
 }
 
-/// The commands of a recording from the last to the first.
+/// The commands of a recording in reverse order.
 Recording backwards(const Recording& recording) {
   Recording schedule = recording;
   std::erase_if(schedule.signals, [](const Signal& signal) { return !signal.name.starts_with("command_"); });
@@ -104,14 +105,14 @@ Recording backwards(const Recording& recording) {
   return schedule;
 }
 
-/// On a motion that the diagnosis has not seen, of the same kind as what was held out.
-json freshShrink(const Answered& one, const fs::path& effects_file) {
+/// Gap reduction on a motion that the diagnosis has not seen, of the same kind as the held-out one.
+json freshReduction(const Answered& one, const fs::path& effects_file) {
   const Recording measured = measuredUnder(backwards(one.recordings.back()), one, "fresh.csv", 2);
   ReplayOptions with;
   with.effects = readEffects(effects_file.string());
   const ReplayResult without = replayRecording(measured), added = replayRecording(measured, with);
-  const double before = meanSquareOverFloor(measured, without.simulated, one.key.at("noise_std")),
-               after = meanSquareOverFloor(measured, added.simulated, one.key.at("noise_std"));
+  const double before = meanSquareOverNoise(measured, without.simulated, one.key.at("noise_std")),
+               after = meanSquareOverNoise(measured, added.simulated, one.key.at("noise_std"));
   if (before <= 0) return nullptr;
   const json& gap = one.answer.at("gap");
   return {{"shrink_percent", 100 * (1 - after / before)},
@@ -120,7 +121,7 @@ json freshShrink(const Answered& one, const fs::path& effects_file) {
           {"diverged", added.divergence.has_value()}};
 }
 
-/// Nothing if it was interrupted.
+/// Empty if it was interrupted.
 std::optional<json> followed(const Answered& one, const fs::path& folder, const FollowUpOptions& options) {
   json result = json::object();
   if (one.answer.value("verdict", "") == "failed") return result;
@@ -130,33 +131,19 @@ std::optional<json> followed(const Answered& one, const fs::path& folder, const 
   };
   if (kind == "single" || kind == "double") put("left_out", leftOut(one, options));
   if (isAmbiguous(judge(one.name, one.key, one.answer))) put("experiment", experimented(one, options));
-  if (one.answer.value("verdict", "") == "effects_found") put("fresh", freshShrink(one, effectsOf(folder, one.name)));
+  if (one.answer.value("verdict", "") == "effects_found") put("fresh", freshReduction(one, effectsOf(folder, one.name)));
   if (options.interrupted()) return std::nullopt;
   return result;
 }
 
-/// Says what a file was made from.
+/// The members that say how a file was made.
 json origin(const FollowUpOptions& options) {
   json members = programMembers("");
   members["candidates"] = options.candidates;
   return members;
 }
 
-/// SHA-256 of what is followed up on.
-std::string fingerprintOf(const fs::path& folder, const std::string& name) {
-  return sha256OfFiles(folder, {"answers/" + name + ".json"});
-}
-
 }  // namespace
-
-fs::path followUpFile(const fs::path& folder, const std::string& name) {
-  return folder / "follow_up" / (name + ".json");
-}
-
-bool isFollowed(const fs::path& folder, const std::string& name) {
-  const fs::path file = followUpFile(folder, name);
-  return fs::exists(file) && readObject(file).value("answer_sha256", "") == fingerprintOf(folder, name);
-}
 
 void followUp(const fs::path& folder, const fs::path& key_file, const FollowUpOptions& options) {
   score(folder, key_file);  // checks all fingerprints
@@ -177,7 +164,7 @@ void followUp(const fs::path& folder, const fs::path& key_file, const FollowUpOp
     auto result = followed(one, folder, options);
     if (!result) return;
     result->update(members);
-    (*result)["answer_sha256"] = fingerprintOf(folder, name);
+    (*result)["answer_sha256"] = answerFingerprint(folder, name);
     writeObject(*result, followUpFile(folder, name));
     const std::lock_guard lock(one_at_a_time);
     options.progress(++done, static_cast<int>(open.size()));

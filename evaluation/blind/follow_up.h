@@ -1,4 +1,4 @@
-/// `musclesim blind follow`: what a researcher would do after an answer, with the key at hand to say whether it was right.
+/// `musclesim blind follow`: does what a researcher would do after an answer, and uses the key to judge the outcome.
 #pragma once
 
 #include <filesystem>
@@ -15,17 +15,13 @@ struct FollowUpOptions {
   std::function<bool()> interrupted = [] { return false; };
 };
 
-/// For every case that was answered, in DIR/follow_up/caseNNN.json:
-/// - "left_out": the answer when the true effects are not among the candidates; of single and double cases;
-/// - "experiment": the answer when the plant has recorded the proposed schedule and that recording is among those that are fitted to; of
-///   ambiguous answers. Where no schedule was proposed, a failed one;
-/// - "fresh": shrink by the answer's effects on a recording of the same plant that was not there; of answers with effects.
-/// Cases that have a file are not done again. Throws as score() if key or answers are not those that were sealed, BadParameter if files
-/// were made by another program or with other candidates.
+/// For every answered case writes DIR/follow_up/caseNNN.json:
+/// - "left_out" (single and double cases): the answer without the true effects among the candidates;
+/// - "experiment" (ambiguous answers): the answer after the plant has recorded the proposed schedule, with that recording among the fitted
+///   ones; an answer that failed if no schedule was proposed;
+/// - "fresh" (answers with effects): gap reduction by the answer's effects on a new recording of the same plant.
+/// Skips cases that have a file. Throws as score() if key or answers are not the sealed ones, BadParameter if files were made by another
+/// program or with other candidates.
 void followUp(const std::filesystem::path& folder, const std::filesystem::path& key_file, const FollowUpOptions& options);
-
-std::filesystem::path followUpFile(const std::filesystem::path& folder, const std::string& name);
-/// There is a file, and it was made from the present answer.
-bool isFollowed(const std::filesystem::path& folder, const std::string& name);
 
 }  // namespace musclesim::blind

@@ -6,9 +6,8 @@
 #include <cmath>
 #include <functional>
 
-#include "follow_up.h"
+#include "follow_up_files.h"
 #include "look_alikes.h"
-#include "score.h"
 #include "seal.h"
 
 namespace musclesim::blind {
@@ -20,7 +19,7 @@ namespace {
 
 constexpr double confident = 0.9, wide_points = 20;
 
-FreshShrink freshOf(const json& object) {
+FreshReduction freshOf(const json& object) {
   const json& interval = object.at("interval_percent");
   return {object.at("shrink_percent"), object.at("reported_percent"), interval.at(0), interval.at(1), object.at("diverged")};
 }
@@ -34,7 +33,7 @@ FollowUp followUpOf(const fs::path& folder, const std::string& name, const json&
   return result;
 }
 
-/// Adds a rate over the follow-ups of which `hit` tells something.
+/// Adds a rate over the follow-ups for which `hit` has a value.
 void putRate(json& totals, const std::string& name, const std::vector<FollowUp>& follow_ups,
              const std::function<std::optional<bool>(const FollowUp&)>& hit) {
   Rate rate;
@@ -69,19 +68,19 @@ void putExperiment(json& totals, const std::vector<FollowUp>& follow_ups) {
 }
 
 void putFresh(json& totals, const std::vector<FollowUp>& follow_ups) {
-  auto put = [&](const char* name, bool (*counts)(const FreshShrink&), bool (*hit)(const FreshShrink&)) {
+  auto put = [&](const char* name, bool (*counts)(const FreshReduction&), bool (*hit)(const FreshReduction&)) {
     putRate(totals, name, follow_ups,
             [&](const FollowUp& one) { return one.fresh && counts(*one.fresh) ? std::optional(hit(*one.fresh)) : std::nullopt; });
   };
-  auto any = [](const FreshShrink&) { return true; };
-  auto narrow = [](const FreshShrink& fresh) { return fresh.width() <= wide_points; };
-  put("fresh_within", any, [](const FreshShrink& fresh) { return fresh.isWithin(); });
+  auto any = [](const FreshReduction&) { return true; };
+  auto narrow = [](const FreshReduction& fresh) { return fresh.width() <= wide_points; };
+  put("fresh_within", any, [](const FreshReduction& fresh) { return fresh.isWithin(); });
   put("fresh_narrow", any, narrow);
-  put("fresh_within_narrow", narrow, [](const FreshShrink& fresh) { return fresh.isWithin(); });
+  put("fresh_within_narrow", narrow, [](const FreshReduction& fresh) { return fresh.isWithin(); });
   std::vector<double> difference, width;
   for (const FollowUp& one : follow_ups) {
     if (!one.fresh) continue;
-    if (!one.fresh->diverged) difference.push_back(std::abs(one.fresh->shrink_percent - one.fresh->reported_percent));
+    if (!one.fresh->diverged) difference.push_back(std::abs(one.fresh->reduction_percent - one.fresh->reported_percent));
     width.push_back(one.fresh->width());
   }
   if (const auto median = medianOf(difference)) totals["fresh_median_difference_points"] = *median;
@@ -101,14 +100,6 @@ WithoutTruth withoutTruth(const Judgement& answer, const Judgement& with_truth) 
   if (confident_effect && !look_alike && !named_before) return class_mate ? WithoutTruth::class_mate : WithoutTruth::confidently_wrong;
   if (answer.verdict != "effects_found" || !answer.namesEffect()) return WithoutTruth::unexplained;
   return look_alike ? WithoutTruth::look_alike : named_before ? WithoutTruth::named_before : WithoutTruth::unsure;
-}
-
-bool namesTruth(const Judgement& answer) {
-  return answer.verdict == "effects_found" && answer.named.value_or(false);
-}
-
-bool isAmbiguous(const Judgement& answer) {
-  return answer.kind == "single" && answer.set_size.value_or(1) > 1 && answer.namesEffect();
 }
 
 std::vector<FollowUp> followUpsOf(const fs::path& folder, const json& cases) {
@@ -143,7 +134,7 @@ std::vector<std::string> missesOf(const FollowUp& follow_up) {
   if (const auto& fresh = follow_up.fresh; fresh && !fresh->isWithin())
     misses.push_back(fresh->diverged
                          ? std::string("on a fresh recording the model with the effects diverged")
-                         : fmt::format("on a fresh recording {:.1f} % instead of {:.1f} ({:.1f} to {:.1f})", fresh->shrink_percent,
+                         : fmt::format("on a fresh recording {:.1f} % instead of {:.1f} ({:.1f} to {:.1f})", fresh->reduction_percent,
                                        fresh->reported_percent, fresh->low_percent, fresh->high_percent));
   return misses;
 }

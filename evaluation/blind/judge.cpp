@@ -14,7 +14,7 @@ namespace {
 /// A candidate of an answer.
 struct Answer {
   std::string label;
-  double probability = 0, shrink_percent = 0;
+  double probability = 0, reduction_percent = 0;
 };
 
 std::vector<Answer> candidatesOf(const json& answer) {
@@ -66,19 +66,19 @@ void judgeRanking(Judgement& j, const std::vector<Answer>& candidates, const Pat
   j.probability_of_acceptable = probabilityOf(candidates, accepted);
 }
 
-void judgeShrink(Judgement& j, const json& answer, const std::vector<Answer>& candidates, const std::vector<std::string>& truth) {
+void judgeReduction(Judgement& j, const json& answer, const std::vector<Answer>& candidates, const std::vector<std::string>& truth) {
   const json gap = answer.value("gap", json::object());
-  j.shrink_percent = gap.value("shrink_percent", 0.0);
+  j.reduction_percent = gap.value("shrink_percent", 0.0);
   j.nominal_refit_percent = gap.value("nominal_refit_shrink_percent", 0.0);
   if (j.kind != "single") return;
   constexpr double everything_percent = 100;
   const auto listed = std::ranges::find_if(
-      candidates, [&](const Answer& candidate) { return fitsAny(candidate.label, truth) && candidate.shrink_percent > 0; });
+      candidates, [&](const Answer& candidate) { return fitsAny(candidate.label, truth) && candidate.reduction_percent > 0; });
   j.oracle_listed = listed != candidates.end();
-  j.oracle_share = *j.shrink_percent / (j.oracle_listed ? listed->shrink_percent : everything_percent);
+  j.oracle_share = *j.reduction_percent / (j.oracle_listed ? listed->reduction_percent : everything_percent);
 }
 
-/// Of the explanations that hold all of them.
+/// Probability of the explanations that contain all of the effects.
 double probabilityOfAll(const json& answer, const Patterns& truths) {
   double sum = 0;
   for (const json& explanation : answer.value("explanations", json::array()))
@@ -100,7 +100,7 @@ void judgeSets(Judgement& j, const json& answer, const Patterns& acceptable, con
   j.covered = allNamed(truths, set);
 }
 
-/// The truth itself, under all names of its component: the acceptable answers with the same id.
+/// The truth under all names of its component: the acceptable answers with the same id.
 Patterns truthsOf(const std::vector<std::string>& ids, const Patterns& acceptable) {
   Patterns truths;
   for (std::size_t i = 0; i < ids.size(); ++i) {
@@ -110,7 +110,7 @@ Patterns truthsOf(const std::vector<std::string>& ids, const Patterns& acceptabl
   return truths;
 }
 
-/// What was said with the largest probability; nothing where no answer was given.
+/// The most probable claim of an answer; empty if there is no answer.
 std::optional<Claim> claimOf(const Judgement& j, bool right) {
   if (j.verdict == "failed") return std::nullopt;
   return Claim{j.confidence(), right};
@@ -120,7 +120,7 @@ void judgeFound(Judgement& j, const json& key, const json& answer, const std::ve
   const auto acceptable = key.at("acceptable").get<Patterns>();
   const Patterns truths = truthsOf(j.true_ids, acceptable);
   judgeRanking(j, candidates, acceptable, flat(truths));
-  judgeShrink(j, answer, candidates, flat(truths));
+  judgeReduction(j, answer, candidates, flat(truths));
   judgeSets(j, answer, acceptable, truths);
   j.claim = claimOf(j, *j.acceptable);
 }
@@ -178,6 +178,14 @@ Judgement judge(const std::string& name, const json& key, const json& answer) {
   else
     judgeFound(j, key, answer, candidates);
   return j;
+}
+
+bool namesTruth(const Judgement& answer) {
+  return answer.verdict == "effects_found" && answer.named.value_or(false);
+}
+
+bool isAmbiguous(const Judgement& answer) {
+  return answer.kind == "single" && answer.set_size.value_or(1) > 1 && answer.namesEffect();
 }
 
 }  // namespace musclesim::blind

@@ -1,4 +1,4 @@
-/// One answer against its key.
+/// Judges one answer against its key.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,7 +10,7 @@
 
 namespace musclesim::blind {
 
-/// Empty optionals: does not apply to this kind of case.
+/// An empty optional does not apply to this kind of case.
 struct Judgement {
   std::string name, robot, kind, size, truth;  ///< truth: "id@component", several joined with " + "; empty for null
   std::vector<std::string> true_ids, true_stages;
@@ -33,21 +33,27 @@ struct Judgement {
   std::optional<bool> spurious;                ///< single, double: a cause was chosen that is neither a true one nor a look-alike of one
   std::optional<bool> open_detected;           ///< open: "unexplained", or no effect above probability 0.5, but not "no gap"
   std::optional<bool> false_alarm;             ///< null: a gap was seen
-  std::optional<double> probability_of_truth;  ///< of doubles that of explanations that hold both
+  std::optional<double> probability_of_truth;  ///< for doubles, of explanations that contain both
   std::optional<double> probability_of_acceptable, set_size;
-  std::optional<double> shrink_percent, nominal_refit_percent;  ///< single and double
-  std::optional<double> oracle_share;                           ///< single: shrink over that of the true effect's best fit
-  bool oracle_listed = false;  ///< that fit is in the answer; otherwise the true effect is taken to remove everything
-  std::optional<Claim> claim;  ///< the likeliest of the first effect, none of these and no gap; of doubles right for either cause
+  std::optional<double> reduction_percent, nominal_refit_percent;  ///< single and double
+  std::optional<double> oracle_share;                              ///< single: gap reduction over that of the true effect's best fit
+  bool oracle_listed = false;  ///< the answer lists that fit; otherwise the true effect is taken to remove everything
+  std::optional<Claim>
+      claim;  ///< the most probable of the first effect, none of these and no gap; for doubles, right if it names either cause
   double seconds = 0;
 
   /// The largest probability given: of the first effect, of none of these, of no gap.
   double confidence() const;
-  /// An effect has it.
+  /// Whether an effect has it.
   bool namesEffect() const { return !top.empty() && top_probability >= confidence(); }
 };
 
 /// Key of one case as `blind make` wrote it, answer as diagnosis.json. Throws nlohmann::json::exception if members are missing in the key.
 Judgement judge(const std::string& name, const nlohmann::json& key, const nlohmann::json& answer);
+
+/// Whether the truth is the single best of an answer.
+bool namesTruth(const Judgement& answer);
+/// Whether an answer to a single cause names an effect and cannot tell it from others.
+bool isAmbiguous(const Judgement& answer);
 
 }  // namespace musclesim::blind

@@ -9,31 +9,31 @@ namespace musclesim::blind {
 
 namespace {
 
-/// Whether the effect acts on one place only that this robot has or that is measured, whatever it is called.
+/// Whether the effect acts on a single component that this robot has or measures, whatever its name.
 bool actsOnOnePlace(const std::string& id, const Measured& measured, const Robot& robot) {
   const EffectInfo info = effectInfo(id);
   return componentsFor(info, robot).size() <= 1 || (info.stage == Stage::sensor && measured.signal_count == 1);
 }
 
-/// The component under which a look-alike would be named: the same one where it exists, otherwise any.
+/// The component of a look-alike: the same one if it exists, otherwise any.
 std::string patternOf(const std::string& id, const std::string& component, const Robot& robot) {
   const std::vector<std::string> components = componentsFor(effectInfo(id), robot);
   const bool known = std::ranges::find(components, component) != components.end();
   return id + "@" + (known && components.size() > 1 ? component : "*");
 }
 
-/// Effects that some recordings cannot tell apart.
+/// Pairs of effects that some recordings cannot distinguish.
 struct LookAlikes {
   bool holds(const std::string& id) const { return std::ranges::find(ids, id) != ids.end(); }
 
   std::vector<std::string> ids;
-  bool (*inseparable)(const Measured&);  ///< on the same component by what is measured, whatever the motion
+  bool (*inseparable)(const Measured&);  ///< whether the measured signals never distinguish them on the same component, whatever the motion
 };
 
 const std::vector<LookAlikes>& lookAlikes() {
   const auto without_pressure = [](const Measured& measured) { return !measured.pressure; };
   const auto without_both = [](const Measured& measured) { return !measured.pressure && !measured.force; };
-  const auto by_motion = [](const Measured&) { return false; };  // or on other components only: see acceptableAnswers
+  const auto by_motion = [](const Measured&) { return false; };  // pairs on other components: see acceptableAnswers
   static const std::vector<LookAlikes> classes = {{{"valve_lag", "viscous_loss", "joint_viscous_friction"}, without_both},
                                                   {{"force_gain", "pressure_calibration"}, without_pressure},
                                                   {{"leak", "creep"}, without_pressure},

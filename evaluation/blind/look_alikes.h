@@ -1,4 +1,5 @@
-/// Which answers count as right besides the true effect: look-alikes that the measured signals cannot separate. Frozen when a case is made.
+/// The answers that count as right besides the true effect: look-alikes that the measured signals cannot distinguish from it. Frozen when a
+/// case is made.
 #pragma once
 
 #include <set>
@@ -11,7 +12,7 @@ class Robot;
 
 namespace musclesim::blind {
 
-/// What a recording measures.
+/// The kinds of signals that a recording measures.
 struct Measured {
   bool pressure = false, force = false;
   int signal_count = 0;
@@ -31,7 +32,7 @@ std::vector<std::string> acceptableAnswers(const std::string& id, const std::str
 bool fits(const std::string& answer, const std::string& pattern);
 bool fitsAny(const std::string& answer, const std::vector<std::string>& patterns);
 
-/// Whether two effects are one of the pairs that some recordings cannot tell apart (docs/effects.md), whatever is measured.
+/// Whether two effects are a pair that some recordings cannot distinguish (docs/effects.md), whatever is measured.
 bool areOfOneClass(const std::string& one_id, const std::string& other_id);
 
 /// "valve_lag" of "valve_lag@muscle_0".

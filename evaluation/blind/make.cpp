@@ -42,7 +42,7 @@ std::string drawKind(const std::vector<std::string>& allowed, RandomStream& rand
   return place < 0.7 ? "single" : place < 0.8 ? "double" : place < 0.9 ? "open" : "null";
 }
 
-/// Angle and, on the rig, length are always measured; a third of the plants lack pressure or force.
+/// The measured signals: always the angle and, on the rig, the length; a third of the plants lack pressure or force.
 std::vector<std::string> drawSignals(const Robot& robot, RandomStream& random) {
   const bool pressure = happens(random, 0.83), force = happens(random, 0.8), length = happens(random, 0.7), hand = happens(random, 0.6);
   std::vector<std::string> signals;
@@ -71,7 +71,7 @@ std::map<std::string, double> drawNoise(const std::vector<std::string>& signals,
   return noise;
 }
 
-/// One plant: what is drawn before its cause.
+/// One plant as drawn before its cause.
 struct Plan {
   std::string name, robot, kind, size;
   std::vector<Excitation> excitations;
@@ -80,7 +80,7 @@ struct Plan {
   std::map<std::string, double> noise_std;
 };
 
-/// Makes the motion smaller until the elbow stays well within its stops: an impact is not predictable.
+/// Reduces the motion until the elbow stays well within its stops, because an impact is not predictable.
 void keepFromStops(Recording& plan) {
   constexpr double farthest_deg = 50, smaller = 0.8;
   if (plan.info.robot != "elbow") return;
@@ -110,7 +110,7 @@ Plan drawPlan(const std::string& name, const std::string& robot_name, const Robo
   return plan;
 }
 
-/// Tries laws until one reaches its band; `redrawn` takes the names of those that do not. None if interrupted.
+/// Tries laws until one reaches its size; `redrawn` receives the names of the others. Empty if interrupted.
 std::optional<Cause> drawCause(const Plan& plan, const std::vector<OutOfCatalogueLaw>& laws, const std::vector<Cause>& others,
                                const Robot& robot, const Truth& truth, const std::function<bool()>& interrupted, RandomStream& random,
                                json& redrawn) {
@@ -147,7 +147,7 @@ json excitationsJson(const Plan& plan) {
   return list;
 }
 
-/// Removing the cause entirely leaves the noise: the oracle's shrink is 100 %.
+/// The key of a case. Removing the cause entirely leaves the noise, so the oracle's gap reduction is 100 %.
 json keyOf(const Plan& plan, const std::vector<Cause>& causes, const Robot& robot, const Truth& truth, const json& redrawn) {
   std::vector<ActiveEffect> laws;
   json effects = json::array(), acceptable = json::array(), stages = json::array();
@@ -178,15 +178,15 @@ json keyOf(const Plan& plan, const std::vector<Cause>& causes, const Robot& robo
           {"redrawn", redrawn}};
 }
 
-/// A plan and its plant.
-struct Plant {
+/// A plan and the plant that it describes.
+struct DrawnPlant {
   Plan plan;
   Truth truth;
 };
 
-/// Drawn anew while a finer step alone makes more than half the noise: what remains of that is not the cause's.
-Plant drawPlant(const std::string& name, const std::string& robot_name, const Robot& robot, const MakeOptions& options,
-                RandomStream& random) {
+/// Redraws while a finer time step alone makes more than half the noise: such a plant would have a gap that its cause does not explain.
+DrawnPlant drawPlant(const std::string& name, const std::string& robot_name, const Robot& robot, const MakeOptions& options,
+                     RandomStream& random) {
   constexpr double most_over_noise = 0.5;
   constexpr int most_draws = 20;
   for (int draw = 0; draw < most_draws; ++draw) {
@@ -198,7 +198,7 @@ Plant drawPlant(const std::string& name, const std::string& robot_name, const Ro
                      "include some in which the model agrees with itself at half its step; take another seed");
 }
 
-/// Draws, simulates and writes one case. Returns its key; none if it was interrupted.
+/// Draws, simulates and writes one case. Returns its key; empty if it was interrupted.
 std::optional<json> makeCase(const std::string& name, const std::string& robot_name, std::size_t turn, const fs::path& folder,
                              const MakeOptions& options) {
   RandomStream random(options.seed, "blind." + name);
@@ -228,7 +228,7 @@ std::string caseName(int index) {
   return fmt::format("case{:03}", index + 1);
 }
 
-/// Not from the seed: who knows the seed does not know the name.
+/// A random name that does not depend on the seed, so that knowing the seed does not reveal it.
 std::string randomKeyName() {
   return uniqueName() + ".json";
 }
@@ -247,7 +247,7 @@ void requireApart(const fs::path& folder, const fs::path& key_folder, const Make
   if (!(options.duration_s >= 1)) throw BadParameter("--duration-s", fmt::format("{}", options.duration_s), "be at least 1");
 }
 
-/// What was asked for, and of which program.
+/// The call and the program.
 json callOf(const MakeOptions& options) {
   json call = programMembers(options.commit);
   call["seed"] = options.seed;
@@ -266,7 +266,7 @@ json sealOf(const std::string& key_name, const std::string& key_text, const fs::
   return seal;
 }
 
-/// Those that an earlier call has made, or a new one. None if that was interrupted.
+/// The cases of an earlier call, or new ones. Empty if interrupted.
 std::optional<json> keptOrMade(int index, const fs::path& folder, const UnsealedCases& unsealed, const MakeOptions& options) {
   const std::string name = caseName(index);
   if (auto kept = unsealed.keyOf(name)) return kept;

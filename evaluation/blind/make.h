@@ -13,19 +13,20 @@ struct MakeOptions {
   int count = 120;     ///< cases on rig and elbow in turn
   int arm_count = 12;  ///< further cases on the arm
   std::uint64_t seed = 1;
-  double duration_s = 6;            ///< of each recording; half of it on the arm
-  std::vector<std::string> kinds;   ///< of single, double, open, null; empty: 70, 10, 10 and 10 %
-  std::vector<std::string> causes;  ///< ids of the catalogue that plants may have; empty: all. Those of open plants are not among them
-  int job_count = 0;                ///< threads; 0: one per core. The cases do not depend on it
-  std::string commit;               ///< of the sources, for the seal; may be empty
+  double duration_s = 6;           ///< of each recording; half of it on the arm
+  std::vector<std::string> kinds;  ///< of single, double, open, null; empty: 70, 10, 10 and 10 %
+  std::vector<std::string>
+      causes;          ///< ids of the catalogue that plants may have; empty: all. Open plants have causes outside the catalogue
+  int job_count = 0;   ///< threads; 0: one per core. The cases do not depend on it
+  std::string commit;  ///< of the sources, for the seal; may be empty
   std::function<void(int done, int count)> progress = [](int, int) {};
   std::function<bool()> interrupted = [] { return false; };
 };
 
-/// Writes DIR/caseNNN/r1..r4.csv and .json, DIR/seal.json, and the key to `key_folder` under a random name.
-/// The seal holds the key's name and SHA-256, the SHA-256 of all recordings, seed, program. Same seed, same options: the same bits, but for
-/// the key's name. Returns the key's path; none if interrupted: the same call goes on then, with what it had made. Throws BadParameter for
-/// a DIR that holds anything else, and for a key folder inside DIR or so near that `blind run` would find the key.
+/// Writes DIR/caseNNN/r1..r4.csv and .json, DIR/seal.json, and the key to `key_folder` under a random name. The seal holds the key's name
+/// and SHA-256, the SHA-256 of all recordings, the seed and the program. The same seed and options give the same bits except for the key's
+/// name. Returns the key's path, or none if interrupted; the same call then continues with the finished cases. Throws BadParameter for a
+/// DIR that holds anything else, and for a key folder inside DIR or so near that `blind run` would find the key.
 std::filesystem::path make(const std::filesystem::path& folder, const std::filesystem::path& key_folder, const MakeOptions& options);
 
 }  // namespace musclesim::blind

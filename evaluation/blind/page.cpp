@@ -44,7 +44,7 @@ std::string introduction(const Score& score) {
 
 <!-- Made by scripts/make_blind_docs.sh; do not edit. -->
 
-`musclesim blind make` draws plants: a robot, a cause, a component, a size, excitations, sensors. The truth is simulated with another law than the catalogue's (three lags for one, Bouc-Wen for play, LuGre for Coulomb), with causes that the catalogue does not have, or with none; with half the internal step of the model (arm: the same step, because a finer one alone moves its hand by millimetres), other seeds and sensor noise. The key is sealed; `musclesim blind run` diagnoses without it and refuses to start if it can read it; `musclesim blind score` checks all fingerprints, then opens the key. [Diagnosing](diagnosing.md) explains the method that is tested here.
+`musclesim blind make` draws plants: a robot, a cause, a component, a size, excitations, sensors. The truth is simulated with another law than the catalogue's (three lags for one, Bouc-Wen for play, LuGre for Coulomb), with a cause that the catalogue does not have, or without a cause; with half the internal step of the model (arm: the same step, because a finer one alone moves its hand by millimetres), other seeds and sensor noise. The key is sealed; `musclesim blind run` diagnoses without it and refuses to start if the key is within reach; `musclesim blind score` checks all fingerprints, then opens the key. [Diagnosing](diagnosing.md) explains the method that is tested here.
 
 | | |
 |---|---|
@@ -55,7 +55,7 @@ std::string introduction(const Score& score) {
 | diagnosed with | {}, {}, program SHA-256 `{}` |
 | SHA-256 of key, recordings, answers | `{}`, `{}`, `{}` |
 
-Sizes are the largest RMS gap of any signal over its noise: weak 2..6, clear 6..40, strong 40..200. An answer is *acceptable* if it names the cause and its component, or one of the look-alikes that the measured signals cannot separate; these were frozen when the cases were made. *Probability* is that of the first effect, of none of these or of no gap, whichever is largest. The oracle is the true effect's best fit, or 100 % where the answer does not list that. Intervals: 95 %, Wilson.
+Sizes are the largest RMS gap of any signal over its noise: weak 2..6, clear 6..40, strong 40..200. An answer is *acceptable* if it names the cause and its component, or one of the look-alikes that the measured signals cannot separate; these were frozen when the cases were made. *Probability* is that of the first effect, of none of these or of no gap, whichever is largest. The oracle is the true effect's best fit, or 100 % if the answer does not list it. Intervals: 95 %, Wilson.
 
 )",
       score.cases.size(), seal.value("seed", json(0)).dump(), seal.value("duration_s", json(0)).dump(), valueOr(seal, "program", "-"),
@@ -83,7 +83,7 @@ std::string overview(const json& totals) {
   row("truth in the ambiguity set or chosen, single", ">= 95 %", longRate(single, "covered"));
   row("mean size of the ambiguity set, single", "<= 2.5", numberText(single, "set_size", "{:.2f}"));
   row("both causes chosen, double", "", longRate(both, "pair"));
-  row("a cause was chosen that is not there, single", "", longRate(single, "spurious"));
+  row("a cause was chosen that is not present, single", "", longRate(single, "spurious"));
   row("calibration error, single and open", "<= 0.05", numberText(all, "calibration_error", "{:.3f}"));
   if (all.contains("calibration_error_by_chance"))
     row("... of perfect probabilities, by chance: mean, 95 % quantile", "",
@@ -92,11 +92,11 @@ std::string overview(const json& totals) {
   row("calibration error, all kinds", "", numberText(all, "calibration_error_all_kinds", "{:.3f}"));
   row("open causes called unexplained, or no effect above probability 0.5", ">= 80 %", longRate(all, "open_detected"));
   row("false alarms without any cause", "<= 5 %", longRate(all, "false_alarm"));
-  row("median shrink on held-out data, single and double (the oracle's is 100 %)", "",
+  row("median gap reduction on held-out data, single and double (the oracle's is 100 %)", "",
       numberText(all, "shrink_median_percent", "{:.0f} %"));
-  row("shrink at least 80 %", "", longRate(all, "shrink_at_least_80_percent"));
-  row("shrink at least 80 % of the oracle's, single", "", longRate(single, "shrink_at_least_80_percent_of_true_effect"));
-  row("the oracle's shrink is in the answer, single", "", longRate(single, "true_effect_listed"));
+  row("gap reduction of at least 80 %", "", longRate(all, "shrink_at_least_80_percent"));
+  row("gap reduction of at least 80 % of the oracle's, single", "", longRate(single, "shrink_at_least_80_percent_of_true_effect"));
+  row("the answer lists the oracle's fit, single", "", longRate(single, "true_effect_listed"));
   row("20 points above the nominal refit, gaps of three times the noise and more", "",
       longRate(all, "shrink_20_points_above_nominal_refit"));
   row("median seconds per case, one thread", "", numberText(all, "seconds_median", "{:.0f}"));
@@ -105,9 +105,8 @@ std::string overview(const json& totals) {
 
 std::string groupTable(const std::string& title, const json& groups) {
   std::string text = fmt::format(
-      "## By {}\n\n| {} | cases | verdict | effect first | among three | acceptable | on the truth | stage | covered | set | shrink | "
-      "false alarms | s |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+      "## By {}\n\n| {} | cases | verdict | effect first | among three | acceptable | on the truth | stage | covered | set | gap reduction "
+      "| false alarms | s |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
       title, title);
   for (const auto& [name, t] : groups.items())
     text += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", name, t["cases"].get<int>(),
@@ -127,50 +126,47 @@ std::string followUpMisses(const std::vector<FollowUp>& follow_ups) {
   return rows.empty() ? "" : "| case | robot | gap / noise | true | what was missed |\n|---|---|---|---|---|\n" + rows + "\n";
 }
 
-/// What came of the answers; empty if that was not tried.
+/// The follow-ups; empty if there are none.
 std::string followed(const Score& score) {
   const json totals = score.totals.value("follow_up", json::object());
   if (totals.empty()) return "";
   std::string text = fmt::format(
-      "## What came of the answers\n\nBy `musclesim blind follow`, on {} of {} answers. Ambiguous are answers to single causes that name "
-      "an "
-      "effect which others cannot be told from.\n\n| measure | aim | found |\n|---|---|---|\n",
+      "## Follow-up of the answers\n\n`musclesim blind follow` followed up on {} of {} answers. An answer to a single cause is ambiguous "
+      "if it names an effect that it cannot distinguish from others.\n\n| measure | aim | found |\n|---|---|---|\n",
       totals.at("followed_count").get<int>(), score.cases.size());
   auto row = [&](const char* what, const char* aim, const char* name) {
     text += fmt::format("| {} | {} | {} |\n", what, aim, longRate(totals, name));
   };
   row("true effect not among the candidates: a wrong cause with more than 0.9 that is no look-alike", "<= 5 %",
       "left_out_confidently_wrong");
-  row("... an acceptable look-alike, with whatever probability", "", "left_out_look_alike");
-  row("... an effect that the answer with all candidates had beside it in its ambiguity set, with whatever probability", "",
-      "left_out_named_before");
-  row("... with more than 0.9 another of its class, which other signals or motions cannot tell from it (effects.md)", "",
+  row("... an acceptable look-alike, at any probability", "", "left_out_look_alike");
+  row("... an effect from the ambiguity set of the answer with all candidates, at any probability", "", "left_out_named_before");
+  row("... with more than 0.9 another effect of its class, which some recordings cannot distinguish from it (effects.md)", "",
       "left_out_class_mate");
   row("... unexplained", "", "left_out_unexplained");
   row("... a wrong cause with 0.9 or less", "", "left_out_unsure");
   row("... no answer", "", "left_out_failed");
   row("ambiguous answers: the truth is the single best before", "", "experiment_truth_first_before");
   row("... after the proposed schedule", ">= 80 %", "experiment_truth_first");
-  row("... after it, where the ambiguity set held the truth", "", "experiment_truth_first_where_covered");
-  row("... after it, and nothing else is left", "", "experiment_alone");
-  row("shrink by effects.json on a fresh recording within the reported interval", "", "fresh_within");
+  row("... after it, if the ambiguity set held the truth", "", "experiment_truth_first_where_covered");
+  row("... after it, and the ambiguity set holds nothing else", "", "experiment_alone");
+  row("the gap reduction by effects.json on a new recording is within the reported interval", "", "fresh_within");
   row("... the interval is no wider than 20 points", "", "fresh_narrow");
   row("... of these within the interval", "", "fresh_within_narrow");
   text += fmt::format("| median width of the interval, points | | {} |\n", numberText(totals, "fresh_median_width_points", "{:.1f}"));
-  text += fmt::format("| median difference between that shrink and the reported one, points | | {} |\n\n",
+  text += fmt::format("| median difference between that gap reduction and the reported one, points | | {} |\n\n",
                       numberText(totals, "fresh_median_difference_points", "{:.2f}"));
   return text + followUpMisses(score.follow_ups);
 }
 
-/// What is wrong with the causes that were named; empty if nothing is.
+/// The fault of the named causes; empty if there is none.
 std::string wrongCause(const Judgement& j) {
   if (j.kind == "null") return j.false_alarm.value_or(false) ? "false alarm" : "";
   if (j.verdict == "failed") return "no answer: " + j.message;
-  if (j.kind == "open")
-    return j.open_detected.value_or(false) ? "" : j.verdict == "no_gap" ? "gap not seen" : "named a cause that it is not";
+  if (j.kind == "open") return j.open_detected.value_or(false) ? "" : j.verdict == "no_gap" ? "gap not seen" : "named a wrong cause";
   if (j.verdict == "no_gap") return "gap not seen";
   if (j.kind == "double" && !j.pair.value_or(false)) return j.acceptable.value_or(false) ? "second cause missed" : "wrong causes";
-  if (j.acceptable.value_or(true)) return j.spurious.value_or(false) ? "a further cause that is not there" : "";
+  if (j.acceptable.value_or(true)) return j.spurious.value_or(false) ? "a further cause that is not present" : "";
   if (j.namesEffect() && j.top1.value_or(false)) return "component";
   return std::string(j.namesEffect() ? "wrong cause" : "no cause named") + (j.covered.value_or(false) ? ", truth in the set" : "");
 }
@@ -182,7 +178,7 @@ std::string failureOf(const Judgement& j) {
   if (const std::string wrong = wrongCause(j); !wrong.empty()) reasons.push_back(wrong);
   if (reasons.empty() && !j.verdict_right) reasons.emplace_back("verdict");
   if (reasons.empty() && j.oracle_share.value_or(1) < enough_share)
-    reasons.push_back(fmt::format("removes {:.0f} % of what the true effect does", percent * std::max(0.0, *j.oracle_share)));
+    reasons.push_back(fmt::format("removes {:.0f} % of what the true effect removes", percent * std::max(0.0, *j.oracle_share)));
   if (j.stage && !*j.stage) reasons.emplace_back("stage");
   return fmt::format("{}", fmt::join(reasons, "; "));
 }
@@ -195,8 +191,8 @@ std::string said(const Judgement& j) {
 
 std::string failures(const Score& score) {
   std::string text =
-      "## Every failure\n\n| case | robot | kind | size | gap / noise | true | said | probability | verdict | what failed |\n"
-      "|---|---|---|---|---|---|---|---|---|---|\n";
+      "## Every failure\n\n| case | robot | kind | size | gap / noise | true | said | probability | verdict | what failed "
+      "|\n|---|---|---|---|---|---|---|---|---|---|\n";
   int count = 0;
   for (const Judgement& j : score.cases) {
     const std::string failure = failureOf(j);
@@ -213,9 +209,8 @@ std::string failures(const Score& score) {
 std::string pageText(const Score& score) {
   const json& totals = score.totals;
   return introduction(score) + overview(totals) +
-         "![How often answers were right over the probability given](figures/blind_reliability.svg)\n\n"
-         "![Share of causes found over the size of the gap](figures/blind_detectability.svg)\n\n"
-         "![True stage against answered stage](figures/blind_confusion.svg)\n\n" +
+         "![How often answers were right over the probability given](figures/blind_reliability.svg)\n\n![Share of causes found over the "
+         "size of the gap](figures/blind_detectability.svg)\n\n![True stage against answered stage](figures/blind_confusion.svg)\n\n" +
          groupTable("kind", totals["by_kind"]) + groupTable("robot", totals["by_robot"]) + groupTable("size", totals["by_size"]) +
          groupTable("effect", totals["by_effect"]) + followed(score) + failures(score);
 }

@@ -1,4 +1,4 @@
-/// The page about a blind check.
+/// The page about a check on withheld causes.
 #pragma once
 
 #include <filesystem>
@@ -8,10 +8,10 @@
 
 namespace musclesim::blind {
 
-/// Markdown: method, rates beside what is aimed at, tables by kind, robot, size and effect, every failure.
+/// Markdown: method, rates beside their aims, tables by kind, robot, size and effect, every failure.
 std::string pageText(const Score& score);
 
-/// FOLDER/blind.md and FOLDER/figures/blind_*.svg.
+/// Writes FOLDER/blind.md and FOLDER/figures/blind_*.svg.
 void writePage(const Score& score, const std::filesystem::path& folder);
 
 }  // namespace musclesim::blind

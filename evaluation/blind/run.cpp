@@ -49,7 +49,7 @@ std::vector<Recording> recordingsOf(const fs::path& folder, const std::string& n
 
 namespace {
 
-/// The answer; nothing if it was interrupted.
+/// The answer; empty if it was interrupted.
 std::optional<json> answered(const fs::path& folder, const std::string& name, const RunOptions& options) {
   DiagnosisOptions how;
   how.candidates = options.candidates;
@@ -60,7 +60,7 @@ std::optional<json> answered(const fs::path& folder, const std::string& name, co
     if (diagnosis.partial) return std::nullopt;
     writeEffects(diagnosis.chosen_effects, effectsOf(folder, name).string());
     json answer = json::parse(diagnosisJson(diagnosis));
-    answer["cost"].erase("wall_s");  // not the same twice
+    answer["cost"].erase("wall_s");  // differs between runs
     return answer;
   } catch (const BadParameter& error) {
     return json{{"verdict", "failed"}, {"message", error.what()}};
@@ -94,7 +94,7 @@ bool answer(const fs::path& folder, const std::string& name, const RunOptions& o
   return true;
 }
 
-/// The commits that were noted when the answers were made.
+/// The commits noted when the answers were made.
 std::string commitsOf(const fs::path& folder, const std::vector<std::string>& names) {
   std::set<std::string> commits;
   for (const std::string& name : names) commits.insert(readObject(costOf(folder, name)).value("commit", ""));
@@ -158,7 +158,7 @@ RunSummary run(const fs::path& folder, const RunOptions& options) {
   });
   for (const std::string& name : names)
     if (isAnswered(folder, name) && readObject(answerOf(folder, name)).value("verdict", "") == "failed") ++summary.failed;
-  // What was sealed stays sealed: only new answers make a new seal.
+  // Existing seals are kept; only new answers make a new one.
   if (summary.complete() && (done_now > 0 || !fs::exists(folder / "answers.json"))) writeSummary(folder, names, members);
   return summary;
 }

@@ -20,9 +20,9 @@ struct RunOptions {
 };
 
 struct RunSummary {
-  int answered = 0;  ///< by now, earlier runs included
+  int answered = 0;  ///< so far, earlier runs included
   int count = 0;
-  int failed = 0;  ///< answers that are only the reason why there is none
+  int failed = 0;  ///< answers that only say why the diagnosis failed
   bool complete() const { return answered == count; }
 };
 
@@ -38,10 +38,10 @@ void requireSameProgram(const std::filesystem::path& file, const nlohmann::json&
 /// A case's recordings, named relative to DIR, so that an answer does not depend on where DIR lies.
 std::vector<Recording> recordingsOf(const std::filesystem::path& folder, const std::string& name);
 
-/// What was chosen, as a file for `--effects`.
+/// The chosen effects, as a file for `--effects`.
 std::filesystem::path effectsOf(const std::filesystem::path& folder, const std::string& name);
 
-/// The answers relative to DIR, in the order of the cases.
+/// The files of the answers relative to DIR, in the order of the cases.
 std::vector<std::string> answerFiles(const std::filesystem::path& folder);
 
 }  // namespace musclesim::blind

@@ -59,21 +59,21 @@ void putRates(json& totals, const Cases& cases) {
   for (const auto& [name, member] : members) putRate(totals, name, cases, [m = member](const Judgement& j) { return j.*m; });
 }
 
-/// Shares of single and double cases: at least 80 %; of single ones at least 80 % of the true effect's best fit; at least 20 points above
-/// the nominal refit where the cause is at least three times the noise. A nominal refit that makes it worse is none.
-void putShrink(json& totals, const Cases& cases) {
+/// Rates of gap reduction: at least 80 % (single and double cases); at least 80 % of the true effect's best fit (single cases); at least 20
+/// points above the nominal refit if the cause is at least three times the noise. A nominal refit that increases the gap counts as 0.
+void putReduction(json& totals, const Cases& cases) {
   constexpr double enough_percent = 80, enough_share = 0.8, enough_points = 20, large_gap = 3;
   putRate(totals, "shrink_at_least_80_percent", cases,
-          [](const Judgement& j) { return j.shrink_percent ? std::optional(*j.shrink_percent >= enough_percent) : std::nullopt; });
+          [](const Judgement& j) { return j.reduction_percent ? std::optional(*j.reduction_percent >= enough_percent) : std::nullopt; });
   putRate(totals, "shrink_at_least_80_percent_of_true_effect", cases,
           [](const Judgement& j) { return j.oracle_share ? std::optional(*j.oracle_share >= enough_share) : std::nullopt; });
   putRate(totals, "true_effect_listed", cases,
           [](const Judgement& j) { return j.oracle_share ? std::optional(j.oracle_listed) : std::nullopt; });
   putRate(totals, "shrink_20_points_above_nominal_refit", cases, [](const Judgement& j) {
-    if (!j.shrink_percent || j.gap_over_noise < large_gap) return std::optional<bool>();
-    return std::optional(*j.shrink_percent >= std::max(0.0, *j.nominal_refit_percent) + enough_points);
+    if (!j.reduction_percent || j.gap_over_noise < large_gap) return std::optional<bool>();
+    return std::optional(*j.reduction_percent >= std::max(0.0, *j.nominal_refit_percent) + enough_points);
   });
-  putNumber(totals, "shrink_median_percent", medianOf(valuesOf(cases, &Judgement::shrink_percent)));
+  putNumber(totals, "shrink_median_percent", medianOf(valuesOf(cases, &Judgement::reduction_percent)));
 }
 
 std::vector<Claim> claimsOf(const Cases& cases, const std::function<bool(const Judgement&)>& counts) {
@@ -105,7 +105,7 @@ std::string causesOf(const Judgement& j) {
   return j.true_ids.empty() ? "none" : fmt::format("{}", fmt::join(j.true_ids, " + "));
 }
 
-/// true id -> answered id -> count, of single and open cases.
+/// Counts by true id and answered id, of single and open cases.
 json confusionOf(const Cases& cases) {
   json confusion = json::object();
   for (const Judgement& j : cases) {
@@ -142,7 +142,7 @@ json caseJson(const Judgement& j) {
   put(object, "open_detected", j.open_detected);
   put(object, "false_alarm", j.false_alarm);
   put(object, "probability_of_truth", j.probability_of_truth);
-  put(object, "shrink_percent", j.shrink_percent);
+  put(object, "shrink_percent", j.reduction_percent);
   put(object, "oracle_share", j.oracle_share);
   put(object, "spurious", j.spurious);
   if (!j.message.empty()) object["message"] = j.message;
@@ -155,14 +155,10 @@ std::vector<Claim> claimsOfOneCause(const Cases& cases) {
   return claimsOf(cases, [](const Judgement& j) { return j.kind == "single" || j.kind == "open"; });
 }
 
-json rateJson(const Rate& rate) {
-  return {{"hits", rate.hits}, {"count", rate.count}, {"value", rate.value()}, {"low", rate.low()}, {"high", rate.high()}};
-}
-
 json totalsOf(const Cases& cases) {
   json totals = {{"cases", cases.size()}};
   putRates(totals, cases);
-  putShrink(totals, cases);
+  putReduction(totals, cases);
   putNumber(totals, "probability_of_truth", meanOf(valuesOf(cases, &Judgement::probability_of_truth)));
   putNumber(totals, "probability_of_acceptable", meanOf(valuesOf(cases, &Judgement::probability_of_acceptable)));
   putNumber(totals, "set_size", meanOf(valuesOf(cases, &Judgement::set_size)));

@@ -10,21 +10,18 @@
 
 namespace musclesim::blind {
 
-/// All judgements and what they add up to.
+/// All judgements and their totals.
 struct Score {
   nlohmann::json seal, answers;  ///< as in DIR
   std::vector<Judgement> cases;
-  std::vector<FollowUp> follow_ups;  ///< as far as there are
-  nlohmann::json totals;             ///< see totalsOf, of all and by kind, robot, size, effect
+  std::vector<FollowUp> follow_ups;  ///< empty if nothing was followed up
+  nlohmann::json totals;             ///< totalsOf() all cases and by kind, robot, size, effect
 };
 
 /// What was said of single and open causes.
 std::vector<Claim> claimsOfOneCause(const std::vector<Judgement>& cases);
 
-/// {"hits", "count", "value", "low", "high"}.
-nlohmann::json rateJson(const Rate& rate);
-
-/// Rates as {"hits", "count", "value", "low", "high"}, means and medians as numbers; what no case has is absent.
+/// Rates as in rateJson(), means and medians as numbers; what no case has is absent.
 nlohmann::json totalsOf(const std::vector<Judgement>& cases);
 
 /// Checks key, recordings and answers against their SHA-256, then judges every case. Throws BadFile if one differs or an answer is missing.

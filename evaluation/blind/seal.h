@@ -1,4 +1,4 @@
-/// What lies beside the recordings: the seal; and how far a key must be away.
+/// The seal beside the recordings, and how far away a key must be.
 #pragma once
 
 #include <filesystem>
@@ -20,9 +20,9 @@ std::vector<std::string> caseNames(const std::filesystem::path& folder);
 /// All files of the cases, relative to DIR, in order.
 std::vector<std::string> recordingFiles(const std::filesystem::path& folder);
 
-/// A readable file of that name in DIR or anywhere below, in DIR's parent, in the working folder, or in a folder directly in either.
+/// A readable file of that name in DIR or below, in DIR's parent, in the working folder, or in a folder directly in either of these.
 std::optional<std::filesystem::path> keyInReach(const std::string& key_name, const std::filesystem::path& folder);
-/// Whether a key in `key_folder` would be found so.
+/// Whether keyInReach() would find a key in `key_folder`.
 bool isInReach(const std::filesystem::path& key_folder, const std::filesystem::path& folder);
 
 /// Members that say which program wrote a file: "program", "program_sha256" and, if known, "commit".

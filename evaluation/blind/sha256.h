@@ -1,4 +1,4 @@
-/// Fingerprints that nobody can forge: SHA-256 (FIPS 180-4).
+/// Fingerprints: SHA-256 (FIPS 180-4).
 #pragma once
 
 #include <filesystem>
@@ -11,13 +11,13 @@ namespace musclesim::blind {
 /// 64 hexadecimal digits.
 std::string sha256(std::string_view bytes);
 
-/// Of a file's contents. Throws IoError if it cannot be read.
+/// Fingerprint of a file's contents. Throws IoError if it cannot be read.
 std::string sha256OfFile(const std::filesystem::path& file);
 
-/// Of several files: the fingerprint of the lines "fingerprint  name", names relative to the folder, in the order given.
+/// Fingerprint of several files: that of the lines "fingerprint  name", names relative to the folder, in the order given.
 std::string sha256OfFiles(const std::filesystem::path& folder, const std::vector<std::string>& names);
 
-/// Of the running program.
+/// Fingerprint of the running program.
 std::string sha256OfProgram();
 
 }  // namespace musclesim::blind

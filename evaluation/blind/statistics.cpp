@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "musclesim/base/random.h"
@@ -14,6 +15,10 @@ double Rate::bound(double side) const {
   const double n = count, p = value();
   const double bound = (p + z * z / (2 * n) + side * z * std::sqrt(p * (1 - p) / n + z * z / (4 * n * n))) / (1 + z * z / n);
   return std::clamp(bound, 0.0, 1.0);
+}
+
+nlohmann::json rateJson(const Rate& rate) {
+  return {{"hits", rate.hits}, {"count", rate.count}, {"value", rate.value()}, {"low", rate.low()}, {"high", rate.high()}};
 }
 
 std::optional<double> meanOf(const std::vector<double>& values) {

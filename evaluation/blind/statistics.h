@@ -1,6 +1,7 @@
 /// Rates with intervals, medians, calibration.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <vector>
 
@@ -21,6 +22,9 @@ struct Rate {
  private:
   double bound(double side) const;
 };
+
+/// {"hits", "count", "value", "low", "high"}.
+nlohmann::json rateJson(const Rate& rate);
 
 /// Nothing of an empty list.
 std::optional<double> meanOf(const std::vector<double>& values);

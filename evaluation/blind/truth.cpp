@@ -20,7 +20,7 @@ std::string noiseParameter(const std::string& signal) {
   return "sensor.hand_noise_mm";
 }
 
-/// How many last digits of a sensor make one unit: far finer than its noise.
+/// Number of last digits per unit of a sensor: far finer than its noise.
 double stepsPerUnit(const std::string& signal) {
   return signal.starts_with("pressure_") ? 1e5 : 1e4;
 }
@@ -36,7 +36,8 @@ Truth::Truth(std::vector<Recording> plans, std::vector<std::string> signals, std
   }
 }
 
-/// The arm is sensitive: a finer step alone moves its hand by millimetres, many times the noise. There only laws and seeds differ.
+/// The arm is sensitive: a finer time step alone moves its hand by millimetres, many times the noise. Its plants differ from the model in
+/// laws and seeds only.
 int Truth::stepRatio() const {
   return plans_.front().info.robot == "arm" ? 1 : 2;
 }

@@ -1,4 +1,4 @@
-/// A plant with a withheld cause: what it measures and how far the model is off.
+/// A plant with a withheld cause: its measurements and its distance from the model.
 #pragma once
 
 #include <cstdint>
@@ -10,24 +10,24 @@
 
 namespace musclesim::blind {
 
-/// One plant, its commands, its sensors. The plant is simulated with other laws, a finer internal step and other seeds than the model that
-/// a diagnosis compares it with.
+/// One plant with its commands and sensors, simulated with other laws, a finer internal step and other seeds than the model that a
+/// diagnosis compares it with.
 class Truth {
  public:
-  /// `signals`: what is measured; `noise_std`: of each of them. The model's own answer is simulated here.
+  /// `signals`: the measured ones; `noise_std`: of each of them. Simulates the model's own prediction.
   Truth(std::vector<Recording> plans, std::vector<std::string> signals, std::map<std::string, double> noise_std, std::uint64_t seed);
 
   /// RMSE per signal between the model and the plant with these effects, without noise, over all recordings. NaN if the plant diverges.
   std::map<std::string, double> rmse(const std::vector<ActiveEffect>& effects) const;
   /// The largest RMSE over noise of any signal.
   double gapOverNoise(const std::map<std::string, double>& rmse) const;
-  /// Mean over signals of RMSE^2 / noise^2: the normalised gap of a diagnosis with perfect floors.
+  /// Mean over signals of RMSE^2 / noise^2: the normalised gap of a diagnosis that knows the noise exactly.
   double normalisedGap(const std::map<std::string, double>& rmse) const;
-  /// What the sensors of the plant read, noise included, without a word about effects, seed or step.
+  /// The readings of the plant's sensors, noise included, without any trace of effects, seed or step.
   std::vector<Recording> measured(const std::vector<ActiveEffect>& effects) const;
 
   const std::vector<std::string>& signals() const { return signals_; }
-  /// How many internal steps of the plant there are for one of the model.
+  /// Internal steps of the plant per internal step of the model.
   int stepRatio() const;
 
  private:

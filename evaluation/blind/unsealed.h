@@ -1,4 +1,4 @@
-/// What a call of `musclesim blind make` that was stopped had made: cases whose key is not sealed yet.
+/// The finished cases of an interrupted call of `musclesim blind make`, whose key is not sealed yet.
 #pragma once
 
 #include <filesystem>
@@ -8,10 +8,11 @@
 
 namespace musclesim::blind {
 
-/// Keys of single cases in a folder of their own below that of the keys, each written when the recordings of its case are complete.
+/// The keys of single cases, in a folder of their own below the folder of keys, each written when the recordings of its case are complete.
 class UnsealedCases {
  public:
-  /// Of the call that `call` describes: its folder and all that its cases depend on. Throws BadParameter where those of another call are.
+  /// For the call that `call` describes: its folder and all that its cases depend on. Throws BadParameter if the folder belongs to another
+  /// call.
   UnsealedCases(const std::filesystem::path& key_folder, nlohmann::json call);
   /// Whether an earlier call like this one has begun.
   bool exist() const;

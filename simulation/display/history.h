@@ -3,7 +3,7 @@
 
 #include <deque>
 
-#include "simulation/scene/snapshot.h"
+#include "simulation/snapshot.h"
 
 namespace musclesim {
 

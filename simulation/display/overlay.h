@@ -3,7 +3,7 @@
 
 #include "console.h"
 #include "painter.h"
-#include "simulation/scene/snapshot.h"
+#include "simulation/snapshot.h"
 
 namespace musclesim {
 

@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
+#include "../snapshot.h"
 #include "camera.h"
 #include "gpu.h"
-#include "snapshot.h"
 
 namespace musclesim {
 

@@ -5,10 +5,10 @@
 
 #include <cmath>
 
+#include "diagnosis/actuation_phases.h"
 #include "diagnosis/drawing.h"
 #include "diagnosis/refit.h"
-#include "diagnosis/regimes.h"
-#include "diagnosis/screen.h"
+#include "diagnosis/sensitivity.h"
 #include "planted.h"
 
 namespace musclesim {
@@ -27,13 +27,13 @@ class Rig : public testing::Test {
 };
 
 TEST_F(Rig, MisfitIsTheLogarithmOfTheResidualOverTheFloorPerCell) {
-  ASSERT_EQ(both.cells().size(), 2u);
+  ASSERT_EQ(both.blocks().size(), 2u);
   ASSERT_EQ(both.size(), 300);
-  const double floor = planted::noise_mm;
-  EXPECT_NEAR(both.cells()[0].floor, floor, 1e-12);
+  const double sigma = planted::noise_mm;
+  EXPECT_NEAR(both.blocks()[0].sigma, sigma, 1e-12);
   EXPECT_EQ(both.logMisfit(Eigen::VectorXd::Zero(300)), 0);
-  EXPECT_EQ(both.logMisfit(Eigen::VectorXd::Constant(300, 0.5 * floor)), 0);
-  Eigen::VectorXd residual = Eigen::VectorXd::Constant(300, floor);
+  EXPECT_EQ(both.logMisfit(Eigen::VectorXd::Constant(300, 0.5 * sigma)), 0);
+  Eigen::VectorXd residual = Eigen::VectorXd::Constant(300, sigma);
   residual.head(150) *= 3;
   residual.tail(150) *= 5;
   EXPECT_NEAR(both.logMisfit(residual), std::log(3) + std::log(5), 1e-12);
@@ -44,33 +44,33 @@ TEST_F(Rig, MisfitIsTheLogarithmOfTheResidualOverTheFloorPerCell) {
 
 /// Two cells, their residuals three and five floors: half of the sum of mean square over (floor^2 + residual^2).
 TEST_F(Rig, BySquaresWeighsCellsByAResidual) {
-  const double floor = planted::noise_mm;
-  Eigen::VectorXd residual = Eigen::VectorXd::Constant(300, 3 * floor);
-  residual.tail(150).setConstant(5 * floor);
+  const double sigma = planted::noise_mm;
+  Eigen::VectorXd residual = Eigen::VectorXd::Constant(300, 3 * sigma);
+  residual.tail(150).setConstant(5 * sigma);
   const Comparison squares = both.bySquares(residual);
   EXPECT_NEAR(squares.logMisfit(residual), 0.5 * (9.0 / 10 + 25.0 / 26), 1e-12);
   EXPECT_NEAR(squares.logMisfit(residual / 2), squares.logMisfit(residual) / 4, 1e-12);
   const Eigen::VectorXd weights = squares.weights(0.1 * residual);
-  EXPECT_NEAR(weights[0], 1 / (floor * std::sqrt(10.0 * 150)), 1e-9);
-  EXPECT_NEAR(weights[299], 1 / (floor * std::sqrt(26.0 * 150)), 1e-9);
+  EXPECT_NEAR(weights[0], 1 / (sigma * std::sqrt(10.0 * 150)), 1e-9);
+  EXPECT_NEAR(weights[299], 1 / (sigma * std::sqrt(26.0 * 150)), 1e-9);
   EXPECT_EQ(squares.predicted(Model{}), both.predicted(Model{}));
 }
 
 /// Every row a reading of its own, every reading held for four rows, one reading held throughout, a third of the rows without a number.
-TEST(AveragedShareOfFloor, CountsReadingsNotRows) {
+TEST(AveragedShareOfSigma, CountsReadingsNotRows) {
   auto every = [](int held) {
     std::vector<double> values;
     for (int row = 0; row < 960; ++row) values.push_back(row / held);  // whole numbers
     return values;
   };
   auto share = [](double readings) { return std::sqrt(1 / readings + steady_share * steady_share); };
-  EXPECT_NEAR(averagedShareOfFloor(every(1)), share(block_rows), 1e-12);
-  EXPECT_NEAR(averagedShareOfFloor(every(4)), share(block_rows / 4.0), 1e-12);
-  EXPECT_NEAR(averagedShareOfFloor(every(960)), share(1), 1e-12);
+  EXPECT_NEAR(averagedShareOfSigma(every(1)), share(averaging_rows), 1e-12);
+  EXPECT_NEAR(averagedShareOfSigma(every(4)), share(averaging_rows / 4.0), 1e-12);
+  EXPECT_NEAR(averagedShareOfSigma(every(960)), share(1), 1e-12);
   std::vector<double> with_gaps = every(1);
   for (std::size_t row = 0; row < with_gaps.size(); row += 3) with_gaps[row] = NAN;
-  EXPECT_NEAR(averagedShareOfFloor(with_gaps), share(block_rows), 1e-12);
-  EXPECT_NEAR(averagedShareOfFloor({}), share(1), 1e-12);
+  EXPECT_NEAR(averagedShareOfSigma(with_gaps), share(averaging_rows), 1e-12);
+  EXPECT_NEAR(averagedShareOfSigma({}), share(1), 1e-12);
 }
 
 /// As if usual steps led elsewhere than all others, 100 floors away.
@@ -80,7 +80,7 @@ TEST_F(Rig, SaysWhatStepsChangeWhereCoarserOnesFollowAnotherMotion) {
   EXPECT_TRUE(both.unsteady().signal.empty());
   both.goCoarse(nominal + Eigen::VectorXd::Constant(300, 100 * planted::noise_mm));
   EXPECT_EQ(both.unsteady().signal, "length_0_mm");
-  EXPECT_NEAR(both.unsteady().in_floors, 100, 1);
+  EXPECT_NEAR(both.unsteady().in_sigmas, 100, 1);
   EXPECT_NEAR(both.unsteady().share_of_gap, 1, 0.05);
 }
 
@@ -101,28 +101,29 @@ TEST_F(Rig, GapIsTheMeanSquareBeyondTheFloorInUnitsOfTheFloor) {
   EXPECT_EQ(both.gap(Eigen::VectorXd::Constant(300, 0.9 * planted::noise_mm)).normalised, 0);
 }
 
-TEST_F(Rig, CellsOutOfTheFloorAreCounted) {
+TEST_F(Rig, BlocksOutOfTheNoiseAreCounted) {
   Eigen::VectorXd residual = Eigen::VectorXd::Constant(300, planted::noise_mm);
-  EXPECT_EQ(both.affectedCells(residual), 1);  // at least one
+  EXPECT_EQ(both.affectedBlocks(residual), 1);  // at least one
   residual.head(150) *= 2;
-  EXPECT_EQ(both.affectedCells(residual), 1);
+  EXPECT_EQ(both.affectedBlocks(residual), 1);
   residual.tail(150) *= 2;
-  EXPECT_EQ(both.affectedCells(residual), 2);
+  EXPECT_EQ(both.affectedBlocks(residual), 2);
 }
 
-TEST_F(Rig, RegimesFollowTheCommand) {
+TEST_F(Rig, ActuationPhasesFollowTheCommand) {
   // The first recording steps between 0.55 and 0.35 every half second from 0.55 at the start.
   const Comparison first(plant, {{0, 0, 200}});
-  const RegimeSums sums = regimeSums(first, Eigen::VectorXd::Constant(200, 2 * planted::noise_mm));
+  const PhaseSums sums = phaseSums(first, Eigen::VectorXd::Constant(200, 2 * planted::noise_mm));
   // A step counts for a tenth of a second: falls at 0.5 and 1.5 s, a rise at 1 s.
-  EXPECT_EQ(sums.rows[static_cast<std::size_t>(Regime::venting)], 20);
-  EXPECT_EQ(sums.rows[static_cast<std::size_t>(Regime::filling)], 10);
-  EXPECT_EQ(sums.rows[static_cast<std::size_t>(Regime::holding)], 170);
-  for (const Regime regime : {Regime::filling, Regime::venting, Regime::holding}) EXPECT_NEAR(sums.meanSquare(regime), 4, 1e-9);
+  EXPECT_EQ(sums.rows[static_cast<std::size_t>(ActuationPhase::venting)], 20);
+  EXPECT_EQ(sums.rows[static_cast<std::size_t>(ActuationPhase::filling)], 10);
+  EXPECT_EQ(sums.rows[static_cast<std::size_t>(ActuationPhase::holding)], 170);
+  for (const ActuationPhase phase : {ActuationPhase::filling, ActuationPhase::venting, ActuationPhase::holding})
+    EXPECT_NEAR(sums.meanSquare(phase), 4, 1e-9);
 }
 
 /// Where rows lie further apart than a step is remembered, the row before counts.
-TEST(Regimes, FollowTheCommandInSparseRows) {
+TEST(ActuationPhases, FollowTheCommandInSparseRows) {
   Recording sparse;
   sparse.file = "sparse.csv";
   sparse.info.robot = "rig";
@@ -135,9 +136,9 @@ TEST(Regimes, FollowTheCommandInSparseRows) {
   const DiagnosisOptions options;
   const Plant plant({sparse}, options);
   const Comparison comparison(plant, {{0, 0, 100}});
-  const RegimeSums sums = regimeSums(comparison, Eigen::VectorXd::Ones(100));
-  EXPECT_GT(sums.rows[static_cast<std::size_t>(Regime::filling)], 30);
-  EXPECT_GT(sums.rows[static_cast<std::size_t>(Regime::venting)], 30);
+  const PhaseSums sums = phaseSums(comparison, Eigen::VectorXd::Ones(100));
+  EXPECT_GT(sums.rows[static_cast<std::size_t>(ActuationPhase::filling)], 30);
+  EXPECT_GT(sums.rows[static_cast<std::size_t>(ActuationPhase::venting)], 30);
 }
 
 /// A problem without a simulation: the measured values are reached at z = (2, -1) along two directions, one of them bent.
@@ -161,15 +162,15 @@ TEST_F(Rig, FitFindsTheBottomOfABentValley) {
 
 TEST_F(Rig, AveragesShowWhatIsWeakButSlow) {
   const Comparison averaged(plant, {{0, 0, 150}, {1, 0, 150}}, Comparison::Averages::with);
-  ASSERT_EQ(averaged.cells().size(), 4u);
+  ASSERT_EQ(averaged.blocks().size(), 4u);
   ASSERT_EQ(averaged.size(), 300 + 2 * 9) << "blocks of 16 rows, the rest left out";
-  const Comparison::Cell& blocks = averaged.cells()[2];
-  const double floor = planted::noise_mm, block_floor = floor * std::sqrt(1.0 / 16 + 0.04);
-  EXPECT_NEAR(blocks.floor, block_floor, 1e-12);
+  const Comparison::Block& blocks = averaged.blocks()[2];
+  const double sigma = planted::noise_mm, block_sigma = sigma * std::sqrt(1.0 / 16 + 0.04);
+  EXPECT_NEAR(blocks.sigma, block_sigma, 1e-12);
   EXPECT_NEAR(averaged.measured()[blocks.first], both.measured().head(16).mean(), 1e-12);
   EXPECT_EQ(averaged.predicted(Model{}).head(300), both.predicted(Model{}));
-  const Eigen::VectorXd weak = Eigen::VectorXd::Constant(averaged.size(), 0.9 * floor);
-  EXPECT_NEAR(averaged.logMisfit(weak), 2 * std::log(0.9 * floor / block_floor), 1e-12) << "as recorded it is below the floor";
+  const Eigen::VectorXd weak = Eigen::VectorXd::Constant(averaged.size(), 0.9 * sigma);
+  EXPECT_NEAR(averaged.logMisfit(weak), 2 * std::log(0.9 * sigma / block_sigma), 1e-12) << "as recorded it is below the floor";
   EXPECT_EQ(averaged.gap(2 * weak).normalised, both.gap(2 * weak.head(300)).normalised) << "the gap is that of the signals as recorded";
 }
 
@@ -236,19 +237,20 @@ class LoadedRig : public Rig {
 
 TEST_F(LoadedRig, FirstLookSeesThePayload) {
   options.candidates = {"payload", "valve_lag"};
-  std::vector<Suspect> all = suspects(plant, options);
+  std::vector<Hypothesis> all = hypotheses(plant, options);
   const Eigen::VectorXd nominal = both.predicted(Model{});
   int simulations = 0;
-  const std::vector<Signature> looks = screen(both, all, nominal, Model{}, Strengths::adapted, 1, [&] { ++simulations; });
+  const std::vector<Sensitivity> sensitivities =
+      sensitivitiesOf(both, all, nominal, Model{}, Strengths::adapted, 1, [&] { ++simulations; });
   EXPECT_GT(simulations, 1);
   const double before = both.logMisfit(both.measured() - nominal);
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i].info().id == "payload") {
-      EXPECT_LT(looks[i].log_misfit, 0.4 * before);
-      const auto values = all[i].valuesAt(looks[i].amount);
+      EXPECT_LT(sensitivities[i].log_misfit, 0.4 * before);
+      const auto values = all[i].valuesAt(sensitivities[i].amount);
       EXPECT_NEAR(values.front().second, 0.1, 0.03);
     } else {
-      EXPECT_GT(looks[i].log_misfit, 0.8 * before);
+      EXPECT_GT(sensitivities[i].log_misfit, 0.8 * before);
     }
   }
 }
@@ -261,19 +263,19 @@ class SlightlyDampedRig : public Rig {
 
 TEST_F(SlightlyDampedRig, StrengthsThatDoTooMuchAreWeakened) {
   options.candidates = {"viscous_loss"};
-  std::vector<Suspect> all = suspects(plant, options);
+  std::vector<Hypothesis> all = hypotheses(plant, options);
   const Eigen::VectorXd nominal = both.predicted(Model{});
   const double typical = all.front().valuesAt(all.front().typical()).front().second;
-  const std::vector<Signature> looks = screen(both, all, nominal, Model{}, Strengths::adapted, 1, [] {});
+  const std::vector<Sensitivity> sensitivities = sensitivitiesOf(both, all, nominal, Model{}, Strengths::adapted, 1, [] {});
   Eigen::VectorXd z = Eigen::VectorXd::Zero(all.front().coordinateCount());
   z[all.front().strengths().front()] = 1;
   EXPECT_LT(all.front().valuesAt(z).front().second, 0.1 * typical);
-  z[all.front().strengths().front()] = looks.front().amount[0];
+  z[all.front().strengths().front()] = sensitivities.front().amount[0];
   EXPECT_NEAR(all.front().valuesAt(z).front().second, damping, 0.5 * damping);
-  std::vector<Suspect> fresh = suspects(plant, options);
-  screen(both, fresh, nominal, Model{}, Strengths::kept, 1, [] {});
+  std::vector<Hypothesis> fresh = hypotheses(plant, options);
+  sensitivitiesOf(both, fresh, nominal, Model{}, Strengths::kept, 1, [] {});
   EXPECT_EQ(fresh.front().valuesAt(fresh.front().typical()).front().second, typical);
-  EXPECT_LT(looks.front().log_misfit, 0.6 * both.logMisfit(both.measured() - nominal));
+  EXPECT_LT(sensitivities.front().log_misfit, 0.6 * both.logMisfit(both.measured() - nominal));
 }
 
 class PushedRig : public Rig {
@@ -284,16 +286,16 @@ class PushedRig : public Rig {
 /// The load of the rig moves up and down only.
 TEST_F(PushedRig, StrengthsThatDoNothingAreLeftOut) {
   options.candidates = {"external_force"};
-  std::vector<Suspect> all = suspects(plant, options), fresh = all;
+  std::vector<Hypothesis> all = hypotheses(plant, options), fresh = all;
   const Eigen::VectorXd nominal = both.predicted(Model{});
-  const std::vector<Signature> looks = screen(both, all, nominal, Model{}, Strengths::adapted, 1, [] {});
+  const std::vector<Sensitivity> sensitivities = sensitivitiesOf(both, all, nominal, Model{}, Strengths::adapted, 1, [] {});
   ASSERT_EQ(all.front().coordinateCount(), 1);
-  EXPECT_EQ(looks.front().per_strength.size(), 1U);
-  const auto values = all.front().valuesAt(looks.front().amount);
+  EXPECT_EQ(sensitivities.front().per_strength.size(), 1U);
+  const auto values = all.front().valuesAt(sensitivities.front().amount);
   ASSERT_EQ(values.size(), 1U);
   EXPECT_EQ(values.front().first, "force_y_N");
   EXPECT_NEAR(values.front().second, -2, 0.5);
-  screen(both, fresh, nominal, Model{}, Strengths::kept, 1, [] {});
+  sensitivitiesOf(both, fresh, nominal, Model{}, Strengths::kept, 1, [] {});
   EXPECT_EQ(fresh.front().coordinateCount(), 3);
 }
 
@@ -305,13 +307,13 @@ class TiltedRig : public Rig {
 /// On the rig a tilt to the front and one to the side do the same, and in either direction: one of them is left, and it explains the gap.
 TEST_F(TiltedRig, OfStrengthsThatActAlikeOneIsLeft) {
   options.candidates = {"base_tilt"};
-  std::vector<Suspect> all = suspects(plant, options), fresh = all;
+  std::vector<Hypothesis> all = hypotheses(plant, options), fresh = all;
   const Eigen::VectorXd nominal = both.predicted(Model{});
-  const std::vector<Signature> looks = screen(both, all, nominal, Model{}, Strengths::adapted, 1, [] {});
+  const std::vector<Sensitivity> sensitivities = sensitivitiesOf(both, all, nominal, Model{}, Strengths::adapted, 1, [] {});
   ASSERT_EQ(all.front().coordinateCount(), 1);
   const double before = both.logMisfit(both.measured() - nominal);
-  EXPECT_LT(looks.front().log_misfit, 0.2 * before);
-  EXPECT_LT(screen(both, fresh, nominal, Model{}, Strengths::kept, 1, [] {}).front().log_misfit, 0.2 * before)
+  EXPECT_LT(sensitivities.front().log_misfit, 0.2 * before);
+  EXPECT_LT(sensitivitiesOf(both, fresh, nominal, Model{}, Strengths::kept, 1, [] {}).front().log_misfit, 0.2 * before)
       << "two that act alike do not drive each other against their bounds";
 }
 
@@ -325,9 +327,9 @@ class AnotherLaw : public Rig {
 /// Dry friction in the muscle swallows small changes: derivatives by small differences point nowhere.
 TEST_F(AnotherLaw, IsFittedThroughDryFriction) {
   options.candidates = {"force_law"};
-  std::vector<Suspect> all = suspects(plant, options);
+  std::vector<Hypothesis> all = hypotheses(plant, options);
   const Eigen::VectorXd nominal = both.predicted(Model{});
-  screen(both, all, nominal, Model{}, Strengths::adapted, 1, [] {});
+  sensitivitiesOf(both, all, nominal, Model{}, Strengths::adapted, 1, [] {});
   FitProblem problem;
   problem.start = Eigen::VectorXd::Constant(all.front().coordinateCount(), -0.3);
   problem.clamped = [&](const Eigen::VectorXd& z) { return all.front().clamped(z); };

@@ -21,7 +21,7 @@ const Trial& trialOf(const Diagnosis& diagnosis, const std::string& label) {
 /// ln of what is left unseen over what is left seen, summed over all cells.
 double lostUnseen(const Trial& trial) {
   double sum = 0;
-  for (std::size_t i = 0; i < trial.rms.size(); ++i) sum += std::log(trial.rms_unseen.at(i) / trial.rms[i]);
+  for (std::size_t i = 0; i < trial.rms.size(); ++i) sum += std::log(trial.rms_cross_validated.at(i) / trial.rms[i]);
   return sum;
 }
 
@@ -40,7 +40,7 @@ TEST(CrossValidation, JudgesByRecordingsThatTheNumbersWereNotFittedTo) {
 TEST(CrossValidation, OneRecordingAndItsRepeatAreSeenTogether) {
   const std::vector<ActiveEffect> heavy = {{"payload", "hand", {{"mass_kg", 0.2}}}};
   const Diagnosis found = diagnose({recorded(heavy, 0.15, 1), recorded(heavy, 0.15, 3), recorded(heavy, 0.2, 2)}, few({"payload"}));
-  EXPECT_TRUE(trialOf(found, "payload@hand").rms_unseen.empty());
+  EXPECT_TRUE(trialOf(found, "payload@hand").rms_cross_validated.empty());
 }
 
 }  // namespace

@@ -33,8 +33,8 @@ TEST(Diagnose, FindsAPlantedPayload) {
   EXPECT_NEAR(mass.value, 0.2, 0.01);
   EXPECT_LE(mass.low, mass.value);
   EXPECT_GE(mass.high, mass.value);
-  EXPECT_GT(found.shrink_percent, 95);
-  EXPECT_GT(found.shrink_percent, found.nominal_refit_shrink_percent);
+  EXPECT_GT(found.reduction_percent, 95);
+  EXPECT_GT(found.reduction_percent, found.nominal_refit_percent);
 }
 
 /// What an elbow measures but for forces under waves and a step, and once more under larger ones.
@@ -144,7 +144,7 @@ TEST(Diagnose, JsonHasWhatTheContractAsksFor) {
                            "gap", "unexplained_percent", "partial", "cost"})
     EXPECT_TRUE(json.contains(name)) << name;
   double probability = json.at("none_of_these").get<double>(), share = 0;
-  for (const auto& explanation : json.at("explanations")) probability += explanation.at("probability").get<double>();
+  for (const auto& fitted : json.at("explanations")) probability += fitted.at("probability").get<double>();
   for (const auto& place : json.at("where")) share += place.at("share").get<double>();
   EXPECT_NEAR(probability, 1, 0.05);  // explanations below 0.01 are not listed
   EXPECT_NEAR(share, 1, 1e-9);
@@ -295,10 +295,10 @@ TEST(Diagnose, TellsWhatComesNearestWhereNothingDeservesBelief) {
   ASSERT_EQ(found.verdict, Verdict::unexplained) << diagnosisSummary(found);
   EXPECT_TRUE(found.chosen.empty());
   ASSERT_FALSE(found.attempt.effects.empty()) << diagnosisSummary(found);
-  EXPECT_GT(found.attempt.shrink_percent, 85);
+  EXPECT_GT(found.attempt.reduction_percent, 85);
   EXPECT_EQ(found.attempt.effects.size(), found.attempt.active_effects.size());
   EXPECT_TRUE(contains(diagnosisJson(found), "\"attempt\""));
-  EXPECT_TRUE(contains(diagnosisSummary(found), "What comes nearest"));
+  EXPECT_TRUE(contains(diagnosisSummary(found), "The best rejected hypothesis"));
 }
 
 TEST(Diagnose, EffectsThatThePlantCannotTakeAreNoCandidates) {

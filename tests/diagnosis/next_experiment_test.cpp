@@ -60,15 +60,15 @@ ActiveEffect weaker(double gain) {
 TEST(NextExperiment, TellsALagFromAWeakerMuscle) {
   DiagnosisOptions options;
   const Plant plant(planted::plant({}), options);
-  const std::vector<Contender> contenders = {{"lag", {{lag()}, {}}, 0.6}, {"weaker", {{weaker(0.98)}, {}}, 0.4}};
-  const Experiment experiment = nextExperiment(plant, contenders, Fidelity::coarse, 2, [] {});
+  const std::vector<Rival> rivals = {{"lag", {{lag()}, {}}, 0.6}, {"weaker", {{weaker(0.98)}, {}}, 0.4}};
+  const Experiment experiment = nextExperiment(plant, rivals, Fidelity::coarse, 2, [] {});
   EXPECT_GT(experiment.difference, 3);
   EXPECT_EQ(experiment.separates, (std::vector<std::string>{"lag", "weaker"}));
   const Recording schedule = scheduled({experiment.schedule, experiment.amplitude, experiment.level}, plant.recordings());
   ASSERT_EQ(schedule.time_s.size(), experiment.commands.size());
   for (std::size_t row = 0; row < experiment.commands.size(); ++row)
     EXPECT_EQ(experiment.commands[row][0], schedule.find("command_0")->values[row]);
-  EXPECT_TRUE(nextExperiment(plant, {contenders.front()}, Fidelity::coarse, 1, [] {}).commands.empty());
+  EXPECT_TRUE(nextExperiment(plant, {rivals.front()}, Fidelity::coarse, 1, [] {}).commands.empty());
 }
 
 /// The planted muscle is never longer than 280 mm nor shorter than 150 (tests/diagnosis/planted.h leaves the rig as it is).
@@ -78,16 +78,16 @@ TEST(NextExperiment, KeepsAboutWhereThePlantHasBeenWhateverTheContender) {
   double low = 1e9, high = -1e9;
   for (const Recording& recording : plant.recordings())
     for (const double length_mm : recording.find("length_0_mm")->values) low = std::min(low, length_mm), high = std::max(high, length_mm);
-  const std::vector<Contender> contenders = {{"lag", {{lag()}, {}}, 0.9}, {"stronger", {{weaker(1.3)}, {}}, 0.1}};
-  const Experiment experiment = nextExperiment(plant, contenders, Fidelity::coarse, 2, [] {});
+  const std::vector<Rival> rivals = {{"lag", {{lag()}, {}}, 0.9}, {"stronger", {{weaker(1.3)}, {}}, 0.1}};
+  const Experiment experiment = nextExperiment(plant, rivals, Fidelity::coarse, 2, [] {});
   ASSERT_FALSE(experiment.commands.empty());
   const Recording schedule = scheduled({experiment.schedule, experiment.amplitude, experiment.level}, plant.recordings());
-  for (const Contender& contender : contenders) {
-    const auto predicted = plant.predictSchedule(schedule, contender.model, Fidelity::coarse);
+  for (const Rival& rival : rivals) {
+    const auto predicted = plant.predictSchedule(schedule, rival.model, Fidelity::coarse);
     ASSERT_TRUE(predicted);
     const auto [shortest, longest] = rangeOf(*predicted, "length_0_mm");
-    EXPECT_GT(shortest, low - 0.3 * (high - low)) << contender.label;
-    EXPECT_LT(longest, high + 0.3 * (high - low)) << contender.label;
+    EXPECT_GT(shortest, low - 0.3 * (high - low)) << rival.label;
+    EXPECT_LT(longest, high + 0.3 * (high - low)) << rival.label;
   }
 }
 
@@ -116,15 +116,15 @@ TEST(NextExperiment, LetsThePlantRestOnAStopWhereItHasDoneSo) {
   EXPECT_GT(rangeOf(recordings.back(), "angle_elbow_deg").first, 69);
   DiagnosisOptions options;
   const Plant plant(recordings, options);
-  const std::vector<Contender> contenders = {{"lag", {{lag()}, {}}, 0.6}, {"weaker", {{weaker(0.98)}, {}}, 0.4}};
-  const Experiment experiment = nextExperiment(plant, contenders, Fidelity::coarse, 2, [] {});
+  const std::vector<Rival> rivals = {{"lag", {{lag()}, {}}, 0.6}, {"weaker", {{weaker(0.98)}, {}}, 0.4}};
+  const Experiment experiment = nextExperiment(plant, rivals, Fidelity::coarse, 2, [] {});
   ASSERT_FALSE(experiment.commands.empty());
   EXPECT_TRUE(contains(experiment.why, "pressure")) << experiment.why;
   const Recording schedule = scheduled({experiment.schedule, experiment.amplitude, experiment.level}, plant.recordings());
-  for (const Contender& contender : contenders) {
-    const auto predicted = plant.predictSchedule(schedule, contender.model, Fidelity::coarse);
+  for (const Rival& rival : rivals) {
+    const auto predicted = plant.predictSchedule(schedule, rival.model, Fidelity::coarse);
     ASSERT_TRUE(predicted);
-    EXPECT_LT(rangeOf(*predicted, "angle_elbow_deg").second, 70 + 0.02 * 140) << contender.label;
+    EXPECT_LT(rangeOf(*predicted, "angle_elbow_deg").second, 70 + 0.02 * 140) << rival.label;
   }
 }
 
@@ -133,10 +133,10 @@ TEST(NextExperiment, CountsWhatIsLeftWhenContendersAreFittedAnew) {
   DiagnosisOptions options;
   const Plant plant(planted::plant({}), options);
   auto differenceOf = [&](double held) {
-    std::vector<Contender> contenders;
+    std::vector<Rival> rivals;
     for (const double gain : {0.97, 0.98})
-      contenders.push_back({"gain", {{weaker(gain)}, {}}, 0.5, {{{weaker(gain + 0.01)}, {}}}, Eigen::MatrixXd::Constant(1, 1, held)});
-    return nextExperiment(plant, contenders, Fidelity::coarse, 2, [] {}).difference;
+      rivals.push_back({"gain", {{weaker(gain)}, {}}, 0.5, {{{weaker(gain + 0.01)}, {}}}, Eigen::MatrixXd::Constant(1, 1, held)});
+    return nextExperiment(plant, rivals, Fidelity::coarse, 2, [] {}).difference;
   };
   const double held = differenceOf(1e6), free = differenceOf(0);
   EXPECT_GT(held, 3);
@@ -159,8 +159,8 @@ TEST(NextExperiment, SaysWhatItSeparatesAndWhatNot) {
 TEST(NextExperiment, DoesNotAskHowLikelyContendersAreInAll) {
   DiagnosisOptions options;
   const Plant plant(planted::plant({}), options);
-  const std::vector<Contender> contenders = {{"lag", {{lag()}, {}}, 6e-4}, {"weaker", {{weaker(0.98)}, {}}, 4e-4}};
-  EXPECT_FALSE(nextExperiment(plant, contenders, Fidelity::coarse, 2, [] {}).commands.empty());
+  const std::vector<Rival> rivals = {{"lag", {{lag()}, {}}, 6e-4}, {"weaker", {{weaker(0.98)}, {}}, 4e-4}};
+  EXPECT_FALSE(nextExperiment(plant, rivals, Fidelity::coarse, 2, [] {}).commands.empty());
 }
 
 /// A contender that no schedule tells from the likeliest is no reason for an experiment.

@@ -15,27 +15,27 @@ class OddsOnARig : public testing::Test {
  protected:
   enum Index : std::size_t { payload, bias, gain, threshold };
 
-  Eigen::VectorXd leaving(double floors) const { return Eigen::VectorXd::Constant(comparison_.size(), floors * planted::noise_mm); }
+  Eigen::VectorXd leaving(double sigmas) const { return Eigen::VectorXd::Constant(comparison_.size(), sigmas * planted::noise_mm); }
 
-  Explanation explanation(const std::vector<std::size_t>& members, double floors) const {
-    Explanation result{members, {}, {}, leaving(floors), 0, 0};
+  FittedHypothesis fitted(const std::vector<std::size_t>& members, double sigmas) const {
+    FittedHypothesis result{members, {}, {}, leaving(sigmas), 0, 0};
     Eigen::Index count = 0;
-    for (const std::size_t member : members) count += suspects_[member].coordinateCount();
+    for (const std::size_t member : members) count += hypotheses_[member].coordinateCount();
     result.z = Eigen::VectorXd::Constant(count, 0.1);
     return result;
   }
 
-  double ofSingle(std::size_t member, double floors) const { return odds_.ofExplanation(explanation({member}, floors)); }
+  double ofSingle(std::size_t member, double sigmas) const { return odds_.ofHypothesis(fitted({member}, sigmas)); }
 
   DiagnosisOptions options_;
   Plant plant_{planted::plant({}), options_};
   Comparison comparison_{plant_, {{0, 0, 400}}};
-  std::vector<Suspect> suspects_ = {{effectInfo("payload"), "hand", plant_},
-                                    {effectInfo("sensor_bias"), "signal_length_0", plant_},
-                                    {effectInfo("force_gain"), "muscle_0", plant_},
-                                    {effectInfo("threshold_pressure"), "muscle_0", plant_}};
+  std::vector<Hypothesis> hypotheses_ = {{effectInfo("payload"), "hand", plant_},
+                                         {effectInfo("sensor_bias"), "signal_length_0", plant_},
+                                         {effectInfo("force_gain"), "muscle_0", plant_},
+                                         {effectInfo("threshold_pressure"), "muscle_0", plant_}};
   Eigen::VectorXd nominal_ = leaving(20);
-  Odds odds_{comparison_, nominal_, suspects_};
+  Odds odds_{comparison_, nominal_, hypotheses_};
   Weighing weighing_;
 };
 
@@ -48,13 +48,13 @@ TEST_F(OddsOnARig, FollowWhatIsLeft) {
 }
 
 TEST_F(OddsOnARig, CountParameters) {
-  ASSERT_EQ(suspects_[threshold].coordinateCount(), suspects_[gain].coordinateCount() + 1);
+  ASSERT_EQ(hypotheses_[threshold].coordinateCount(), hypotheses_[gain].coordinateCount() + 1);
   EXPECT_NEAR(ofSingle(gain, 2) - ofSingle(threshold, 2), weighing_.per_parameter, 1e-9);
 }
 
 TEST_F(OddsOnARig, NoneOfTheseBeatsWhatHardlyExplainsAndLosesToWhatDoes) {
-  auto against = [&](double floors) {
-    return odds_.ofNoneOfThese({explanation({payload}, floors), explanation({gain}, 16)}) - ofSingle(payload, floors);
+  auto against = [&](double sigmas) {
+    return odds_.ofNoneOfThese({fitted({payload}, sigmas), fitted({gain}, 16)}) - ofSingle(payload, sigmas);
   };
   EXPECT_GT(against(15), 2);
   EXPECT_LT(against(2.5), -2);
@@ -63,46 +63,46 @@ TEST_F(OddsOnARig, NoneOfTheseBeatsWhatHardlyExplainsAndLosesToWhatDoes) {
 }
 
 TEST_F(OddsOnARig, NoneOfTheseIsLikelierBesideALawOfManyStrengths) {
-  const std::vector<Suspect> laws = {{effectInfo("pressure_calibration"), "muscle_0", plant_},
-                                     {effectInfo("force_gain"), "muscle_0", plant_}};
+  const std::vector<Hypothesis> laws = {{effectInfo("pressure_calibration"), "muscle_0", plant_},
+                                        {effectInfo("force_gain"), "muscle_0", plant_}};
   ASSERT_EQ(laws[0].strengths().size(), 2u);
   ASSERT_EQ(laws[1].strengths().size(), 1u);
   const Odds odds(comparison_, nominal_, laws);
   auto against = [&](std::size_t member) {
-    Explanation alone{{member}, Eigen::VectorXd::Constant(laws[member].coordinateCount(), 0.1), {}, leaving(3), 0, 0};
-    return odds.ofNoneOfThese({alone}) - odds.ofExplanation(alone);
+    FittedHypothesis alone{{member}, Eigen::VectorXd::Constant(laws[member].coordinateCount(), 0.1), {}, leaving(3), 0, 0};
+    return odds.ofNoneOfThese({alone}) - odds.ofHypothesis(alone);
   };
   EXPECT_NEAR(against(0) - against(1), weighing_.per_further_strength, 1e-9);
 }
 
 TEST_F(OddsOnARig, AreOfWhatWasNotSeenWhereThatIsKnown) {
-  Explanation flexible = explanation({payload}, 1);
-  flexible.unseen = leaving(4);
-  EXPECT_NEAR(odds_.ofExplanation(flexible), ofSingle(payload, 4), 1e-9);
+  FittedHypothesis flexible = fitted({payload}, 1);
+  flexible.cross_validated = leaving(4);
+  EXPECT_NEAR(odds_.ofHypothesis(flexible), ofSingle(payload, 4), 1e-9);
 }
 
 TEST_F(OddsOnARig, AFurtherEffectThatGainsNothingCosts) {
-  const Explanation alone = explanation({payload}, 2), pair = explanation({payload, bias}, 2);
-  EXPECT_NEAR(odds_.ofExplanation(alone) - odds_.ofExplanation(pair), weighing_.per_effect + weighing_.per_parameter, 1e-9);
+  const FittedHypothesis alone = fitted({payload}, 2), pair = fitted({payload, bias}, 2);
+  EXPECT_NEAR(odds_.ofHypothesis(alone) - odds_.ofHypothesis(pair), weighing_.per_effect + weighing_.per_parameter, 1e-9);
 }
 
 TEST_F(OddsOnARig, AFurtherEffectInTheSamePlaceCostsMore) {
-  const double same = odds_.ofExplanation(explanation({gain, threshold}, 1)), elsewhere = odds_.ofExplanation(explanation({gain, bias}, 1));
+  const double same = odds_.ofHypothesis(fitted({gain, threshold}, 1)), elsewhere = odds_.ofHypothesis(fitted({gain, bias}, 1));
   EXPECT_NEAR(elsewhere - same, weighing_.per_same_place + weighing_.per_parameter, 1e-9);
 }
 
 TEST_F(OddsOnARig, PlacesOverlapThroughAllAndThroughPairsOfMuscles) {
-  const std::vector<Suspect> on_two = {{effectInfo("force_gain"), "muscle_1", plant_},
-                                       {effectInfo("leak"), "all", plant_},
-                                       {effectInfo("channel_swap"), "muscle_0+muscle_1", plant_},
-                                       {effectInfo("leak"), "muscle_10", plant_},
-                                       {effectInfo("payload"), "hand", plant_},
-                                       {effectInfo("base_tilt"), "base", plant_},
-                                       {effectInfo("sensor_bias"), "all", plant_}};
+  const std::vector<Hypothesis> on_two = {{effectInfo("force_gain"), "muscle_1", plant_},
+                                          {effectInfo("leak"), "all", plant_},
+                                          {effectInfo("channel_swap"), "muscle_0+muscle_1", plant_},
+                                          {effectInfo("leak"), "muscle_10", plant_},
+                                          {effectInfo("payload"), "hand", plant_},
+                                          {effectInfo("base_tilt"), "base", plant_},
+                                          {effectInfo("sensor_bias"), "all", plant_}};
   const Odds odds(comparison_, nominal_, on_two);
   auto costs = [&](std::size_t one, std::size_t other) {
     auto of = [&](const std::vector<std::size_t>& members) {
-      Explanation result{members, {}, {}, leaving(1), 0, 0};
+      FittedHypothesis result{members, {}, {}, leaving(1), 0, 0};
       Eigen::Index count = 0;
       for (const std::size_t member : members) count += on_two[member].coordinateCount();
       result.z = Eigen::VectorXd::Zero(count);
@@ -110,7 +110,7 @@ TEST_F(OddsOnARig, PlacesOverlapThroughAllAndThroughPairsOfMuscles) {
     };
     const double parameters = static_cast<double>(on_two[other].coordinateCount()) * weighing_.per_parameter;
     const double shared = other == 6 ? weighing_.shared_sensor : 0;
-    return odds.ofExplanation(of({one})) - odds.ofExplanation(of({one, other})) - parameters - shared - weighing_.per_effect;
+    return odds.ofHypothesis(of({one})) - odds.ofHypothesis(of({one, other})) - parameters - shared - weighing_.per_effect;
   };
   EXPECT_NEAR(costs(0, 1), weighing_.per_same_place, 1e-9) << "a muscle and all";
   EXPECT_NEAR(costs(0, 2), weighing_.per_same_place, 1e-9) << "a muscle and a pair with it";
@@ -121,8 +121,8 @@ TEST_F(OddsOnARig, PlacesOverlapThroughAllAndThroughPairsOfMuscles) {
 }
 
 TEST_F(OddsOnARig, HopeIsWhatAPerfectFurtherEffectWouldGain) {
-  EXPECT_GT(odds_.hopeBeyond(explanation({gain}, 4)), 0);
-  EXPECT_NEAR(odds_.hopeBeyond(explanation({gain}, 1)), -weighing_.per_effect - weighing_.per_parameter, 1e-9);
+  EXPECT_GT(odds_.optimisticBound(fitted({gain}, 4)), 0);
+  EXPECT_NEAR(odds_.optimisticBound(fitted({gain}, 1)), -weighing_.per_effect - weighing_.per_parameter, 1e-9);
 }
 
 }  // namespace

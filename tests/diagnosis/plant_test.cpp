@@ -30,29 +30,29 @@ Recording stepped(double step_s, double rest_s, double duration_s, const std::st
   return recording;
 }
 
-std::vector<Stretch> lookOf(double step_s, double rest_s, double duration_s) {
+std::vector<Segment> describeResidual(double step_s, double rest_s, double duration_s) {
   const DiagnosisOptions options;
   std::vector<Recording> recordings;
   for (const char* file : {"a.csv", "b.csv", "c.csv"}) recordings.push_back(stepped(step_s, rest_s, duration_s, file));
   recordings.back().signals[1].values.front() += 1;  // no recording is another one again
-  return Plant(std::move(recordings), options).lookStretches();
+  return Plant(std::move(recordings), options).screeningSegments();
 }
 
-TEST(LookStretches, LastAFewSecondsFromTheFirstChangeOfACommand) {
-  for (const Stretch& stretch : lookOf(0.01, 0, 20)) EXPECT_EQ(stretch.end_row, 650);
-  const std::vector<Stretch> late = lookOf(0.01, 5, 20);
+TEST(ScreeningSegments, LastAFewSecondsFromTheFirstChangeOfACommand) {
+  for (const Segment& segment : describeResidual(0.01, 0, 20)) EXPECT_EQ(segment.end_row, 650);
+  const std::vector<Segment> late = describeResidual(0.01, 5, 20);
   ASSERT_EQ(late.size(), 2u);
-  for (const Stretch& stretch : late) EXPECT_EQ(stretch.end_row, 1100);
+  for (const Segment& segment : late) EXPECT_EQ(segment.end_row, 1100);
 }
 
-TEST(LookStretches, ComparesOnlySomeOfManyRows) {
-  for (const Stretch& stretch : lookOf(0.001, 0.5, 10)) {
-    EXPECT_EQ(stretch.end_row, 6500);
-    EXPECT_EQ(stretch.every, 10);
+TEST(ScreeningSegments, ComparesOnlySomeOfManyRows) {
+  for (const Segment& segment : describeResidual(0.001, 0.5, 10)) {
+    EXPECT_EQ(segment.end_row, 6500);
+    EXPECT_EQ(segment.every, 10);
   }
-  for (const Stretch& stretch : lookOf(0.05, 0, 60)) {
-    EXPECT_EQ(stretch.end_row, 610) << "of few rows as many, whatever time they take";
-    EXPECT_EQ(stretch.every, 1);
+  for (const Segment& segment : describeResidual(0.05, 0, 60)) {
+    EXPECT_EQ(segment.end_row, 610) << "of few rows as many, whatever time they take";
+    EXPECT_EQ(segment.every, 1);
   }
 }
 

@@ -12,12 +12,12 @@ Diagnosis answer(Verdict verdict) {
   d.robot = "rig";
   d.verdict = verdict;
   d.recordings = {"/data/day 1/slow.csv", "/data/day 1/fast.csv"};
-  d.held_out = "fast.csv, which neither fitting nor choosing has seen";
+  d.held_out = "fast.csv, held out from fitting and choosing";
   d.before.per_signal = {{"length_0_mm", {0.3, 0.1}}, {"pressure_0", {0.02, 0.002}}};
   d.after = d.before;
   d.where = {{"pressure", "muscle_0", "", 0.6}, {"command", "muscle_0", "", 0.4}, {"force", "all", "", 0, true}};
   d.traces = {{"fast.csv", "length_0_mm", {0, 1}, {1, 2}, {1, 3}, {}}, {"fast.csv", "pressure_0", {0, 1}, {0, 1}, {0, 0}, {}}};
-  d.looks = {{"leak@muscle_0", 0.5}, {"leak@muscle_0", 0.4}};
+  d.screenings = {{"leak@muscle_0", 0.5}, {"leak@muscle_0", 0.4}};
   return d;
 }
 
@@ -33,7 +33,7 @@ TEST(Report, SaysHowLikelyNoneOfThemIsEvenIfNothingElseIs) {
   d.alternatives = {"leak@muscle_0", "creep@muscle_0"};
   const std::string page = diagnosisReport(d);
   EXPECT_TRUE(contains(page, "<td>none of these</td><td class=number>over 99 %</td>"));
-  EXPECT_FALSE(contains(page, "cannot tell apart"));
+  EXPECT_FALSE(contains(page, "cannot distinguish"));
 }
 
 TEST(Report, FramesEveryStageThatMayBeThePlace) {
@@ -56,7 +56,7 @@ TEST(Report, RemarksOnNumbersThatNoPlantIsKnownToHave) {
   d.effects = {{"external_force", "hand", 0.9, {{"force_x_N", {2.35, 2.3, 2.4}}, {"force_y_N", {-12.92, -13.2, -12.6}}}, 99}};
   d.chosen = {"external_force@hand"};
   const std::string page = diagnosisReport(d);
-  EXPECT_TRUE(contains(page, "force_<wbr>y_<wbr>N = -12.9 (-13.2 to -12.6), usual are -10 to 10"));
+  EXPECT_TRUE(contains(page, "force_<wbr>y_<wbr>N = -12.9 (-13.2 to -12.6), usual range -10 to 10"));
   EXPECT_FALSE(contains(page, "(2.30 to 2.40), usual"));
   d.effects.front().parameters["force_y_N"] = {-10000, -10000, -9000};
   EXPECT_TRUE(contains(diagnosisReport(d), "at its bound"));
@@ -84,11 +84,11 @@ TEST(Report, ListsEffectsThatActTogetherTogether) {
   EXPECT_TRUE(contains(diagnosisReport(d), "By explanation: payload@hand + leak@all 20 %, payload@hand 78 %."));
 }
 
-TEST(Report, GivesTheNumbersOfWhatComesNearest) {
+TEST(Report, GivesTheParametersOfTheBestRejectedHypothesis) {
   Diagnosis d = answer(Verdict::unexplained);
   d.attempt.effects = {"leak@muscle_0"};
   d.attempt.active_effects = {{"leak", "muscle_0", {{"leak_per_s", 2.5}}}};
-  EXPECT_TRUE(contains(diagnosisReport(d), "What comes nearest: leak@muscle_0 (leak_per_s = 2.5, usual are 0.0003 to 1)."));
+  EXPECT_TRUE(contains(diagnosisReport(d), "Best rejected hypothesis: leak@muscle_0 (leak_per_s = 2.5, usual range 0.0003 to 1)."));
 }
 
 TEST(Report, ShowsTheLargestGapFirst) {
@@ -96,12 +96,12 @@ TEST(Report, ShowsTheLargestGapFirst) {
   EXPECT_LT(page.find("<h3><code>pressure_0"), page.find("<h3><code>length_0_mm"));
 }
 
-TEST(Report, ListsEveryLookOnceAndWhatWasChosen) {
+TEST(Report, ListsEveryScreenedEffectOnceAndTheChosenOnes) {
   Diagnosis d = answer(Verdict::effects_found);
   d.effects = {{"creep", "muscle_0", 0.9, {}, 84}};
   d.chosen = {"creep@muscle_0"};
-  for (int muscle = 1; muscle < 20; ++muscle) d.looks.push_back({"leak@muscle_" + std::to_string(muscle), 0.3});
-  d.looks.push_back({"creep@muscle_0", 0.1});
+  for (int muscle = 1; muscle < 20; ++muscle) d.screenings.push_back({"leak@muscle_" + std::to_string(muscle), 0.3});
+  d.screenings.push_back({"creep@muscle_0", 0.1});
   const std::string page = diagnosisReport(d);
   EXPECT_TRUE(contains(page, "1. leak@muscle_0"));
   EXPECT_FALSE(contains(page, "2. leak@muscle_0"));
@@ -112,9 +112,9 @@ TEST(Report, ListsEveryLookOnceAndWhatWasChosen) {
 
 TEST(Report, ClaimsNothingOfASearchWhereThereWasNone) {
   const std::string page = diagnosisReport(answer(Verdict::no_gap));
-  EXPECT_FALSE(contains(page, "neither fitting nor choosing"));
+  EXPECT_FALSE(contains(page, "held out from fitting"));
   EXPECT_FALSE(contains(page, "<h2>Which"));
-  EXPECT_TRUE(contains(page, "1.15 times its floor"));
+  EXPECT_TRUE(contains(page, "1.15 times its noise floor, 1.3 times"));
 }
 
 }  // namespace

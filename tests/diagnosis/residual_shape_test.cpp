@@ -13,7 +13,7 @@ namespace musclesim {
 namespace {
 
 /// Of 8 s with 100 rows per second, noise of 0.1 on the measured values.
-ResidualLook lookAt(const std::function<double(double)>& residual, double jump_s = 0) {
+ResidualDescription lookAt(const std::function<double(double)>& residual, double jump_s = 0) {
   RandomStream random(5, "residual");
   std::vector<double> time_s, measured, simulated;
   for (int row = 0; row < 800; ++row) {
@@ -22,12 +22,12 @@ ResidualLook lookAt(const std::function<double(double)>& residual, double jump_s
     simulated.push_back(std::sin(t));
     measured.push_back(std::sin(t) + residual(t) + 0.1 * random.normal());
   }
-  return lookOf(time_s, measured, simulated);
+  return describeResidual(time_s, measured, simulated);
 }
 
-TEST(ResidualLook, NamesTheShapeThatMakesMostOfIt) {
-  const ResidualLook offset = lookAt([](double) { return -0.4; }), drift = lookAt([](double t) { return 0.2 * (t - 4); }),
-                     ripple = lookAt([](double t) { return 0.5 * std::sin(2 * std::numbers::pi * 4.63 * t); });
+TEST(ResidualDescription, NamesTheShapeThatMakesMostOfIt) {
+  const ResidualDescription offset = lookAt([](double) { return -0.4; }), drift = lookAt([](double t) { return 0.2 * (t - 4); }),
+                            ripple = lookAt([](double t) { return 0.5 * std::sin(2 * std::numbers::pi * 4.63 * t); });
   EXPECT_EQ(offset.shape, ResidualShape::offset);
   EXPECT_NEAR(offset.value, -0.4, 0.02);
   EXPECT_EQ(drift.shape, ResidualShape::drift);
@@ -37,21 +37,21 @@ TEST(ResidualLook, NamesTheShapeThatMakesMostOfIt) {
   EXPECT_EQ(wordsFor(ripple), "mostly a ripple of 4.6 Hz");
 }
 
-TEST(ResidualLook, FollowsARippleThatWanders) {
-  const ResidualLook ripple = lookAt([](double t) { return 0.5 * std::sin(2 * std::numbers::pi * (5 * t + 0.05 * std::sin(t))); });
+TEST(ResidualDescription, FollowsARippleThatWanders) {
+  const ResidualDescription ripple = lookAt([](double t) { return 0.5 * std::sin(2 * std::numbers::pi * (5 * t + 0.05 * std::sin(t))); });
   EXPECT_EQ(ripple.shape, ResidualShape::ripple);
   EXPECT_NEAR(ripple.value, 5, 0.2);
 }
 
-TEST(ResidualLook, NamesNothingInNoiseOrInWhatFollowsTheCommands) {
+TEST(ResidualDescription, NamesNothingInNoiseOrInWhatFollowsTheCommands) {
   EXPECT_EQ(lookAt([](double) { return 0.0; }).shape, ResidualShape::none);
   EXPECT_EQ(lookAt([](double t) { return std::sin(2 * std::numbers::pi * 0.5 * t); }).shape, ResidualShape::none);
   EXPECT_EQ(wordsFor({}), "");
 }
 
-TEST(ResidualLook, DoesNotGuessWhereRowsAreMissing) {
+TEST(ResidualDescription, DoesNotGuessWhereRowsAreMissing) {
   EXPECT_EQ(lookAt([](double t) { return 0.5 * std::sin(2 * std::numbers::pi * 4.63 * t); }, 0.5).shape, ResidualShape::none);
-  EXPECT_EQ(lookOf({0, 0.01}, {1, 1}, {0, 0}).shape, ResidualShape::none);
+  EXPECT_EQ(describeResidual({0, 0.01}, {1, 1}, {0, 0}).shape, ResidualShape::none);
 }
 
 }  // namespace

@@ -30,9 +30,9 @@ Diagnosis lagFound() {
   d.chosen = {"valve_lag@muscle_1"};
   d.explanations = {{d.chosen, 0.931}};
   d.ambiguity_set = d.alternatives = {"valve_lag@muscle_1", "flow_limit@muscle_1"};
-  d.shrink_percent = 96.2;
-  d.shrink_low_percent = 94;
-  d.shrink_high_percent = 97.5;
+  d.reduction_percent = 96.2;
+  d.reduction_low_percent = 94;
+  d.reduction_high_percent = 97.5;
   return d;
 }
 
@@ -40,7 +40,7 @@ TEST(VerdictSentence, SaysWhereWhichHowFarAndWhatElse) {
   const std::string text = verdictSentence(lagFound());
   for (const char* part : {"The gap arises in the pressure stage (muscle 1, 81 % likely), mostly while venting", "93 % likely",
                            "valve lag on muscle 1 with vent_time_constant_s = 0.081 (0.077 to 0.085)", "96.2 % (94.0 to 97.5)",
-                           "Flow limit on muscle 1 would explain it as well"})
+                           "Flow limit on muscle 1 would explain the gap as well"})
     EXPECT_TRUE(contains(text, part)) << part << "\n" << text;
 }
 
@@ -48,24 +48,24 @@ TEST(VerdictSentence, DoesNotNameAStageThatIsHardlyAheadOfTheNext) {
   Diagnosis d = lagFound();
   d.where = {{"pressure", "muscle_1", "", 0.27}, {"sensor", "signal_pressure_1", "", 0.26}, {"command", "all", "", 0.25}};
   EXPECT_EQ(whereSentence(d),
-            "These signals do not tell at which stage the gap arises: pressure (muscle 1, 27 %) or sensor (signal pressure 1, 26 %) come "
-            "nearest");
+            "These signals do not show at which stage the gap arises; the most likely are pressure (muscle 1, 27 %) and sensor (signal "
+            "pressure 1, 26 %)");
 }
 
 TEST(VerdictSentence, SaysWhereSignalsSpeakAgainstWhatTheGapLooksLike) {
   Diagnosis d = lagFound();
   d.where = {{"body", "hand", "", 0.9, true}, {"force", "muscle_0", "", 0.1}};
   EXPECT_FALSE(isLocated(d.where));
-  EXPECT_EQ(whereSentence(d),
-            "By its shape the gap is of the body stage (hand, 90 %), though what the signals say of each other speaks against it; these "
-            "signals do not rule out force");
+  EXPECT_EQ(
+      whereSentence(d),
+      "The shape of the gap favours the body stage (hand, 90 %), although the signals contradict it; the signals do not rule out force");
 }
 
 TEST(VerdictSentence, ConfirmsNothingOnDataWithoutAGap) {
   Diagnosis d = lagFound();
   d.verdict = Verdict::unexplained;
   d.before.per_signal = {{"length_0_mm", {0.05, 0.05}}};
-  EXPECT_TRUE(contains(verdictSentence(d), "none in the data held back")) << verdictSentence(d);
+  EXPECT_TRUE(contains(verdictSentence(d), "but the held-out data does not")) << verdictSentence(d);
   d.before.per_signal = {{"length_0_mm", {0.5, 0.05}}};
   EXPECT_TRUE(contains(verdictSentence(d), "There is a gap that I cannot explain")) << verdictSentence(d);
 }
@@ -73,7 +73,7 @@ TEST(VerdictSentence, ConfirmsNothingOnDataWithoutAGap) {
 TEST(VerdictSentence, TellsWhatSignalsShowFromWhatTheGapLooksLike) {
   Diagnosis d = lagFound();
   d.where = {{"force", "muscle_0", "", 0.95}, {"body", "hand", "", 0.04}, {"sensor", "all", "", 0.01}, {"pressure", "all", "", 0, true}};
-  EXPECT_EQ(whereSentence(d), "By its shape the gap is of the force stage (muscle 0, 95 %); these signals do not rule out body or sensor");
+  EXPECT_EQ(whereSentence(d), "The shape of the gap favours the force stage (muscle 0, 95 %); the signals do not rule out body or sensor");
   for (std::size_t i = 1; i < d.where.size(); ++i) d.where[i].is_ruled_out = true;
   EXPECT_EQ(whereSentence(d), "The gap arises in the force stage (muscle 0, 95 % likely)");
   EXPECT_TRUE(mayBeAt(d.where, "force"));
@@ -81,21 +81,21 @@ TEST(VerdictSentence, TellsWhatSignalsShowFromWhatTheGapLooksLike) {
   d.where = {
       {"sensor", "all", "", 0.6}, {"force", "all", "", 0.2}, {"body", "all", "", 0.2}, {"command", "all", ""}, {"pressure", "all", ""}};
   EXPECT_EQ(whereSentence(d),
-            "By its shape the gap is of the sensor stage (all components, 60 %); these signals do not rule out any other");
+            "The shape of the gap favours the sensor stage (all components, 60 %); the signals do not rule out any other stage");
   d.where = {{"pressure", "muscle_1", "venting", 0.81}, {"command", "all", "", 0.15}, {"force", "all", "", 0.04, true}};
   EXPECT_EQ(whereSentence(d),
-            "The gap arises before the force, in command or pressure (muscle 1; by its shape rather pressure, 81 % likely), mostly while "
-            "venting");
+            "The gap arises before the force stage, in command or pressure (muscle 1; its shape favours pressure, 81 % likely), mostly "
+            "while venting");
   EXPECT_TRUE(mayBeAt(d.where, "pressure"));
   EXPECT_TRUE(mayBeAt(d.where, "command"));
   EXPECT_FALSE(mayBeAt(d.where, "force"));
 }
 
-TEST(VerdictSentence, NamesARegimeOnlyWhereTheDataHeldBackSaySoToo) {
+TEST(VerdictSentence, NamesAPhaseOnlyWhereTheHeldOutDataAgrees) {
   Diagnosis d = lagFound();
-  d.regimes = {{"filling", 5, 1}, {"venting", 9, 1}};
+  d.phases = {{"filling", 5, 1}, {"venting", 9, 1}};
   EXPECT_TRUE(contains(whereSentence(d), "mostly while venting"));
-  d.regimes[0].before = 10;
+  d.phases[0].before = 10;
   EXPECT_FALSE(contains(whereSentence(d), "mostly while"));
 }
 
@@ -112,34 +112,35 @@ TEST(Words, AnEstimateHasTheDecimalsThatItsIntervalBears) {
 TEST(VerdictSentence, LeavesOutWhatSaysNothing) {
   Diagnosis d = lagFound();
   d.effects.front().parameters["fill_time_constant_s"] = {};
-  d.shrink_percent = 99.99;
-  d.shrink_low_percent = 99.97;
-  d.shrink_high_percent = 100;
+  d.reduction_percent = 99.99;
+  d.reduction_low_percent = 99.97;
+  d.reduction_high_percent = 100;
   const std::string text = verdictSentence(d);
   EXPECT_FALSE(contains(text, "fill_time_constant_s")) << text;
   EXPECT_TRUE(contains(text, "more than 99.9 % of the gap")) << text;
-  EXPECT_EQ(elsewhereSentence({99.99, 99.97, 100}), "On another recording of this plant as much is expected.");
-  EXPECT_EQ(elsewhereSentence({96.2, 94, 97.5}), "On another recording of this plant 94.0 to 97.5 % are expected (95 %).");
+  EXPECT_EQ(elsewhereSentence({99.99, 99.97, 100}), "On another recording of this plant the same is expected.");
+  EXPECT_EQ(elsewhereSentence({96.2, 94, 97.5}),
+            "On another recording of this plant, 94.0 to 97.5 % is expected to be removed (95 % interval).");
   EXPECT_EQ(effectSentence(d.effects.front()), "valve_lag@muscle_1: vent_time_constant_s = 0.081 (0.077 to 0.085)");
 }
 
 TEST(VerdictSentence, GivesNoIntervalThatTellsNothing) {
   Diagnosis d = lagFound();
-  d.shrink_low_percent = -1093;
+  d.reduction_low_percent = -1093;
   EXPECT_FALSE(contains(verdictSentence(d), "-1093"));
   EXPECT_TRUE(contains(verdictSentence(d), "removes 96.2 % of the gap"));
   EXPECT_EQ(elsewhereSentence({96.2, -1093, 100}),
-            "The recordings are too few or differ too much to say how much it would be on another one.");
+            "The recordings are too few or too different to predict how much is removed on another one.");
 }
 
-TEST(VerdictSentence, SaysWhatIsLeftWhereItStandsOut) {
+TEST(VerdictSentence, SaysHowLargeAResidualIsThatStandsOut) {
   Diagnosis d = lagFound();
   d.after.normalised = 2;
-  EXPECT_FALSE(contains(verdictSentence(d), "What is left"));
+  EXPECT_FALSE(contains(verdictSentence(d), "The residual is"));
   d.after.normalised = 24;
-  EXPECT_TRUE(contains(verdictSentence(d), "What is left is still 5.0 times the noise:"));
+  EXPECT_TRUE(contains(verdictSentence(d), "The residual is still 5.0 times the noise:"));
   d.after.per_signal = {{"length_0_mm", {0.2, 0.1}}, {"pressure_0", {0.018, 0.002}}};
-  EXPECT_TRUE(contains(verdictSentence(d), "What is left is still 5.0 times the noise (9.0 times in pressure_0):"));
+  EXPECT_TRUE(contains(verdictSentence(d), "The residual is still 5.0 times the noise (9.0 times in pressure_0):"));
 }
 
 TEST(VerdictSentence, GivesAPairTheProbabilityOfThePair) {
@@ -147,10 +148,9 @@ TEST(VerdictSentence, GivesAPairTheProbabilityOfThePair) {
   d.effects.push_back({"payload", "hand", 0.55, {{"mass_kg", {0.3, 0.2, 0.4}}}, 10});
   d.chosen = {"valve_lag@muscle_1", "payload@hand"};
   d.explanations = {{d.chosen, 0.55}, {{"valve_lag@muscle_1"}, 0.38}};
-  EXPECT_TRUE(contains(
-      verdictSentence(d),
-      "(55 % likely) is valve lag on muscle 1 with vent_time_constant_s = 0.081 (0.077 to 0.085) together with payload on hand with "
-      "mass_kg = 0.30 (0.20 to 0.40); adding them removes"));
+  EXPECT_TRUE(contains(verdictSentence(d),
+                       "(55 % likely) is valve lag on muscle 1 with vent_time_constant_s = 0.081 (0.077 to 0.085) together with payload on "
+                       "hand with mass_kg = 0.30 (0.20 to 0.40); adding them to the model removes"));
 }
 
 TEST(VerdictSentence, SaysWhetherTheExperimentTellsAllApart) {
@@ -160,31 +160,33 @@ TEST(VerdictSentence, SaysWhetherTheExperimentTellsAllApart) {
   d.next_experiment.difference = 3.2;
   EXPECT_TRUE(contains(verdictSentence(d), "record the schedule in next.csv to tell them apart."));
   d.next_experiment.difference = 0.7;
-  EXPECT_TRUE(contains(verdictSentence(d), "to tell them apart, though even there they differ by only 0.7 times the noise."));
+  EXPECT_TRUE(contains(verdictSentence(d), "to tell them apart, although even then they differ by only 0.7 times the noise."));
   d.alternatives.emplace_back("leak@muscle_1");
-  EXPECT_TRUE(contains(verdictSentence(d), "to tell valve lag on muscle 1 from flow limit on muscle 1, though"));
+  EXPECT_TRUE(contains(verdictSentence(d), "to tell valve lag on muscle 1 from flow limit on muscle 1, although"));
   d.next_experiment.separates.emplace_back("leak@muscle_1");
-  EXPECT_TRUE(contains(verdictSentence(d), "to tell them apart, though even there the two most alike differ by only 0.7 times the noise."));
+  EXPECT_TRUE(
+      contains(verdictSentence(d), "to tell them apart, although even then the two most similar differ by only 0.7 times the noise."));
 }
 
-TEST(VerdictSentence, SaysWhereTheModelDoesNotRepeatItself) {
+TEST(VerdictSentence, SaysWhereTheMotionDependsOnTheStepSize) {
   Diagnosis d = lagFound();
   d.unsteady = {"angle_elbow_deg", 6, 0.05};
-  EXPECT_FALSE(contains(verdictSentence(d), "repeat itself"));
+  EXPECT_FALSE(contains(verdictSentence(d), "step size"));
   d.unsteady = {"angle_elbow_deg", 50.4, 0.3};
-  EXPECT_TRUE(contains(verdictSentence(d), "steps twice as long move angle_elbow_deg by 50 times the noise, 30 % of the gap"));
+  EXPECT_TRUE(contains(verdictSentence(d),
+                       "the simulated motion depends on the step size: internal steps twice as long move angle_elbow_deg by 50 times the "
+                       "noise, 30 % of the gap"));
 }
 
 TEST(VerdictSentence, SaysWhatAnotherPairWouldReplace) {
   Diagnosis d = lagFound();
   d.chosen = {"valve_lag@muscle_1", "payload@hand"};
   d.alternatives = {"valve_lag@muscle_1", "leak@muscle_1"};
-  EXPECT_TRUE(contains(verdictSentence(d), "Leak on muscle 1 would explain it as well in place of valve lag on muscle 1."));
+  EXPECT_TRUE(contains(verdictSentence(d), "Leak on muscle 1 would explain the gap as well in place of valve lag on muscle 1."));
   d.alternatives = {"valve_lag@muscle_1 + payload@hand", "channel_swap@muscle_0+muscle_1 + leak@muscle_1", "leak@all + payload@hand"};
-  EXPECT_TRUE(
-      contains(verdictSentence(d),
-               "Channel swap on muscle 0+muscle 1 together with leak on muscle 1; or leak on all components together with payload on "
-               "hand would explain it as well in place of valve lag on muscle 1 together with payload on hand."))
+  EXPECT_TRUE(contains(verdictSentence(d),
+                       "Channel swap on muscle 0+muscle 1 together with leak on muscle 1; or leak on all components together with payload "
+                       "on hand would explain the gap as well in place of valve lag on muscle 1 together with payload on hand."))
       << verdictSentence(d);
 }
 
@@ -193,11 +195,11 @@ TEST(VerdictSentence, SaysHowLikelyNoneOfTheKnownEffectsIs) {
   d.none_of_these = 0.09;
   EXPECT_FALSE(contains(verdictSentence(d), "none of the known effects"));
   d.none_of_these = 0.48;
-  EXPECT_TRUE(contains(verdictSentence(d), "That none of the known effects is the cause is 48 % likely."));
+  EXPECT_TRUE(contains(verdictSentence(d), "The probability that none of the known effects is the cause is 48 %."));
   d.candidates = {"creep"};
-  EXPECT_TRUE(contains(verdictSentence(d), "That creep is not the cause is 48 % likely; other effects were not asked about."));
+  EXPECT_TRUE(contains(verdictSentence(d), "The probability that creep is not the cause is 48 %; other effects were not considered."));
   d.candidates = {"creep", "valve_lag"};
-  EXPECT_TRUE(contains(verdictSentence(d), "That none of creep, valve_lag is the cause is 48 % likely; other effects"));
+  EXPECT_TRUE(contains(verdictSentence(d), "The probability that none of creep, valve_lag is the cause is 48 %; other effects"));
 }
 
 TEST(VerdictSentence, SaysWhatAnUnexplainedGapLooksLike) {
@@ -211,7 +213,7 @@ TEST(VerdictSentence, SaysWhatAnUnexplainedGapLooksLike) {
   }
   d.traces = {trace};
   d.before.per_signal = d.after.per_signal = {{"pressure_0", {0.014, 0.002}}, {"length_0_mm", {1, 0.1}}};
-  EXPECT_TRUE(contains(verdictSentence(d), "In pressure_0 it is mostly a ripple of 5 Hz."));
+  EXPECT_TRUE(contains(verdictSentence(d), "In pressure_0 the residual is mostly a ripple of 5 Hz."));
   d.after.per_signal["pressure_0"].rmse = 0.003;
   EXPECT_FALSE(contains(verdictSentence(d), "ripple"));
 }
@@ -232,15 +234,16 @@ TEST(VerdictSentence, AdmitsWhatItCannotTell) {
   d.verdict = Verdict::unexplained;
   EXPECT_TRUE(contains(verdictSentence(d), "cannot explain"));
   d.none_of_these = 0.79;
-  EXPECT_TRUE(contains(verdictSentence(d), "That none of the known effects is the cause is 79 % likely."));
+  EXPECT_TRUE(contains(verdictSentence(d), "The probability that none of the known effects is the cause is 79 %."));
   d.effects = lagFound().effects;
   d.effects.front().probability = 0.21;
   EXPECT_TRUE(contains(verdictSentence(d), "valve lag on muscle 1, has a probability of 21 %"));
   d.effects.front().probability = 0.98;
-  d.effects.front().shrink_percent = -45;
-  EXPECT_TRUE(contains(verdictSentence(d),
-                       "fits the data that it was fitted to (98 % likely without that), but on data held back it removes nothing"));
-  d.nominal_refit_shrink_percent = 71;
+  d.effects.front().reduction_percent = -45;
+  EXPECT_TRUE(
+      contains(verdictSentence(d),
+               "has a probability of 98 % on the recordings that it was fitted to, but removes nothing of the gap on the held-out data"));
+  d.nominal_refit_percent = 71;
   EXPECT_TRUE(contains(verdictSentence(d), "without any effect removes 71.0 %"));
 }
 

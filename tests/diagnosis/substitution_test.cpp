@@ -7,7 +7,7 @@
 #include <functional>
 #include <numbers>
 
-#include "diagnosis/locate.h"
+#include "diagnosis/fault_isolation.h"
 #include "musclesim/base/random.h"
 #include "musclesim/simulation/replay.h"
 
@@ -77,8 +77,8 @@ std::function<void(Recording&)> hum(const std::string& name, double amplitude) {
 const std::vector<std::string> motion = {"length_0_mm", "length_1_mm", "angle_elbow_deg"};
 const ActiveEffect pull{"external_force", "hand", {{"force_x_N", 1.0}}};
 
-bool isRuledOut(const Location& location, const std::string& stage) {
-  return std::ranges::any_of(location.places, [&](const Place& place) { return place.stage == stage && place.is_ruled_out; });
+bool isRuledOut(const FaultIsolation& isolation, const std::string& stage) {
+  return std::ranges::any_of(isolation.places, [&](const Place& place) { return place.stage == stage && place.is_ruled_out; });
 }
 
 TEST(MotionTest, FindsTheSensorThatTheOthersContradict) {
@@ -162,16 +162,16 @@ TEST(TensionTest, OfACommandedPressureAcquitsNoOtherMuscle) {
   ASSERT_TRUE(test);
   EXPECT_LT(test->found, agrees);
   EXPECT_TRUE(test->some_commanded && !test->all_commanded && test->of_all_muscles);
-  const Location location = locate(elbow.comparison, elbow.residual, elbow.comparison, {}, {}, elbow.residual);
-  for (const char* stage : {"command", "pressure"}) EXPECT_FALSE(isRuledOut(location, stage)) << location.method;
-  EXPECT_TRUE(isRuledOut(location, "force")) << location.method;
+  const FaultIsolation isolation = isolateFault(elbow.comparison, elbow.residual, elbow.comparison, {}, {}, elbow.residual);
+  for (const char* stage : {"command", "pressure"}) EXPECT_FALSE(isRuledOut(isolation, stage)) << isolation.method;
+  EXPECT_TRUE(isRuledOut(isolation, "force")) << isolation.method;
 }
 
 TEST(TensionTest, OfSomeMusclesRulesNothingOut) {
   const ActiveEffect strong_pull{"external_force", "hand", {{"force_x_N", 4.0}}};
   const Compared elbow("elbow", {"length_0_mm", "length_1_mm", "force_0_N"}, {strong_pull});
-  const Location location = locate(elbow.comparison, elbow.residual, elbow.comparison, {}, {}, elbow.residual);
-  EXPECT_FALSE(isRuledOut(location, "force")) << location.method;
+  const FaultIsolation isolation = isolateFault(elbow.comparison, elbow.residual, elbow.comparison, {}, {}, elbow.residual);
+  EXPECT_FALSE(isRuledOut(isolation, "force")) << isolation.method;
 }
 
 /// The law alone is not what a model predicts that holds a weak muscle beforehand.
@@ -196,8 +196,8 @@ TEST(Pressures, ThatAreNotThereInOneRecordingAreNotAsPredicted) {
                          std::erase_if(recording.signals, [](const Signal& s) { return s.name == "pressure_0"; });
                      });
   EXPECT_FALSE(allPressuresMeasured(lag.comparison));
-  const Location location = locate(lag.comparison, lag.residual, lag.comparison, {}, {}, lag.residual);
-  EXPECT_FALSE(isRuledOut(location, "pressure")) << location.method;
+  const FaultIsolation isolation = isolateFault(lag.comparison, lag.residual, lag.comparison, {}, {}, lag.residual);
+  EXPECT_FALSE(isRuledOut(isolation, "pressure")) << isolation.method;
 }
 
 TEST(Pressures, ThatReadWrongWouldMoveWhatDoesNotMove) {
@@ -226,9 +226,9 @@ TEST(Pressures, ThatAreNoisyStillTellWhereAWeakGapArises) {
   ASSERT_TRUE(test);
   EXPECT_NEAR(test->share, 1, 0.25);
   EXPECT_GT(test->share_deviation, 0.02);
-  const Location location = locate(lag.comparison, lag.residual, lag.comparison, {}, {}, lag.residual);
-  for (const char* stage : {"force", "body", "sensor"}) EXPECT_TRUE(isRuledOut(location, stage)) << location.method;
-  for (const char* stage : {"command", "pressure"}) EXPECT_FALSE(isRuledOut(location, stage)) << location.method;
+  const FaultIsolation isolation = isolateFault(lag.comparison, lag.residual, lag.comparison, {}, {}, lag.residual);
+  for (const char* stage : {"force", "body", "sensor"}) EXPECT_TRUE(isRuledOut(isolation, stage)) << isolation.method;
+  for (const char* stage : {"command", "pressure"}) EXPECT_FALSE(isRuledOut(isolation, stage)) << isolation.method;
 }
 
 /// A weak muscle is no matter of pressures, even where these are not as predicted.
@@ -238,7 +238,7 @@ TEST(Pressures, MakeNothingOfAGapBehindThem) {
   const auto test = testPressures(weak.comparison, weak.residual);
   ASSERT_TRUE(test);
   EXPECT_NEAR(test->share, 0, 0.1);
-  EXPECT_FALSE(isRuledOut(locate(weak.comparison, weak.residual, weak.comparison, {}, {}, weak.residual), "force"));
+  EXPECT_FALSE(isRuledOut(isolateFault(weak.comparison, weak.residual, weak.comparison, {}, {}, weak.residual), "force"));
 }
 
 }  // namespace

@@ -39,8 +39,8 @@ inline json answerOf(const std::string& verdict, const std::vector<json>& effect
   return answer;
 }
 
-inline json candidate(const std::string& id, const std::string& component, double probability, double shrink_percent = 0) {
-  return {{"id", id}, {"component", component}, {"probability", probability}, {"shrink_percent", shrink_percent}};
+inline json candidate(const std::string& id, const std::string& component, double probability, double reduction_percent = 0) {
+  return {{"id", id}, {"component", component}, {"probability", probability}, {"shrink_percent", reduction_percent}};
 }
 
 /// Right, with 0.7 on the truth and 0.2 on an acceptable look-alike.

@@ -56,10 +56,10 @@ TEST(BlindFollowUp, WantsTheTruthToBeTheSingleBest) {
 
 TEST(BlindFollowUp, AsksWhetherAnIntervalSaysAnything) {
   FollowUp narrow = followUp(rightSingle()), wide = narrow, diverged = narrow, missed = narrow;
-  narrow.fresh = FreshShrink{91, 90, 88, 92, false};
-  wide.fresh = FreshShrink{-500, 90, -1000, 99, false};
-  diverged.fresh = FreshShrink{90, 90, 88, 92, true};
-  missed.fresh = FreshShrink{80, 90, 88, 92, false};
+  narrow.fresh = FreshReduction{91, 90, 88, 92, false};
+  wide.fresh = FreshReduction{-500, 90, -1000, 99, false};
+  diverged.fresh = FreshReduction{90, 90, 88, 92, true};
+  missed.fresh = FreshReduction{80, 90, 88, 92, false};
   const json totals = followUpTotals({narrow, wide, diverged, missed});
   EXPECT_EQ(totals["fresh_within"]["hits"], 2);
   EXPECT_EQ(totals["fresh_narrow"]["hits"], 3);

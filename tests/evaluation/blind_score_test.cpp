@@ -174,7 +174,7 @@ TEST(BlindPage, ShowsEveryFailure) {
       contains(page, "| b | rig | single | clear | 10.0 | valve_lag@muscle_0 | creep@all | 0.95 | effects_found | wrong cause; stage |"));
   EXPECT_TRUE(contains(page, "1 of 2 cases."));
   EXPECT_TRUE(contains(page, "50 %, 1 of 2, 9 .. 91 %"));
-  EXPECT_FALSE(contains(page, "What came of the answers")) << "nothing was followed up";
+  EXPECT_FALSE(contains(page, "Follow-up of the answers")) << "nothing was followed up";
   FollowUp one = followUp(wrongSingle());
   one.left_out = wrongSingle();
   score.follow_ups = {one};

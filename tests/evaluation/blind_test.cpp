@@ -274,10 +274,10 @@ TEST_F(Blind, FollowsUpOnAnswersOnce) {
   for (const nlohmann::json& effect : found["left_out"]["effects"]) EXPECT_NE(effect["id"], truth);
   ASSERT_EQ(readObject(cases() / "answers" / "case001.json")["verdict"], "effects_found");
   // What an effect gains under other commands is the study's question; here it must be a gain, and be compared as it says.
-  const double shrink = found["fresh"]["shrink_percent"];
+  const double reduction = found["fresh"]["shrink_percent"];
   const std::vector<double> interval = found["fresh"]["interval_percent"];
-  EXPECT_GT(shrink, 50);
-  EXPECT_EQ(totals["fresh_within"]["hits"], interval[0] <= shrink && shrink <= interval[1] ? 1 : 0);
+  EXPECT_GT(reduction, 50);
+  EXPECT_EQ(totals["fresh_within"]["hits"], interval[0] <= reduction && reduction <= interval[1] ? 1 : 0);
   append(file, " ");
   const std::string mark = sha256OfFile(file);
   followUp(cases(), key_file, follow);

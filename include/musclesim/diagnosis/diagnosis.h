@@ -1,4 +1,4 @@
-/// The sim-to-real gap: how large it is, where it arises, which unmodelled effect causes it and how far that effect closes it.
+/// The sim-to-real gap: how large it is, where it arises, which unmodelled effect causes it and how much of it that effect removes.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,48 +15,48 @@
 
 namespace musclesim {
 
-/// What a diagnosis is doing, for a progress line.
+/// Progress of a diagnosis, for a progress line.
 struct DiagnosisProgress {
   std::string phase;  ///< in a few words
-  long done = 0;      ///< simulations since the start
-  long expected = 0;  ///< in all, as far as is known by now
+  long done = 0;      ///< simulations so far
+  long expected = 0;  ///< expected in all, as far as known
 };
 
 struct DiagnosisOptions {
-  ReplayOptions model;                                     ///< the simulator as the user has it
+  ReplayOptions model;                                     ///< the user's model
   std::vector<std::string> candidates;                     ///< ids of effects to consider; empty: the whole catalogue
   std::vector<std::string> exclude;                        ///< ids not to consider
-  std::vector<std::string> tune;                           ///< numbers of the model to fit first: those that nobody measured
-  int max_effects = 2;                                     ///< how many effects an explanation may have, 1..6
+  std::vector<std::string> tune;                           ///< names of parameters of the model that nobody measured; they are fitted first
+  int max_effects = 2;                                     ///< largest number of effects in an explanation, 1..6
   int job_count = 0;                                       ///< threads; 0: one per core. The answer does not depend on it
-  std::uint64_t seed = 1;                                  ///< of the bootstrap and the sham
+  std::uint64_t seed = 1;                                  ///< of the bootstrap and the negative control
   std::function<void(const DiagnosisProgress&)> progress;  ///< called from one thread at a time
-  std::function<bool()> interrupted;                       ///< true: stop soon and return what is known
+  std::function<bool()> interrupted;                       ///< return true to stop soon; the result is then partial
 };
 
-/// `no_gap`: nothing beyond the noise floor; `effects_found`; `unexplained`: a gap that no effect of the catalogue removes;
-/// `not_excited`: the recordings do not move the plant enough to tell.
+/// `no_gap`: no residual beyond the noise; `effects_found`; `unexplained`: a gap that no effect of the catalogue removes; `not_excited`:
+/// the recordings do not move the plant enough to tell.
 enum class Verdict { no_gap, effects_found, unexplained, not_excited };
 std::string nameOf(Verdict verdict);
 
-/// A value with its 95 % interval; all that is possible where the recordings do not determine it.
+/// A value with its 95 % interval; the whole possible range if the recordings do not determine it.
 struct Estimate {
   double value = 0, low = 0, high = 0;
   bool is_determined = true;
 };
 
 struct Place {
-  std::string stage, component, regime;
+  std::string stage, component, phase;
   double share = 0;           ///< of the gap
-  bool is_ruled_out = false;  ///< the signals speak against this stage; among the others the share is likeness alone
+  bool is_ruled_out = false;  ///< the signals contradict this stage; the shares of the other stages rest on likeness alone
 };
 
 struct FoundEffect {
   std::string id, component;
   double probability = 0;
   std::map<std::string, Estimate> parameters;
-  double shrink_percent = 0;                        ///< of the gap on the held-out data, by this effect alone
-  std::map<std::string, std::string> choices = {};  ///< parameters that are words: which end of a muscle, which side of a wall
+  double reduction_percent = 0;                     ///< reduction of the gap on the held-out data by this effect alone
+  std::map<std::string, std::string> choices = {};  ///< parameters that are words, such as the end of a muscle or the side of a wall
   std::string label() const { return id + "@" + component; }
 };
 
@@ -66,60 +66,60 @@ struct ExplanationProbability {
 };
 
 struct SignalGap {
-  double rmse = 0, noise_floor = 0;
+  double rmse = 0, noise_sigma = 0;
 };
 
-/// normalised = mean over signals of max(0, RMSE^2 - floor^2) / floor^2, signals and floors pooled over the recordings.
+/// normalised = mean over signals of max(0, RMSE^2 - sigma^2) / sigma^2; signals and sigmas pooled over the recordings.
 struct Gap {
   double normalised = 0;
   std::map<std::string, SignalGap> per_signal;
 };
 
-/// A motion that the model itself does not repeat in internal steps twice as long, as after an impact on a stop.
+/// A simulated motion that depends on the step size, as after an impact on a stop: internal steps twice as long change it.
 struct Unsteady {
-  std::string signal;                      ///< that this moves most; empty: steady
-  double in_floors = 0, share_of_gap = 0;  ///< RMS over the noise floor, and over that of the gap
+  std::string signal;                      ///< the signal that changes most; empty if none does noticeably
+  double in_sigmas = 0, share_of_gap = 0;  ///< RMS of the change over sigma, and over the RMS of the gap
 };
 
 struct Experiment {
   std::vector<std::string> separates;
-  std::string schedule, why;  ///< name of the schedule, and what it is good for
+  std::string schedule, why;  ///< name of the schedule, and its purpose in words
   double amplitude = 1;       ///< of the commands' range in the recordings
-  double level = 0;           ///< of the commands above the middle of that range, in units of it
+  double level = 0;           ///< offset of the commands from the middle of that range, in units of it
   std::vector<double> time_s;
-  std::vector<std::vector<double>> commands;  ///< per row, one per muscle; empty: there is nothing to tell apart
-  double difference = 0;                      ///< RMS between what it separates at least, in units of the noise floor
+  std::vector<std::vector<double>> commands;  ///< per row one value per muscle; empty if there is nothing to distinguish
+  double difference = 0;                      ///< least RMS difference between the hypotheses it separates, in units of sigma
 };
 
-/// One signal of one recording (or part of one) that explanations are fitted to.
-struct FittedCell {
+/// A residual block: one signal of one recording (or of a part of one) to which hypotheses are fitted.
+struct FittedBlock {
   std::string recording, signal;
-  double floor = 0, rms_before = 0;
-  int averaged_rows = 0;  ///< rows per block of the averaged signal; 0: as recorded
+  double sigma = 0, rms_before = 0;
+  int averaged_rows = 0;  ///< rows per average; 0: as recorded
 };
 
-/// An explanation that was fitted: what it leaves of each cell.
+/// A fitted hypothesis and the RMS residual that it leaves in each block.
 struct Trial {
   std::vector<std::string> effects;
   int parameter_count = 0;
   std::vector<double> rms;
-  std::vector<double> rms_unseen;  ///< the same with every recording predicted from a fit to the others; empty where that was not tried
-  std::vector<std::map<std::string, double>> values;  ///< parameters of every effect
+  std::vector<double> rms_cross_validated;  ///< cross-validated: every recording predicted from a fit to the others; empty if not computed
+  std::vector<std::map<std::string, double>> values;  ///< parameters of each effect
 };
 
-/// How much of the log misfit one effect would remove by the first look, of what there is, 0..1.
-struct FirstLook {
+/// Share of the log misfit that one effect would remove by screening, 0..1.
+struct Screening {
   std::string effect;
   double removed = 0;
 };
 
-/// RMS residual over the floor, pooled over all signals of the held-out data, while commands rise, fall or rest.
-struct RegimeGap {
-  std::string regime;
+/// RMS residual over sigma, pooled over all signals of the held-out data, while commands rise, fall or rest.
+struct PhaseGap {
+  std::string phase;
   double before = 0, after = 0;  ///< after: 0 if nothing was chosen
 };
 
-/// The robot as built, seen from the front, for a picture that points at a component.
+/// Front view of the robot as built, in which the report marks a component.
 struct RobotDrawing {
   struct Line {
     std::string component;  ///< "muscle_0"; bones have none
@@ -134,26 +134,26 @@ struct RobotDrawing {
   std::vector<Point> points;
 };
 
-/// Curves for the report: one recording, one signal.
+/// Curves of one signal of one recording, for the report.
 struct Trace {
   std::string recording, signal;
   std::vector<double> time_s, measured, before, after;
 };
 
-/// A number of the model that was fitted to the recordings before the gap was asked about.
+/// A parameter of the model that was fitted to the recordings before the gap was diagnosed.
 struct TunedParameter {
   std::string name, unit;
   double start = 0;
   Estimate fitted;        ///< without any effect
-  Estimate with_effects;  ///< together with the chosen effects; as `fitted` if none was chosen
+  Estimate with_effects;  ///< together with the chosen effects; equal to `fitted` if none was chosen
 };
 
-/// What comes nearest where no explanation is good enough to be believed.
+/// The best rejected hypothesis of the verdict `unexplained`.
 struct Attempt {
   std::vector<std::string> effects;          ///< "id@component"
   std::vector<ActiveEffect> active_effects;  ///< with the fitted parameters
   Gap after;
-  double shrink_percent = 0, shrink_low_percent = 0, shrink_high_percent = 0;
+  double reduction_percent = 0, reduction_low_percent = 0, reduction_high_percent = 0;
 };
 
 struct Diagnosis {
@@ -161,30 +161,30 @@ struct Diagnosis {
   std::vector<std::string> recordings;
   Verdict verdict = Verdict::no_gap;
   std::vector<Place> where;
-  std::string where_method;  ///< in words: which signals decided
+  std::string where_method;  ///< the evidence, in words
   std::vector<FoundEffect> effects;
   double none_of_these = 0;
-  std::vector<std::string> candidates;  ///< ids that could be an answer, where that was not the whole catalogue
+  std::vector<std::string> candidates;  ///< ids of the candidates, if they are not the whole catalogue
   std::vector<ExplanationProbability> explanations;
   std::vector<std::string> chosen, ambiguity_set;
   std::vector<ActiveEffect> chosen_effects;
   Gap before, after;
-  Attempt attempt;       ///< of the verdict `unexplained`; without effects if there was nothing to try
-  std::string held_out;  ///< what the gap was measured on, in words
-  double shrink_percent = 0, shrink_low_percent = 0, shrink_high_percent = 0;
-  std::vector<std::string> alternatives;  ///< where explanations cannot be told apart: of each, what the others do not hold
-  std::string model_options;              ///< of the program, for the robot of the recordings: "--robot rig --set rig.load_kg=2"
-  std::vector<std::string> refitted;      ///< numbers of the model that the nominal refit re-tunes
-  double nominal_refit_shrink_percent = 0, sham_shrink_percent = 0, unexplained_percent = 0;
-  std::vector<TunedParameter> tuned;     ///< of DiagnosisOptions::tune; before and after are gaps of the model with these
+  Attempt attempt;       ///< of the verdict `unexplained`; without effects if there is none
+  std::string held_out;  ///< the held-out data, in words
+  double reduction_percent = 0, reduction_low_percent = 0, reduction_high_percent = 0;
+  std::vector<std::string> alternatives;  ///< explanations that the data cannot distinguish, each without the effects common to all
+  std::string model_options;              ///< options of the program for the robot of the recordings: "--robot rig --set rig.load_kg=2"
+  std::vector<std::string> refitted;      ///< parameters of the model that the nominal refit re-tunes
+  double nominal_refit_percent = 0, negative_control_percent = 0, unexplained_percent = 0;
+  std::vector<TunedParameter> tuned;     ///< of DiagnosisOptions::tune; before and after are gaps of the model with these values
   std::vector<std::string> not_excited;  ///< effects that these recordings could not have shown
-  std::vector<std::string> notes;        ///< what the user should know about data and answer
+  std::vector<std::string> notes;        ///< remarks on the data and the answer for the user
   Unsteady unsteady;
   Experiment next_experiment;
-  std::vector<FirstLook> looks;  ///< best first
-  std::vector<FittedCell> cells;
+  std::vector<Screening> screenings;  ///< best first
+  std::vector<FittedBlock> blocks;
   std::vector<Trial> trials;  ///< best first
-  std::vector<RegimeGap> regimes;
+  std::vector<PhaseGap> phases;
   RobotDrawing drawing;
   std::vector<Trace> traces;
   bool partial = false;
@@ -193,20 +193,20 @@ struct Diagnosis {
 };
 
 /// Diagnoses recordings of one plant. Throws BadParameter for recordings that cannot be diagnosed together (different robots, no commands,
-/// fewer than 20 rows, no signal that the model also has) and for unknown effects; Diverged if the model itself, without further effects,
-/// cannot follow the recordings.
+/// fewer than 20 rows, no signal that the model also has) and for unknown effects; Diverged if the model without further effects cannot
+/// follow the recordings.
 Diagnosis diagnose(std::vector<Recording> recordings, const DiagnosisOptions& options = {});
 
-/// The contract's diagnosis.json.
+/// diagnosis.json, format musclesim-diagnosis-1.
 std::string diagnosisJson(const Diagnosis& diagnosis, const std::string& schedule_file = "next.csv");
 
-/// report.html: one page that needs no other file.
+/// report.html: a self-contained page.
 std::string diagnosisReport(const Diagnosis& diagnosis);
 
 /// The tuned parameters as a file for --config.
 std::string tunedToml(const std::vector<TunedParameter>& parameters);
 
-/// What a person can read in ten seconds.
+/// A summary for the terminal that takes ten seconds to read.
 std::string diagnosisSummary(const Diagnosis& diagnosis);
 
 }  // namespace musclesim

@@ -1,5 +1,5 @@
 // The first look where a typical strength is far from the right one.
-#include "diagnosis/screen.h"
+#include "diagnosis/sensitivity.h"
 
 #include <gtest/gtest.h>
 
@@ -16,65 +16,65 @@ struct Looked {
   Looked(const ActiveEffect& effect, Strengths strengths, const std::string& for_effect = "")
       : options(planted::few({for_effect.empty() ? effect.id : for_effect})),
         plant(planted::plant({effect}), options),
-        suspect(suspects(plant, options).front()) {
-    std::vector<Suspect> all = {suspect};
-    look = screen(comparison, all, nominal, Model{}, strengths, 2, [] {}).front();
-    suspect = all.front();
+        hypothesis(hypotheses(plant, options).front()) {
+    std::vector<Hypothesis> all = {hypothesis};
+    sensitivity = sensitivitiesOf(comparison, all, nominal, Model{}, strengths, 2, [] {}).front();
+    hypothesis = all.front();
   }
   /// From the typical strength.
   FitResult fitted() const {
     FitProblem problem;
-    problem.start = suspect.typical();
-    problem.clamped = [&](const Eigen::VectorXd& z) { return suspect.clamped(z); };
-    problem.predicted = [&](const Eigen::VectorXd& z) { return comparison.predicted(Model{{suspect.at(z)}, {}}); };
+    problem.start = hypothesis.typical();
+    problem.clamped = [&](const Eigen::VectorXd& z) { return hypothesis.clamped(z); };
+    problem.predicted = [&](const Eigen::VectorXd& z) { return comparison.predicted(Model{{hypothesis.at(z)}, {}}); };
     return fit(comparison, problem, 8);
   }
   double before() const { return comparison.logMisfit(comparison.measured() - nominal); }
   double valueAt(double strength) const {
-    Eigen::VectorXd z = Eigen::VectorXd::Zero(suspect.coordinateCount());
-    z[suspect.strengths().front()] = strength;
-    return suspect.valuesAt(z).front().second;
+    Eigen::VectorXd z = Eigen::VectorXd::Zero(hypothesis.coordinateCount());
+    z[hypothesis.strengths().front()] = strength;
+    return hypothesis.valuesAt(z).front().second;
   }
   DiagnosisOptions options;
   Plant plant;
   Comparison comparison{plant, {{0, 0, 400}, {1, 0, 400}}, Comparison::Averages::with};
   Eigen::VectorXd nominal = comparison.predicted(Model{});
-  Suspect suspect;
-  Signature look;
+  Hypothesis hypothesis;
+  Sensitivity sensitivity;
 };
 
 /// Usual thresholds, 0.02 to 0.1, are below all commands.
 const ActiveEffect wide_dead_band = {"command_dead_band", "muscle_0", {{"threshold", 0.32}}};
 
-TEST(FirstLookAtAThreshold, BeginsWhereTheEffectShows) {
+TEST(SensitivityAtAThreshold, BeginsWhereTheEffectShows) {
   const Looked adapted(wide_dead_band, Strengths::adapted);
-  EXPECT_TRUE(adapted.look.from_threshold);
+  EXPECT_TRUE(adapted.sensitivity.from_threshold);
   EXPECT_NEAR(adapted.valueAt(1), 0.32, 0.005);
   EXPECT_LT(adapted.fitted().log_misfit, 0.2 * adapted.before());
-  ASSERT_TRUE(adapted.look.excitation_ratio.has_value());
-  EXPECT_LT(*adapted.look.excitation_ratio, 0.01) << "as strong as usual it shows nothing";
+  ASSERT_TRUE(adapted.sensitivity.excitation_ratio.has_value());
+  EXPECT_LT(*adapted.sensitivity.excitation_ratio, 0.01) << "as strong as usual it shows nothing";
 }
 
-TEST(FirstLookAtAThreshold, LeavesStrengthsThatAreToBeKept) {
+TEST(SensitivityAtAThreshold, LeavesStrengthsThatAreToBeKept) {
   const Looked kept(wide_dead_band, Strengths::kept);
-  EXPECT_FALSE(kept.look.from_threshold);
+  EXPECT_FALSE(kept.sensitivity.from_threshold);
   EXPECT_GT(kept.fitted().log_misfit, 0.9 * kept.before()) << "where nothing shows no fit finds the way";
   EXPECT_LT(kept.valueAt(1), 0.1);
 }
 
-TEST(FirstLookFarther, FollowsAnEffectThatIsManyTimesAsStrongAsTypical) {
+TEST(SensitivityRelinearised, FollowsAnEffectThatIsManyTimesAsStrongAsTypical) {
   const ActiveEffect tiring = {"force_drift", "muscle_0", {{"rate_per_min", -1.0}}};
   const Looked adapted(tiring, Strengths::adapted), kept(tiring, Strengths::kept);
   EXPECT_GE(std::abs(adapted.valueAt(1)), 5 * kept.valueAt(1));
-  EXPECT_NEAR(adapted.valueAt(adapted.look.amount[0]), -1.0, 0.2);
-  EXPECT_LT(adapted.look.log_misfit, kept.look.log_misfit - 5);
+  EXPECT_NEAR(adapted.valueAt(adapted.sensitivity.amount[0]), -1.0, 0.2);
+  EXPECT_LT(adapted.sensitivity.log_misfit, kept.sensitivity.log_misfit - 5);
 }
 
-TEST(FirstLookFarther, EndsWhereTheEffectIsImpossible) {
+TEST(SensitivityRelinearised, EndsWhereTheEffectIsImpossible) {
   // To be 120 mm higher, the load of 2 kg would have to weigh less than nothing.
   const Looked adapted({"sensor_bias", "signal_length_0", {{"offset", -120.0}}}, Strengths::adapted, "payload");
-  EXPECT_LT(adapted.look.log_misfit, adapted.before());
-  EXPECT_DOUBLE_EQ(adapted.look.amount[0], -5) << "more is asked for";
+  EXPECT_LT(adapted.sensitivity.log_misfit, adapted.before());
+  EXPECT_DOUBLE_EQ(adapted.sensitivity.amount[0], -5) << "more is asked for";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "locate.h"
+#include "fault_isolation.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,7 +9,7 @@
 #include <limits>
 #include <set>
 
-#include "regimes.h"
+#include "actuation_phases.h"
 #include "substitution.h"
 
 namespace musclesim {
@@ -17,9 +17,9 @@ namespace musclesim {
 namespace {
 
 constexpr std::size_t stage_count = 5;
-constexpr double per_misfit = 5;              ///< ln of the odds of a stage per unit of log misfit of its best disturbance
-constexpr double per_further_strength = 0.3;  ///< and per strength of it beyond the first: what has many resembles much
-constexpr double hardly = 0.03;               ///< factor for a stage that a substitution speaks against
+constexpr double per_misfit = 5;              ///< ln odds of a stage per unit of log misfit of its best disturbance
+constexpr double per_further_strength = 0.3;  ///< and per further strength of it: a flexible effect resembles many residuals
+constexpr double hardly = 0.03;               ///< factor for a stage that a substitution contradicts
 
 using StageWeights = std::array<double, stage_count>;
 
@@ -27,22 +27,24 @@ std::size_t indexOf(Stage stage) {
   return static_cast<std::size_t>(stage);
 }
 
-/// Whether a suspect is the fault of the sensor of one of these signals.
-bool isSensorOf(const Suspect& suspect, const std::vector<std::string>& signals) {
-  return suspect.info().stage == Stage::sensor && suspect.component() != "all" &&
-         std::ranges::any_of(signals, [&](const std::string& signal) { return Plant::isComponentOf(suspect.component(), signal); });
+/// Whether a hypothesis is a fault of the sensor of one of these signals.
+bool isSensorOf(const Hypothesis& hypothesis, const std::vector<std::string>& signals) {
+  return hypothesis.info().stage == Stage::sensor && hypothesis.component() != "all" &&
+         std::ranges::any_of(signals, [&](const std::string& signal) { return Plant::isComponentOf(hypothesis.component(), signal); });
 }
 
-/// Shares of the stages by likeness alone; the sensors of some signals are acquitted.
-StageWeights byLikeness(const Comparison& comparison, const std::vector<Suspect>& suspects, const std::vector<Signature>& signatures,
-                        const Eigen::VectorXd& residual, const std::vector<std::string>& acquitted) {
+/// Shares of the stages by likeness alone, without the sensors of the signals in `acquitted`.
+StageWeights byLikeness(const Comparison& comparison, const std::vector<Hypothesis>& hypotheses,
+                        const std::vector<Sensitivity>& sensitivities, const Eigen::VectorXd& residual,
+                        const std::vector<std::string>& acquitted) {
   StageWeights best;
   best.fill(std::numeric_limits<double>::infinity());
-  for (std::size_t i = 0; i < suspects.size(); ++i) {
-    if (isSensorOf(suspects[i], acquitted)) continue;
-    double& misfit = best[indexOf(suspects[i].info().stage)];
-    const double further = std::max(0.0, static_cast<double>(suspects[i].strengths().size()) - 1);
-    misfit = std::min(misfit, signatures[i].log_misfit / comparison.affectedCells(residual) + per_further_strength / per_misfit * further);
+  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+    if (isSensorOf(hypotheses[i], acquitted)) continue;
+    double& misfit = best[indexOf(hypotheses[i].info().stage)];
+    const double further = std::max(0.0, static_cast<double>(hypotheses[i].strengths().size()) - 1);
+    misfit =
+        std::min(misfit, sensitivities[i].log_misfit / comparison.affectedBlocks(residual) + per_further_strength / per_misfit * further);
   }
   const double least = *std::ranges::min_element(best);
   StageWeights weights{};
@@ -56,41 +58,41 @@ void normalise(StageWeights& weights) {
   for (double& weight : weights) weight = sum > 0 ? weight / sum : 1.0 / stage_count;
 }
 
-/// The likeliest component of a stage; that of the signal that reads wrong, if it is known.
-std::string componentOf(Stage stage, const std::vector<Suspect>& suspects, const std::vector<Signature>& signatures,
+/// The most probable component of a stage; for the sensor stage that of the wrong signal, if it is known.
+std::string componentOf(Stage stage, const std::vector<Hypothesis>& hypotheses, const std::vector<Sensitivity>& sensitivities,
                         const std::string& wrong_signal) {
   if (stage == Stage::sensor && !wrong_signal.empty())
-    for (const Suspect& suspect : suspects)
-      if (suspect.info().stage == stage && suspect.component() != "all" && Plant::isComponentOf(suspect.component(), wrong_signal))
-        return suspect.component();
+    for (const Hypothesis& hypothesis : hypotheses)
+      if (hypothesis.info().stage == stage && hypothesis.component() != "all" && Plant::isComponentOf(hypothesis.component(), wrong_signal))
+        return hypothesis.component();
   std::string component = "all";
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < suspects.size(); ++i)
-    if (suspects[i].info().stage == stage && signatures[i].log_misfit < least) {
-      least = signatures[i].log_misfit;
-      component = suspects[i].component();
+  for (std::size_t i = 0; i < hypotheses.size(); ++i)
+    if (hypotheses[i].info().stage == stage && sensitivities[i].log_misfit < least) {
+      least = sensitivities[i].log_misfit;
+      component = hypotheses[i].component();
     }
   return component;
 }
 
-/// Where the residual is largest, by what the commands do, in words; empty if it is much the same everywhere.
-std::string regimeOf(const Comparison& comparison, const Eigen::VectorXd& residual) {
+/// The actuation phase in which the residual is largest, in words; empty if it is similar in all.
+std::string phaseOf(const Comparison& comparison, const Eigen::VectorXd& residual) {
   constexpr double fewest_rows = 50, stands_out = 1.5;
-  const RegimeSums sums = regimeSums(comparison, residual);
+  const PhaseSums sums = phaseSums(comparison, residual);
   double square = 0, rows = 0, largest = 0;
   std::string found;
-  for (const Regime regime : {Regime::filling, Regime::venting, Regime::holding}) {
-    const auto i = static_cast<std::size_t>(regime);
+  for (const ActuationPhase phase : {ActuationPhase::filling, ActuationPhase::venting, ActuationPhase::holding}) {
+    const auto i = static_cast<std::size_t>(phase);
     square += sums.square[i];
     rows += sums.rows[i];
-    if (sums.rows[i] <= fewest_rows || sums.meanSquare(regime) <= largest) continue;
-    largest = sums.meanSquare(regime);
-    found = nameOf(regime);
+    if (sums.rows[i] <= fewest_rows || sums.meanSquare(phase) <= largest) continue;
+    largest = sums.meanSquare(phase);
+    found = nameOf(phase);
   }
   return rows > 0 && largest > stands_out * square / rows ? found : "";
 }
 
-/// What substitution and agreement of signals say: stages they speak against, and why.
+/// Evidence from substitution and from the consistency of signals: the stages that it contradicts, and why.
 class Evidence {
  public:
   Evidence(const Comparison& comparison, const Eigen::VectorXd& residual) : comparison_(comparison), residual_(residual) {
@@ -99,9 +101,9 @@ class Evidence {
     askTensions();
   }
   bool speaksAgainst(Stage stage) const { return against_.contains(stage) && against_.size() < stage_count; }
-  /// Signals whose sensors read right.
+  /// Signals whose sensors read correctly.
   const std::vector<std::string>& acquittedSignals() const { return acquitted_signals_; }
-  /// The signal that reads wrong, where that is what was found; empty otherwise.
+  /// The signal whose sensor reads wrong, if the evidence shows one; empty otherwise.
   const std::string& wrongSignal() const { return wrong_signal_; }
   std::string words() const {
     if (reasons_.empty())
@@ -167,14 +169,14 @@ class Evidence {
   }
 
   void askWhatPressuresMake(const PressureTest& test) {
-    constexpr double most = 0.5, sure = 2;  // of the gap; standard deviations
-    const double reach = sure * test.share_deviation;
+    constexpr double most = 0.5, sure = 2;  // share of the gap; number of standard deviations
+    const double uncertainty = sure * test.share_deviation;
     const bool moves_otherwise = test.misfit_increase >= 2 * small_misfit;
-    if (test.share > most && test.share > reach && !moves_otherwise)
+    if (test.share > most && test.share > uncertainty && !moves_otherwise)
       say(fmt::format("the measured pressures in place of the simulated ones make {:.0f} % of the motion's gap, give or take {:.0f}",
-                      100 * test.share, 100 * reach),
+                      100 * test.share, 100 * uncertainty),
           {Stage::force, Stage::body, Stage::sensor});
-    else if (test.share + reach < most)
+    else if (test.share + uncertainty < most)
       say("pressures differ from the predicted ones, but most of the motion's gap stays when they are put in their place: there is more "
           "than one cause, and shares say how much typical disturbances of each stage resemble the whole gap",
           {});
@@ -214,7 +216,7 @@ class Evidence {
     return largestMotionRatio(comparison_, residual_) < agrees && ratioOf(comparison_, residual_, "pressure_").value_or(1) < agrees;
   }
 
-  static constexpr double small_misfit = 0.1;  ///< mean log misfit of motion and tension below which there is nothing to explain
+  static constexpr double small_misfit = 0.1;  ///< mean log misfit of motion and tension below which there is no gap to explain
   const Comparison& comparison_;
   const Eigen::VectorXd& residual_;
   std::set<Stage> against_;
@@ -225,22 +227,23 @@ class Evidence {
 
 }  // namespace
 
-Location locate(const Comparison& whole, const Eigen::VectorXd& residual_of_all, const Comparison& look,
-                const std::vector<Suspect>& suspects, const std::vector<Signature>& signatures, const Eigen::VectorXd& residual_of_look) {
+FaultIsolation isolateFault(const Comparison& whole, const Eigen::VectorXd& residual_of_all, const Comparison& screening,
+                            const std::vector<Hypothesis>& hypotheses, const std::vector<Sensitivity>& sensitivities,
+                            const Eigen::VectorXd& screening_residual) {
   const Evidence evidence(whole, residual_of_all);
-  StageWeights weights = byLikeness(look, suspects, signatures, residual_of_look, evidence.acquittedSignals());
+  StageWeights weights = byLikeness(screening, hypotheses, sensitivities, screening_residual, evidence.acquittedSignals());
   for (std::size_t i = 0; i < stage_count; ++i)
     if (evidence.speaksAgainst(static_cast<Stage>(i))) weights[i] *= hardly;
   normalise(weights);
-  const std::string regime = regimeOf(whole, residual_of_all);
-  Location location{{}, evidence.words()};
+  const std::string phase = phaseOf(whole, residual_of_all);
+  FaultIsolation isolation{{}, evidence.words()};
   for (std::size_t i = 0; i < stage_count; ++i) {
     const auto stage = static_cast<Stage>(i);
-    location.places.push_back({nameOf(stage), componentOf(stage, suspects, signatures, evidence.wrongSignal()), regime, weights[i],
-                               evidence.speaksAgainst(stage)});
+    isolation.places.push_back({nameOf(stage), componentOf(stage, hypotheses, sensitivities, evidence.wrongSignal()), phase, weights[i],
+                                evidence.speaksAgainst(stage)});
   }
-  std::ranges::stable_sort(location.places, [](const Place& a, const Place& b) { return a.share > b.share; });
-  return location;
+  std::ranges::stable_sort(isolation.places, [](const Place& a, const Place& b) { return a.share > b.share; });
+  return isolation;
 }
 
 }  // namespace musclesim

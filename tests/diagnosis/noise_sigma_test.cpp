@@ -1,4 +1,4 @@
-#include "diagnosis/noise_floor.h"
+#include "diagnosis/noise_sigma.h"
 
 #include <gtest/gtest.h>
 
@@ -26,48 +26,48 @@ Recording noisyWave(std::uint64_t seed, double command = 0.5) {
   return recording;
 }
 
-TEST(NoiseFloor, ComesFromRepeatsFirst) {
+TEST(NoiseSigma, ComesFromRepeatsFirst) {
   std::vector<Recording> repeats = {noisyWave(1), noisyWave(2)};
   repeats[0].info.noise_std["length_0_mm"] = 5;
-  const NoiseFloor floor = noiseFloor(repeats, "length_0_mm");
-  EXPECT_EQ(floor.source, NoiseFloor::Source::repeats);
-  EXPECT_NEAR(floor.value, std_mm, 0.05 * std_mm);
+  const NoiseSigma sigma = noiseSigma(repeats, "length_0_mm");
+  EXPECT_EQ(sigma.source, NoiseSigma::Source::repeats);
+  EXPECT_NEAR(sigma.value, std_mm, 0.05 * std_mm);
 }
 
-TEST(NoiseFloor, RepeatsThatAreCalledSoNeedNotHaveTheSameTimes) {
+TEST(NoiseSigma, RepeatsThatAreCalledSoNeedNotHaveTheSameTimes) {
   std::vector<Recording> repeats = {noisyWave(1), noisyWave(2)};
   repeats[0].file = "folder/first.csv";
   for (double& time_s : repeats[1].time_s) time_s += 0.004;
-  EXPECT_NE(noiseFloor(repeats, "length_0_mm").source, NoiseFloor::Source::repeats);
+  EXPECT_NE(noiseSigma(repeats, "length_0_mm").source, NoiseSigma::Source::repeats);
   repeats[1].info.repeat_of = "first";
-  const NoiseFloor floor = noiseFloor(repeats, "length_0_mm");
-  EXPECT_EQ(floor.source, NoiseFloor::Source::repeats);
-  EXPECT_NEAR(floor.value, std_mm, 0.1 * std_mm);
+  const NoiseSigma sigma = noiseSigma(repeats, "length_0_mm");
+  EXPECT_EQ(sigma.source, NoiseSigma::Source::repeats);
+  EXPECT_NEAR(sigma.value, std_mm, 0.1 * std_mm);
 }
 
-TEST(NoiseFloor, ThenFromTheSidecar) {
+TEST(NoiseSigma, ThenFromTheSidecar) {
   std::vector<Recording> recordings = {noisyWave(1, 0.4), noisyWave(2, 0.6)};
   recordings[0].info.noise_std["length_0_mm"] = 0.25;
-  const NoiseFloor floor = noiseFloor(recordings, "length_0_mm");
-  EXPECT_EQ(floor.source, NoiseFloor::Source::sidecar);
-  EXPECT_EQ(floor.value, 0.25);
+  const NoiseSigma sigma = noiseSigma(recordings, "length_0_mm");
+  EXPECT_EQ(sigma.source, NoiseSigma::Source::sidecar);
+  EXPECT_EQ(sigma.value, 0.25);
 }
 
-TEST(NoiseFloor, ThenFromQuietRows) {
-  const NoiseFloor floor = noiseFloor({noisyWave(3)}, "length_0_mm");
-  EXPECT_EQ(floor.source, NoiseFloor::Source::quiet_rows);
-  EXPECT_NEAR(floor.value, std_mm, 0.1 * std_mm);
+TEST(NoiseSigma, ThenFromQuietRows) {
+  const NoiseSigma sigma = noiseSigma({noisyWave(3)}, "length_0_mm");
+  EXPECT_EQ(sigma.source, NoiseSigma::Source::quiet_rows);
+  EXPECT_NEAR(sigma.value, std_mm, 0.1 * std_mm);
 }
 
-TEST(NoiseFloor, OfASignalThatIsReadInEveryOtherRowIsThatOfItsReadings) {
+TEST(NoiseSigma, OfASignalThatIsReadInEveryOtherRowIsThatOfItsReadings) {
   std::vector<Recording> recordings = {noisyWave(3)};
   for (std::size_t row = 1; row < recordings[0].time_s.size(); row += 2)
     recordings[0].signals[1].values[row] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_NEAR(noiseFloor(recordings, "length_0_mm").value, std_mm, 0.15 * std_mm);
+  EXPECT_NEAR(noiseSigma(recordings, "length_0_mm").value, std_mm, 0.15 * std_mm);
 }
 
 /// A sensor that is read five times less often than it is logged.
-TEST(NoiseFloor, OfReadingsThatAreHeldIsThatOfWhatWasRead) {
+TEST(NoiseSigma, OfReadingsThatAreHeldIsThatOfWhatWasRead) {
   constexpr int count = 8;
   for (const std::size_t every : {2, 3, 4, 5}) {
     double mean = 0;
@@ -75,39 +75,39 @@ TEST(NoiseFloor, OfReadingsThatAreHeldIsThatOfWhatWasRead) {
       Recording recording = noisyWave(static_cast<std::uint64_t>(seed));
       std::vector<double>& y = recording.signals[1].values;
       for (std::size_t row = 0; row < y.size(); ++row) y[row] = y[row - row % every];
-      const NoiseFloor floor = noiseFloor({recording}, "length_0_mm");
-      EXPECT_EQ(floor.source, NoiseFloor::Source::quiet_rows);
-      mean += floor.value / count;
+      const NoiseSigma sigma = noiseSigma({recording}, "length_0_mm");
+      EXPECT_EQ(sigma.source, NoiseSigma::Source::quiet_rows);
+      mean += sigma.value / count;
     }
     EXPECT_NEAR(mean, std_mm, 0.15 * std_mm) << "read every " << every << " rows";
   }
 }
 
-TEST(NoiseFloor, OfLostSamplesIsThatOfTheOthers) {
+TEST(NoiseSigma, OfLostSamplesIsThatOfTheOthers) {
   Recording recording = noisyWave(1);
   std::vector<double>& y = recording.signals[1].values;
   RandomStream random(1, "lost");
   for (std::size_t row = 1; row < y.size(); ++row)
     if (random.uniform() < 0.5) y[row] = y[row - 1];
-  EXPECT_NEAR(noiseFloor({recording}, "length_0_mm").value, std_mm, 0.2 * std_mm);
+  EXPECT_NEAR(noiseSigma({recording}, "length_0_mm").value, std_mm, 0.2 * std_mm);
 }
 
-TEST(NoiseFloor, IsAThousandthOfTheRangeWhereNothingElseTellsIt) {
+TEST(NoiseSigma, IsAThousandthOfTheRangeWhereNothingElseTellsIt) {
   Recording few = noisyWave(3);
   few.time_s.resize(15);
   for (Signal& signal : few.signals) signal.values.resize(15);
   for (std::size_t row = 0; row < 15; ++row) few.signals[1].values[row] = 200 + std::sqrt(static_cast<double>(row));
-  const NoiseFloor floor = noiseFloor({few}, "length_0_mm");
-  EXPECT_EQ(floor.source, NoiseFloor::Source::range);
-  EXPECT_NEAR(floor.value, 1e-3 * std::sqrt(14.0), 1e-9);
-  EXPECT_TRUE(floor.isEstimated());
+  const NoiseSigma sigma = noiseSigma({few}, "length_0_mm");
+  EXPECT_EQ(sigma.source, NoiseSigma::Source::range);
+  EXPECT_NEAR(sigma.value, 1e-3 * std::sqrt(14.0), 1e-9);
+  EXPECT_TRUE(sigma.isEstimated());
 }
 
-TEST(NoiseFloor, IsNeverBelowTheResolutionOfTheValues) {
+TEST(NoiseSigma, IsNeverBelowTheResolutionOfTheValues) {
   Recording recording = noisyWave(4);
   for (double& value : recording.signals[1].values) value = 0.5 * std::round(value / 0.5);
   recording.info.noise_std["length_0_mm"] = 1e-6;
-  EXPECT_NEAR(noiseFloor({recording}, "length_0_mm").value, 0.5 / std::sqrt(12.0), 1e-9);
+  EXPECT_NEAR(noiseSigma({recording}, "length_0_mm").value, 0.5 / std::sqrt(12.0), 1e-9);
 }
 
 TEST(LatticeStep, IsTheStepOfRoundedValuesAndZeroForOthers) {

@@ -1,5 +1,5 @@
 // The shrink of the gap and the interval in which that of another recording is expected.
-#include "diagnosis/shrink.h"
+#include "diagnosis/gap_reduction.h"
 
 #include <gtest/gtest.h>
 
@@ -28,13 +28,13 @@ TEST(ClearlyBeats, RefusesWhatGainsNothingHoweverBadTheOthersAre) {
 class ThreeRigs : public testing::Test {
  protected:
   Estimate intervalOf(double left_on_held_out, double left_on_first, double left_on_second) const {
-    const double floor = planted::noise_mm;
-    const Eigen::VectorXd before = Eigen::VectorXd::Constant(rows_, 10 * floor),
-                          both_before = Eigen::VectorXd::Constant(2 * rows_, 10 * floor);
-    const Eigen::VectorXd after = Eigen::VectorXd::Constant(rows_, left_on_held_out * floor);
+    const double sigma = planted::noise_mm;
+    const Eigen::VectorXd before = Eigen::VectorXd::Constant(rows_, 10 * sigma),
+                          both_before = Eigen::VectorXd::Constant(2 * rows_, 10 * sigma);
+    const Eigen::VectorXd after = Eigen::VectorXd::Constant(rows_, left_on_held_out * sigma);
     Eigen::VectorXd both_after(2 * rows_);
-    both_after << Eigen::VectorXd::Constant(rows_, left_on_first * floor), Eigen::VectorXd::Constant(rows_, left_on_second * floor);
-    return shrinkInterval({held_out_, before, after}, {fitted_, both_before, both_after}, 1);
+    both_after << Eigen::VectorXd::Constant(rows_, left_on_first * sigma), Eigen::VectorXd::Constant(rows_, left_on_second * sigma);
+    return gapReductionInterval({held_out_, before, after}, {fitted_, both_before, both_after}, 1);
   }
 
   static constexpr int rows_ = 150;
@@ -48,34 +48,34 @@ TEST_F(ThreeRigs, ShrinkIsThatOnWhatWasHeldOut) {
 }
 
 TEST_F(ThreeRigs, IntervalIsAPointWhereAllRecordingsAgree) {
-  const Estimate shrink = intervalOf(2, 2, 2);
-  EXPECT_NEAR(shrink.low, shrink.value, 1e-9);
-  EXPECT_NEAR(shrink.high, shrink.value, 1e-9);
+  const Estimate reduction = intervalOf(2, 2, 2);
+  EXPECT_NEAR(reduction.low, reduction.value, 1e-9);
+  EXPECT_NEAR(reduction.high, reduction.value, 1e-9);
 }
 
 TEST_F(ThreeRigs, IntervalReachesAllWhereNoiseAloneMayLeaveTheRest) {
-  const Estimate shrink = intervalOf(1.02, 1.02, 1.02);  // a gap of 0.04 is left of 99
-  EXPECT_LT(shrink.value, 100);
-  EXPECT_EQ(shrink.high, 100);
+  const Estimate reduction = intervalOf(1.02, 1.02, 1.02);  // a gap of 0.04 is left of 99
+  EXPECT_LT(reduction.value, 100);
+  EXPECT_EQ(reduction.high, 100);
   EXPECT_LT(intervalOf(1.1, 1.1, 1.1).high, 100);
 }
 
 TEST_F(ThreeRigs, IntervalIsStudentsForOneMoreRecording) {
   // Normalised gaps after: 3, 8, 15 of 99 before.
-  const Estimate shrink = intervalOf(2, 3, 4);
+  const Estimate reduction = intervalOf(2, 3, 4);
   const double logs[] = {std::log(3.0 / 99), std::log(8.0 / 99), std::log(15.0 / 99)};
   const double mean = (logs[0] + logs[1] + logs[2]) / 3;
   double squares = 0;
   for (const double y : logs) squares += (y - mean) * (y - mean);
   const double reach = 4.303 * std::sqrt(squares / 2) * std::sqrt(1 + 1.0 / 3);  // t, 97.5 %, 2 degrees of freedom
-  EXPECT_NEAR(shrink.low, 100 * (1 - std::exp(mean + reach)), 1e-6);
-  EXPECT_NEAR(shrink.high, 100 * (1 - std::exp(mean - reach)), 1e-6);
+  EXPECT_NEAR(reduction.low, 100 * (1 - std::exp(mean + reach)), 1e-6);
+  EXPECT_NEAR(reduction.high, 100 * (1 - std::exp(mean - reach)), 1e-6);
 }
 
 TEST_F(ThreeRigs, NoiseAloneIsNoEvidenceOfMore) {
-  const Estimate shrink = intervalOf(1, 0.5, 1.02);  // all below what noise alone may leave
-  EXPECT_NEAR(shrink.value, 100, 1e-9);
-  EXPECT_NEAR(shrink.low, 100 * (1 - 0.07 / 99), 1e-9);
+  const Estimate reduction = intervalOf(1, 0.5, 1.02);  // all below what noise alone may leave
+  EXPECT_NEAR(reduction.value, 100, 1e-9);
+  EXPECT_NEAR(reduction.low, 100 * (1 - 0.07 / 99), 1e-9);
 }
 
 }  // namespace

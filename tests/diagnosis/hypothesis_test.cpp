@@ -1,5 +1,5 @@
 // Coordinates of suspects, and how coarse simulations stand in for fine ones.
-#include "diagnosis/suspect.h"
+#include "diagnosis/hypothesis.h"
 
 #include <gtest/gtest.h>
 
@@ -14,21 +14,21 @@ namespace {
 
 class PlantedRig : public testing::Test {
  protected:
-  Suspect suspect(const std::string& id, const std::string& component) const { return {effectInfo(id), component, plant_}; }
+  Hypothesis hypothesis(const std::string& id, const std::string& component) const { return {effectInfo(id), component, plant_}; }
 
   DiagnosisOptions options_;
   Plant plant_{planted::plant({}), options_};
 };
 
 TEST_F(PlantedRig, ExcessIsTheLogarithmOfTheDistanceBeyondTheUsualRange) {
-  const Suspect payload = suspect("payload", "hand");
+  const Hypothesis payload = hypothesis("payload", "hand");
   Eigen::VectorXd z = payload.typical();
   EXPECT_EQ(payload.excess(z), 0);
   const double typical_kg = payload.valuesAt(z).front().second, usual_kg = effectInfo("payload").parameters.front().usual_high;
   z[0] = std::exp(0.7) * usual_kg / typical_kg;
   EXPECT_NEAR(payload.excess(z), 0.7, 1e-9);
 
-  const Suspect limit = suspect("flow_limit", "muscle_0");
+  const Hypothesis limit = hypothesis("flow_limit", "muscle_0");
   z = limit.typical();
   EXPECT_EQ(limit.excess(z), 0);
   z[0] = limit.typical()[0] * std::exp(3);  // slower: the rate is the typical one over z
@@ -40,7 +40,7 @@ TEST_F(PlantedRig, ExcessIsTheLogarithmOfTheDistanceBeyondTheUsualRange) {
 /// Twenty-five times what is usual, whatever the first look made of the typical value.
 TEST_F(PlantedRig, BoundsAreThoseOfTheUsualRange) {
   for (const double share : {1.0, 0.01}) {
-    Suspect leak = suspect("leak", "muscle_0"), spring = suspect("series_elasticity", "muscle_0");
+    Hypothesis leak = hypothesis("leak", "muscle_0"), spring = hypothesis("series_elasticity", "muscle_0");
     const double usual_per_s = effectInfo("leak").parameters.front().usual_high,
                  soft = effectInfo("series_elasticity").parameters.front().usual_low;
     leak.rescale(leak.strengths().front(), share);
@@ -52,7 +52,7 @@ TEST_F(PlantedRig, BoundsAreThoseOfTheUsualRange) {
 }
 
 TEST_F(PlantedRig, ALawWithAShareOfSomethingHasAVariantWithout) {
-  const std::vector<Suspect> lags = suspect("valve_lag", "muscle_0").variants(plant_);
+  const std::vector<Hypothesis> lags = hypothesis("valve_lag", "muscle_0").variants(plant_);
   ASSERT_EQ(lags.size(), 2);
   EXPECT_EQ(lags[0].coordinateCount(), 3);
   EXPECT_EQ(lags[1].coordinateCount(), 2);
@@ -60,7 +60,7 @@ TEST_F(PlantedRig, ALawWithAShareOfSomethingHasAVariantWithout) {
   EXPECT_EQ(lags[1].strengths(), (std::vector<int>{0, 1}));
   const ActiveEffect simple = lags[1].at(lags[1].typical());
   EXPECT_EQ(std::get<double>(simple.parameters.at("second_lag_share")), 0);
-  EXPECT_EQ(suspect("payload", "hand").variants(plant_).size(), 1);
+  EXPECT_EQ(hypothesis("payload", "hand").variants(plant_).size(), 1);
 }
 
 TEST_F(PlantedRig, HeldSamplesAreCountedNotFitted) {
@@ -70,7 +70,7 @@ TEST_F(PlantedRig, HeldSamplesAreCountedNotFitted) {
     for (std::size_t row = 0; row < y.size(); ++row) y[row] = y[row - row % 5];  // four of five
   }
   const Plant plant(recordings, options_);
-  const Suspect dropout(effectInfo("sensor_dropout"), "signal_length_0", plant);
+  const Hypothesis dropout(effectInfo("sensor_dropout"), "signal_length_0", plant);
   EXPECT_EQ(dropout.coordinateCount(), 0);
   std::map<std::string, double> values;
   for (const auto& [name, value] : dropout.valuesAt({})) values[name] = value;
@@ -79,12 +79,12 @@ TEST_F(PlantedRig, HeldSamplesAreCountedNotFitted) {
 }
 
 TEST_F(PlantedRig, WhatHasNoUsualRangeHasNoExcess) {
-  const Suspect bias = suspect("sensor_bias", "signal_length_0");
+  const Hypothesis bias = hypothesis("sensor_bias", "signal_length_0");
   EXPECT_EQ(bias.excess(Eigen::VectorXd::Constant(bias.coordinateCount(), 40)), 0);
 }
 
 TEST_F(PlantedRig, WeakenedStrengthsAreAShareOfWhatTheyWere) {
-  Suspect payload = suspect("payload", "hand"), limit = suspect("flow_limit", "muscle_0");
+  Hypothesis payload = hypothesis("payload", "hand"), limit = hypothesis("flow_limit", "muscle_0");
   const double typical_kg = payload.valuesAt(payload.typical()).front().second;
   payload.rescale(0, 0.1);
   EXPECT_NEAR(payload.valuesAt(payload.typical()).front().second, 0.1 * typical_kg, 1e-12);
@@ -94,7 +94,7 @@ TEST_F(PlantedRig, WeakenedStrengthsAreAShareOfWhatTheyWere) {
 }
 
 TEST_F(PlantedRig, AnotherForceLawBeginsAtTheLawOfTheModel) {
-  const Suspect law = suspect("force_law", "muscle_0");
+  const Hypothesis law = hypothesis("force_law", "muscle_0");
   ASSERT_EQ(law.strengths().size(), 4u);
   const Eigen::VectorXd neutral = Eigen::VectorXd::Zero(law.coordinateCount());
   EXPECT_EQ(law.clamped(neutral), neutral);
@@ -103,16 +103,16 @@ TEST_F(PlantedRig, AnotherForceLawBeginsAtTheLawOfTheModel) {
 }
 
 TEST_F(PlantedRig, BitsAreRoundedAndTruncated) {
-  const std::vector<Suspect> variants = suspect("command_quantisation", "muscle_0").variants(plant_);
+  const std::vector<Hypothesis> variants = hypothesis("command_quantisation", "muscle_0").variants(plant_);
   EXPECT_EQ(variants.size(), 32U);
-  for (const Suspect& variant : variants) EXPECT_EQ(variant.coordinateCount(), 0);
+  for (const Hypothesis& variant : variants) EXPECT_EQ(variant.coordinateCount(), 0);
   EXPECT_NE(variants[0].at({}), variants[1].at({}));
 }
 
 TEST_F(PlantedRig, ALeakIsLookedAtAsASmallAndAsALargeOne) {
-  const std::vector<Suspect> leaks = suspect("leak", "muscle_0").variants(plant_);
+  const std::vector<Hypothesis> leaks = hypothesis("leak", "muscle_0").variants(plant_);
   ASSERT_EQ(leaks.size(), 2U);
-  auto perSecond = [](const Suspect& leak) {
+  auto perSecond = [](const Hypothesis& leak) {
     for (const auto& [name, value] : leak.valuesAt(leak.typical()))
       if (name == "leak_per_s") return value;
     return 0.0;
@@ -122,7 +122,7 @@ TEST_F(PlantedRig, ALeakIsLookedAtAsASmallAndAsALargeOne) {
 }
 
 TEST_F(PlantedRig, WhatIsLeftOutStaysNeutral) {
-  Suspect force = suspect("external_force", "hand");
+  Hypothesis force = hypothesis("external_force", "hand");
   const auto all = force.valuesAt(force.typical());
   ASSERT_EQ(all.size(), 3U);
   force.leaveOut(1);
@@ -154,22 +154,23 @@ TEST_F(PlantedRig, CoarseStepsAreCorrected) {
 TEST_F(PlantedRig, MediumStepsAreTakenWhereOnlyTheyFollow) {
   Comparison comparison(plant_, plant_.split().fit);
   const Eigen::VectorXd coarse = comparison.predicted(Model{}, Fidelity::coarse), medium = comparison.predicted(Model{}, Fidelity::medium);
-  double largest_floors = 0;
-  for (const Comparison::Cell& cell : comparison.cells())
-    largest_floors = std::max(largest_floors, std::sqrt(comparison.meanSquare(cell, medium - coarse)) / cell.floor);
-  ASSERT_GT(largest_floors, 0);
-  const double bearable_floors = 5;
-  comparison.goCoarse(medium + (bearable_floors / largest_floors - 0.5) * (medium - coarse));
+  double largest_sigmas = 0;
+  for (const Comparison::Block& block : comparison.blocks())
+    largest_sigmas = std::max(largest_sigmas, std::sqrt(comparison.meanSquare(block, medium - coarse)) / block.sigma);
+  ASSERT_GT(largest_sigmas, 0);
+  const double bearable_sigmas = 5;
+  comparison.goCoarse(medium + (bearable_sigmas / largest_sigmas - 0.5) * (medium - coarse));
   EXPECT_EQ(comparison.fidelity(), Fidelity::medium);
 }
 
 /// They are taken by a look alone, where they follow.
 TEST_F(PlantedRig, ALookBeginsWithTheCoarsestSteps) {
-  Comparison look(plant_, plant_.split().fit), fit = look;
-  const Eigen::VectorXd coarse = look.predicted(Model{}, Fidelity::coarse), coarsest = look.predicted(Model{}, Fidelity::coarsest);
+  Comparison screening(plant_, plant_.split().fit), fit = screening;
+  const Eigen::VectorXd coarse = screening.predicted(Model{}, Fidelity::coarse),
+                        coarsest = screening.predicted(Model{}, Fidelity::coarsest);
   EXPECT_NE(coarse, coarsest);
-  look.goCoarse(coarsest, Comparison::Purpose::looking);
-  EXPECT_EQ(look.fidelity(), Fidelity::coarsest);
+  screening.goCoarse(coarsest, Comparison::Purpose::screening);
+  EXPECT_EQ(screening.fidelity(), Fidelity::coarsest);
   fit.goCoarse(coarsest);
   EXPECT_NE(fit.fidelity(), Fidelity::coarsest);
 }
@@ -183,7 +184,7 @@ TEST_F(PlantedRig, ALookBearsMoreBesideALargeGap) {
   Comparison beside(far, far.split().fit), without(plant_, plant_.split().fit);
   const double shift_mm = 5.5 * planted::noise_mm;
   for (Comparison* comparison : {&beside, &without})
-    comparison->goCoarse(comparison->predicted(Model{}, Fidelity::coarsest).array() - shift_mm, Comparison::Purpose::looking);
+    comparison->goCoarse(comparison->predicted(Model{}, Fidelity::coarsest).array() - shift_mm, Comparison::Purpose::screening);
   EXPECT_EQ(beside.fidelity(), Fidelity::coarsest);
   EXPECT_EQ(without.fidelity(), Fidelity::fine);
 }

@@ -44,11 +44,11 @@ Recording armRecorded(const std::vector<ActiveEffect>& effects, std::uint64_t se
   return recording;
 }
 
-bool wasLookedAt(const Signature& signature) {
-  return std::ranges::all_of(signature.per_strength, [](const Eigen::VectorXd& change) { return change.size() > 0; });
+bool wasScreened(const Sensitivity& sensitivity) {
+  return std::ranges::all_of(sensitivity.per_strength, [](const Eigen::VectorXd& change) { return change.size() > 0; });
 }
 
-class FirstLook : public ::testing::Test {
+class ScreeningOfHypotheses : public ::testing::Test {
  protected:
   static const std::vector<Recording>& weakMuscle() {
     static const std::vector<Recording> all = [] {
@@ -57,41 +57,41 @@ class FirstLook : public ::testing::Test {
     }();
     return all;
   }
-  static Attribution lookedAt(const std::vector<Recording>& recordings, const DiagnosisOptions& options) {
+  static Attribution screened(const std::vector<Recording>& recordings, const DiagnosisOptions& options) {
     const Plant plant(recordings, options);
     Attributor attributor(plant, options, [] {});
-    attributor.look();
+    attributor.screen();
     return attributor.result();
   }
 };
 
-TEST_F(FirstLook, OfManyMusclesKeepsTheNearestAndEveryEffect) {
-  const Attribution look = lookedAt(weakMuscle(), planted::few({}));
-  EXPECT_LT(look.looked_at_count, look.suspects.size() / 2);
+TEST_F(ScreeningOfHypotheses, OfManyMusclesKeepsTheNearestAndEveryEffect) {
+  const Attribution screening = screened(weakMuscle(), planted::few({}));
+  EXPECT_LT(screening.screened_count, screening.hypotheses.size() / 2);
   std::size_t count = 0;
   std::set<std::string> effects, all_effects;
   std::size_t best = 0;
-  for (std::size_t i = 0; i < look.suspects.size(); ++i) {
-    if (look.signatures[i].log_misfit < look.signatures[best].log_misfit) best = i;
-    all_effects.insert(look.suspects[i].info().id);
-    if (!wasLookedAt(look.signatures[i])) continue;
+  for (std::size_t i = 0; i < screening.hypotheses.size(); ++i) {
+    if (screening.sensitivities[i].log_misfit < screening.sensitivities[best].log_misfit) best = i;
+    all_effects.insert(screening.hypotheses[i].info().id);
+    if (!wasScreened(screening.sensitivities[i])) continue;
     ++count;
-    effects.insert(look.suspects[i].info().id);
+    effects.insert(screening.hypotheses[i].info().id);
   }
-  EXPECT_EQ(count, look.looked_at_count);
+  EXPECT_EQ(count, screening.screened_count);
   EXPECT_EQ(effects, all_effects);
-  EXPECT_EQ(look.suspects[best].component(), "muscle_3") << look.suspects[best].label();
+  EXPECT_EQ(screening.hypotheses[best].component(), "muscle_3") << screening.hypotheses[best].label();
 }
 
-TEST_F(FirstLook, DoesNotDependOnWhatMayBeAnAnswer) {
-  const Attribution all = lookedAt(weakMuscle(), planted::few({})), creep = lookedAt(weakMuscle(), planted::few({"creep"}));
-  ASSERT_EQ(all.signatures.size(), creep.signatures.size());
-  for (std::size_t i = 0; i < all.signatures.size(); ++i) EXPECT_EQ(all.signatures[i].log_misfit, creep.signatures[i].log_misfit);
+TEST_F(ScreeningOfHypotheses, DoesNotDependOnWhatMayBeAnAnswer) {
+  const Attribution all = screened(weakMuscle(), planted::few({})), creep = screened(weakMuscle(), planted::few({"creep"}));
+  ASSERT_EQ(all.sensitivities.size(), creep.sensitivities.size());
+  for (std::size_t i = 0; i < all.sensitivities.size(); ++i) EXPECT_EQ(all.sensitivities[i].log_misfit, creep.sensitivities[i].log_misfit);
 }
 
-TEST_F(FirstLook, OfFewMusclesTakesAll) {
-  const Attribution look = lookedAt(planted::plant({{"payload", "hand", {{"mass_kg", 0.2}}}}), planted::few({}));
-  EXPECT_EQ(look.looked_at_count, look.suspects.size());
+TEST_F(ScreeningOfHypotheses, OfFewMusclesTakesAll) {
+  const Attribution screening = screened(planted::plant({{"payload", "hand", {{"mass_kg", 0.2}}}}), planted::few({}));
+  EXPECT_EQ(screening.screened_count, screening.hypotheses.size());
 }
 
 /// A command between two values, each for a quarter of a second.
@@ -108,18 +108,18 @@ Recording betweenTwo(const std::vector<ActiveEffect>& effects, double low, doubl
 }
 
 /// The first recording's levels are as exact with five bits as with six to ten: only the others tell.
-class NumbersOfBits : public FirstLook, public testing::WithParamInterface<double> {};
+class NumbersOfBits : public ScreeningOfHypotheses, public testing::WithParamInterface<double> {};
 INSTANTIATE_TEST_SUITE_P(Look, NumbersOfBits, testing::Values(6.0, 9.0));
 TEST_P(NumbersOfBits, AreChosenByAllRecordingsOfTheLook) {
   const ActiveEffect effect{"command_quantisation", "muscle_0", {{"bits", GetParam()}, {"rounding_point", 0.5}, {"top_level", 0.0}}};
   const std::vector<ActiveEffect> quantised = {effect};
   const std::vector<Recording> recordings = {betweenTwo(quantised, 10.0 / 32, 15.0 / 32, 1), betweenTwo(quantised, 20.4 / 64, 30.7 / 64, 2),
                                              betweenTwo(quantised, 21.3 / 64, 29.2 / 64, 3), planted::recorded(quantised, 0.1, 4)};
-  const Attribution look = lookedAt(recordings, planted::few({}));
+  const Attribution screening = screened(recordings, planted::few({}));
   std::vector<double> bits;
-  for (const Suspect& suspect : look.suspects)
-    if (suspect.info().id == "command_quantisation" && suspect.component() == "muscle_0")
-      for (const auto& [name, value] : suspect.valuesAt({}))
+  for (const Hypothesis& hypothesis : screening.hypotheses)
+    if (hypothesis.info().id == "command_quantisation" && hypothesis.component() == "muscle_0")
+      for (const auto& [name, value] : hypothesis.valuesAt({}))
         if (name == "bits") bits.push_back(value);
   ASSERT_EQ(bits.size(), 2u);
   EXPECT_TRUE(std::ranges::find(bits, GetParam()) != bits.end()) << bits[0] << ", " << bits[1];

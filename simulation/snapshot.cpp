@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "../../robot/ode_vector.h"
+#include "../robot/ode_vector.h"
 #include "musclesim/base/color.h"
 #include "musclesim/robot/line_of_pull.h"
 

@@ -1,4 +1,4 @@
-#include "noise_floor.h"
+#include "noise_sigma.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Sum of squared differences of one signal and their number.
+/// Sum and number of the squared differences of one signal.
 struct Differences {
   double sum_of_squares = 0;
   long count = 0;
@@ -32,10 +32,10 @@ struct Differences {
 };
 
 struct Interpolated {
-  double value, noise_share;  ///< noise_share: of the variance of one row's noise, less between two rows
+  double value, noise_share;  ///< noise_share: share of the noise variance of one row; less between two rows
 };
 
-/// Between the rows before and after a time; NaN outside the recording.
+/// Linear interpolation between the rows before and after a time; NaN outside the recording.
 Interpolated interpolated(const std::vector<double>& time_s, const std::vector<double>& values, double at_s) {
   const auto after = std::ranges::upper_bound(time_s, at_s);
   if (after == time_s.begin()) return {std::nan(""), 1};
@@ -46,7 +46,7 @@ Interpolated interpolated(const std::vector<double>& time_s, const std::vector<d
   return {values[i] + share * (values[i + 1] - values[i]), share * share + (1 - share) * (1 - share)};
 }
 
-/// Of recordings with the same commands at the same times, and of those that a sidecar calls repeats, whose rows need not coincide.
+/// From recordings with the same commands at the same times, and from those that a sidecar calls repeats, whose times may differ.
 std::optional<double> fromRepeats(const std::vector<Recording>& recordings, const std::string& name) {
   Differences differences;
   for (std::size_t i = 0; i < recordings.size(); ++i)
@@ -76,18 +76,18 @@ std::optional<double> fromSidecars(const std::vector<Recording>& recordings, con
   return sum / count;
 }
 
-/// Second differences of the rows whose neighbourhood moves least: a straight line leaves only the noise. Rows without a number are passed
-/// over: a signal may have been read less often than others. So are, if that is asked, rows that repeat the value before.
+/// Second differences of the rows whose neighbourhood moves least; they cancel a straight line and leave the noise. Rows without a number
+/// are skipped, since a signal may be read less often than others; if asked, so are rows that repeat the value before.
 std::vector<double> quietSecondDifferences(const Recording& recording, const std::string& name, bool without_held) {
-  constexpr std::size_t reach = 10;
+  constexpr std::size_t half_window = 10;
   const Signal* signal = recording.find(name);
   if (!signal) return {};
   std::vector<double> y = signal->values;
   std::erase_if(y, [](double value) { return !std::isfinite(value); });
   if (without_held) y.erase(std::unique(y.begin(), y.end()), y.end());
   std::vector<std::pair<double, double>> by_speed;
-  for (std::size_t i = reach; i + reach < y.size(); ++i) {
-    const double difference = y[i - 1] - 2 * y[i] + y[i + 1], speed = std::abs(y[i + reach] - y[i - reach]);
+  for (std::size_t i = half_window; i + half_window < y.size(); ++i) {
+    const double difference = y[i - 1] - 2 * y[i] + y[i + 1], speed = std::abs(y[i + half_window] - y[i - half_window]);
     by_speed.emplace_back(speed, difference);
   }
   std::sort(by_speed.begin(), by_speed.end());
@@ -116,7 +116,7 @@ double rangeOf(const std::vector<Recording>& recordings, const std::string& name
   return largest > least ? largest - least : 0;
 }
 
-/// Share of the rows whose value is that of the row before.
+/// Share of the rows that repeat the value of the row before.
 double heldShare(const std::vector<Recording>& recordings, const std::string& name) {
   double held = 0, count = 0;
   for (const Recording& recording : recordings)
@@ -139,7 +139,7 @@ double finestLattice(const std::vector<Recording>& recordings, const std::string
 }  // namespace
 
 double latticeStep(const std::vector<double>& values) {
-  constexpr std::size_t fewest_levels = 8;  // fewer may stand anywhere
+  constexpr std::size_t fewest_levels = 8;  // fewer levels prove no lattice
   std::vector<double> sorted;
   for (const double value : values)
     if (std::isfinite(value)) sorted.push_back(value);
@@ -159,18 +159,18 @@ double latticeStep(const std::vector<double>& values) {
   return step;
 }
 
-NoiseFloor noiseFloor(const std::vector<Recording>& recordings, const std::string& name) {
+NoiseSigma noiseSigma(const std::vector<Recording>& recordings, const std::string& name) {
   constexpr double imperceptible = 1e-9, usual_share = 1e-3;
-  constexpr double held_by_chance = 0.1, fine_lattice = 4;  // noise of four steps of a lattice makes 7 % of neighbours equal
+  constexpr double held_by_chance = 0.1, fine_lattice = 4;  // noise of four lattice steps makes 7 % of neighbours equal
   const double least = std::max(finestLattice(recordings, name) / std::sqrt(12.0), imperceptible);
-  if (const auto repeats = fromRepeats(recordings, name)) return {std::max(*repeats, least), NoiseFloor::Source::repeats};
-  if (const auto sidecar = fromSidecars(recordings, name)) return {std::max(*sidecar, least), NoiseFloor::Source::sidecar};
+  if (const auto repeats = fromRepeats(recordings, name)) return {std::max(*repeats, least), NoiseSigma::Source::repeats};
+  if (const auto sidecar = fromSidecars(recordings, name)) return {std::max(*sidecar, least), NoiseSigma::Source::sidecar};
   const double quiet = std::max(fromQuietRows(recordings, name, false), least), changed = fromQuietRows(recordings, name, true);
-  // Rows that repeat the value before, though chance makes few values equal, are of a sensor that is read less often than it is logged.
+  // Many repeated values that chance does not explain come from a sensor that is read less often than it is logged.
   const bool is_held = heldShare(recordings, name) > held_by_chance && changed > fine_lattice * finestLattice(recordings, name);
-  if (!is_held && quiet > imperceptible) return {quiet, NoiseFloor::Source::quiet_rows};
-  if (changed > imperceptible) return {std::max(changed, least), NoiseFloor::Source::quiet_rows};
-  return {std::max(usual_share * rangeOf(recordings, name), least), NoiseFloor::Source::range};
+  if (!is_held && quiet > imperceptible) return {quiet, NoiseSigma::Source::quiet_rows};
+  if (changed > imperceptible) return {std::max(changed, least), NoiseSigma::Source::quiet_rows};
+  return {std::max(usual_share * rangeOf(recordings, name), least), NoiseSigma::Source::range};
 }
 
 }  // namespace musclesim

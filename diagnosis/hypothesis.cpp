@@ -1,4 +1,4 @@
-#include "suspect.h"
+#include "hypothesis.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +31,8 @@ double spanOf(const Plant& plant, const std::string& signal) {
 
 }  // namespace
 
-Suspect::Suspect(EffectInfo info, std::string component, const Plant& plant) : info_(std::move(info)), component_(std::move(component)) {
+Hypothesis::Hypothesis(EffectInfo info, std::string component, const Plant& plant)
+    : info_(std::move(info)), component_(std::move(component)) {
   for (const EffectParameter& parameter : info_.parameters) base_.push_back(parameter.neutral);
   std::string signal;
   for (const ComparedSignal& compared : plant.signals())
@@ -67,8 +68,8 @@ Suspect::Suspect(EffectInfo info, std::string component, const Plant& plant) : i
   if (info_.id == held_effect) countHeld(plant);
 }
 
-/// How many samples are held, and how many in a row, is counted, not fitted.
-void Suspect::countHeld(const Plant& plant) {
+/// Counts the share of held samples and the mean length of their runs instead of fitting them.
+void Hypothesis::countHeld(const Plant& plant) {
   double samples = 0, held = 0, runs = 0;
   for (std::size_t s = 0; s < plant.signals().size(); ++s) {
     if (component_ != "all" && !Plant::isComponentOf(component_, plant.signals()[s].name)) continue;
@@ -93,9 +94,9 @@ void Suspect::countHeld(const Plant& plant) {
   }
 }
 
-/// Another law has many constants and no neutral ones: the terms of Chou and Hannaford are added to the law of the model, where 0 is
-/// neutral.
-void Suspect::useCorrectedLaw(const Plant& plant) {
+/// Another force law has many constants and no neutral ones, so the terms of Chou and Hannaford are added to the model's law; 0 is neutral
+/// for them.
+void Hypothesis::useCorrectedLaw(const Plant& plant) {
   constexpr double typical_share = 0.1;  // of the tension at full pressure and length
   const double typical_N = typical_share * plant.tensionN(0, 1, plant.muscleRange(0).maximum_mm);
   coordinates_.clear();
@@ -110,28 +111,28 @@ void Suspect::useCorrectedLaw(const Plant& plant) {
   }
 }
 
-bool Suspect::isSigned(int coordinate) const {
+bool Hypothesis::isSigned(int coordinate) const {
   const Coordinate& c = coordinates_[static_cast<std::size_t>(coordinate)];
   const EffectParameter& p = info_.parameters[c.parameter];
   return info_.id == "force_law" || (c.scale == Scale::linear && p.minimum < p.neutral);
 }
 
-void Suspect::rescale(int coordinate, double z) {
+void Hypothesis::rescale(int coordinate, double z) {
   Coordinate& c = coordinates_[static_cast<std::size_t>(coordinate)];
   c.typical = valueOf(c, z);
 }
 
-void Suspect::leaveOut(int coordinate) {
+void Hypothesis::leaveOut(int coordinate) {
   coordinates_.erase(coordinates_.begin() + coordinate);
   std::erase(strengths_, coordinate);
   for (int& strength : strengths_) strength -= strength > coordinate;
 }
 
-bool Suspect::isTime(int coordinate) const {
+bool Hypothesis::isTime(int coordinate) const {
   return info_.parameters[coordinates_[static_cast<std::size_t>(coordinate)].parameter].unit == "s";
 }
 
-int Suspect::counterpartOf(int coordinate) const {
+int Hypothesis::counterpartOf(int coordinate) const {
   const auto nameOf = [this](const Coordinate& c) -> const std::string& { return info_.parameters[c.parameter].name; };
   const std::string fill = "fill_", vent = "vent_", &name = nameOf(coordinates_[static_cast<std::size_t>(coordinate)]);
   const std::string wanted = name.starts_with(fill)   ? vent + name.substr(fill.size())
@@ -141,12 +142,12 @@ int Suspect::counterpartOf(int coordinate) const {
   return found == coordinates_.end() ? -1 : static_cast<int>(found - coordinates_.begin());
 }
 
-double Suspect::coordinateLike(int coordinate, int other, double z_of_other) const {
+double Hypothesis::coordinateLike(int coordinate, int other, double z_of_other) const {
   return coordinateOf(coordinates_[static_cast<std::size_t>(coordinate)],
                       valueOf(coordinates_[static_cast<std::size_t>(other)], z_of_other));
 }
 
-double Suspect::valueOf(const Coordinate& c, double z) const {
+double Hypothesis::valueOf(const Coordinate& c, double z) const {
   const double base = base_[c.parameter];
   switch (c.scale) {
     case Scale::linear:
@@ -161,7 +162,7 @@ double Suspect::valueOf(const Coordinate& c, double z) const {
   return base;
 }
 
-double Suspect::coordinateOf(const Coordinate& c, double value) const {
+double Hypothesis::coordinateOf(const Coordinate& c, double value) const {
   const double base = base_[c.parameter];
   switch (c.scale) {
     case Scale::linear:
@@ -176,7 +177,7 @@ double Suspect::coordinateOf(const Coordinate& c, double value) const {
   return 0;
 }
 
-Eigen::VectorXd Suspect::clamped(Eigen::VectorXd z) const {
+Eigen::VectorXd Hypothesis::clamped(Eigen::VectorXd z) const {
   for (std::size_t i = 0; i < coordinates_.size(); ++i) {
     const Coordinate& c = coordinates_[i];
     const EffectParameter& p = info_.parameters[c.parameter];
@@ -194,7 +195,7 @@ Eigen::VectorXd Suspect::clamped(Eigen::VectorXd z) const {
   return z;
 }
 
-std::vector<std::pair<std::string, double>> Suspect::valuesAt(const Eigen::VectorXd& z) const {
+std::vector<std::pair<std::string, double>> Hypothesis::valuesAt(const Eigen::VectorXd& z) const {
   std::vector<std::pair<std::string, double>> values;
   for (std::size_t i = 0; i < coordinates_.size(); ++i) {
     const EffectParameter& p = info_.parameters[coordinates_[i].parameter];
@@ -208,14 +209,14 @@ std::vector<std::pair<std::string, double>> Suspect::valuesAt(const Eigen::Vecto
   return values;
 }
 
-std::map<std::string, std::string> Suspect::choices() const {
+std::map<std::string, std::string> Hypothesis::choices() const {
   std::map<std::string, std::string> result;
   for (const std::size_t i : relevantParameters(info_, component_))
     if (const EffectParameter& p = info_.parameters[i]; !p.choices.empty()) result[p.name] = p.choices[static_cast<std::size_t>(base_[i])];
   return result;
 }
 
-ActiveEffect Suspect::at(const Eigen::VectorXd& z) const {
+ActiveEffect Hypothesis::at(const Eigen::VectorXd& z) const {
   std::vector<double> values = base_;
   for (std::size_t i = 0; i < coordinates_.size(); ++i) {
     const EffectParameter& p = info_.parameters[coordinates_[i].parameter];
@@ -224,7 +225,7 @@ ActiveEffect Suspect::at(const Eigen::VectorXd& z) const {
   return activeEffect(info_, component_, values);
 }
 
-double Suspect::excess(const Eigen::VectorXd& z) const {
+double Hypothesis::excess(const Eigen::VectorXd& z) const {
   double sum = 0;
   for (const int strength : strengths_) {
     const Coordinate& c = coordinates_[static_cast<std::size_t>(strength)];
@@ -239,21 +240,20 @@ double Suspect::excess(const Eigen::VectorXd& z) const {
   return sum;
 }
 
-Eigen::VectorXd Suspect::typical() const {
+Eigen::VectorXd Hypothesis::typical() const {
   Eigen::VectorXd z = Eigen::VectorXd::Zero(coordinateCount());
   for (const int strength : strengths_) z[strength] = 1;
   return z;
 }
 
-/// Levels are a matter of one or the other: whole numbers of bits are tried, rounded and truncated, with full scale at the highest level
-/// and one beyond it; nothing is fitted.
-std::vector<Suspect> Suspect::numbersOfBits() const {
+/// One variant per whole number of bits, rounded and truncated, with full scale at the highest level and one beyond it; nothing is fitted.
+std::vector<Hypothesis> Hypothesis::numbersOfBits() const {
   constexpr int fewest = 3, most = 10;
-  std::vector<Suspect> result;
+  std::vector<Hypothesis> result;
   for (int bits = fewest; bits <= most; ++bits)
     for (const double rounding_point : {0.5, 1.0})
       for (const double top_level : {1.0, 0.0}) {
-        Suspect variant = *this;
+        Hypothesis variant = *this;
         for (std::size_t i = 0; i < info_.parameters.size(); ++i) {
           const std::string& name = info_.parameters[i].name;
           variant.base_[i] = name == "bits" ? bits : name == "top_level" ? top_level : rounding_point;
@@ -265,10 +265,10 @@ std::vector<Suspect> Suspect::numbersOfBits() const {
   return result;
 }
 
-/// A small leak shows as its regulator's lag, a large one as what the regulator cannot hold: they look different.
-std::vector<Suspect> Suspect::smallAndLarge() const {
-  constexpr double large = 0.5;  // times the end of the usual range
-  std::vector<Suspect> result = {*this, *this};
+/// Two variants: a small leak shows as the lag of its regulator, a large one as a pressure that the regulator cannot hold.
+std::vector<Hypothesis> Hypothesis::smallAndLarge() const {
+  constexpr double large = 0.5;  // times the upper end of the usual range
+  std::vector<Hypothesis> result = {*this, *this};
   for (const int strength : strengths_) {
     Coordinate& c = result.back().coordinates_[static_cast<std::size_t>(strength)];
     c.typical = large * info_.parameters[c.parameter].usual_high;
@@ -276,10 +276,10 @@ std::vector<Suspect> Suspect::smallAndLarge() const {
   return result;
 }
 
-/// A share that may be none, of a second lag, of a filter, of friction that goes with the pressure: the simpler law is fitted by itself,
-/// for the share leads fits away from where it would be best.
-std::vector<Suspect> Suspect::withAndWithoutShares() const {
-  Suspect without = *this;
+/// With and without shares that may be zero (of a second lag, of a filter, of friction that depends on the pressure): the simpler law is
+/// also fitted by itself, because a share leads fits away from its optimum.
+std::vector<Hypothesis> Hypothesis::withAndWithoutShares() const {
+  Hypothesis without = *this;
   for (int i = coordinateCount() - 1; i >= 0; --i) {
     const Coordinate& c = coordinates_[static_cast<std::size_t>(i)];
     const EffectParameter& p = info_.parameters[c.parameter];
@@ -288,9 +288,9 @@ std::vector<Suspect> Suspect::withAndWithoutShares() const {
   return without.coordinateCount() < coordinateCount() ? std::vector{*this, std::move(without)} : std::vector{*this};
 }
 
-/// A muscle's start and its end, where the robot has both.
-std::vector<Suspect> Suspect::ends(const Plant& plant) const {
-  std::vector<Suspect> result;
+/// Variants for the start and the end of a muscle, if the robot has both.
+std::vector<Hypothesis> Hypothesis::ends(const Plant& plant) const {
+  std::vector<Hypothesis> result;
   for (const MuscleEnd end : {MuscleEnd::start, MuscleEnd::end}) {
     const int muscle = component_ == "all" ? 0 : std::stoi(component_.substr(std::string("muscle_").size()));
     if (!plant.model().robot().asksForOffset(muscle, end)) continue;
@@ -301,12 +301,12 @@ std::vector<Suspect> Suspect::ends(const Plant& plant) const {
   return result;
 }
 
-/// All strengths together, and each by itself: about an axis that lies in the plane of motion a tilt acts by its square, which no small
-/// step shows, and beside another strength it is not looked for farther.
-std::vector<Suspect> Suspect::togetherAndAlone() const {
-  std::vector<Suspect> result = {*this};
+/// All strengths together, and each alone: a tilt about an axis in the plane of motion acts by its square, so small steps do not show it,
+/// and beside another strength it would not be increased.
+std::vector<Hypothesis> Hypothesis::togetherAndAlone() const {
+  std::vector<Hypothesis> result = {*this};
   for (int kept = 0; kept < coordinateCount(); ++kept) {
-    Suspect alone = *this;
+    Hypothesis alone = *this;
     for (int i = coordinateCount() - 1; i >= 0; --i)
       if (i != kept) alone.leaveOut(i);
     result.push_back(std::move(alone));
@@ -314,15 +314,15 @@ std::vector<Suspect> Suspect::togetherAndAlone() const {
   return result;
 }
 
-std::vector<Suspect> Suspect::variants(const Plant& plant) const {
+std::vector<Hypothesis> Hypothesis::variants(const Plant& plant) const {
   if (info_.id == "command_quantisation") return numbersOfBits();
   if (info_.id == "attachment_offset") return ends(plant);
   if (info_.id == "base_tilt") return togetherAndAlone();
   if (info_.id == "leak") return smallAndLarge();
   if (info_.id != "contact") return withAndWithoutShares();
-  std::vector<Suspect> result;
+  std::vector<Hypothesis> result;
   auto add = [&](const std::string& plane, double at, const std::string& side, int axis) {
-    Suspect variant = *this;
+    Hypothesis variant = *this;
     for (std::size_t i = 0; i < info_.parameters.size(); ++i) {
       const EffectParameter& p = info_.parameters[i];
       if (p.name == "side") variant.base_[i] = static_cast<double>(std::ranges::find(p.choices, side) - p.choices.begin());
@@ -354,19 +354,19 @@ bool allows(const DiagnosisOptions& options, const std::string& id) {
   return (options.candidates.empty() || contains(options.candidates)) && !contains(options.exclude);
 }
 
-std::vector<Suspect> suspects(const Plant& plant, const DiagnosisOptions& options) {
-  std::vector<Suspect> result;
+std::vector<Hypothesis> hypotheses(const Plant& plant, const DiagnosisOptions& options) {
+  std::vector<Hypothesis> result;
   for (const EffectInfo& info : effectCatalogue()) {
     if (!allows(options, info.id)) continue;
     for (const std::string& component : plant.componentsFor(info)) {
-      // A wall stands before one joint or the hand.
+      // A wall stops one joint or the hand, not all.
       if (component == "all" && info.acts_on.size() > 1) continue;
-      // There is no play between a gauge and a pressure.
+      // Effects without relevant parameters on this component cannot act, such as play between a gauge and a pressure.
       if (!info.parameters.empty() && relevantParameters(info, component).empty()) continue;
-      // One sensor fails at a time; clocks and loggers may fail for all at once.
+      // Sensors fail one at a time, but a clock or a logger may fail for all at once.
       const bool shared = info.id == "sensor_delay" || info.id == "sensor_dropout";
       if (info.stage == Stage::sensor && (!plant.compares(component) || (component == "all" && !shared))) continue;
-      for (Suspect& variant : Suspect(info, component, plant).variants(plant)) result.push_back(std::move(variant));
+      for (Hypothesis& variant : Hypothesis(info, component, plant).variants(plant)) result.push_back(std::move(variant));
     }
   }
   return result;
