@@ -26,7 +26,7 @@ struct Explanation {
   const Eigen::VectorXd& judged() const { return unseen.size() ? unseen : residual; }
 };
 
-/// How answers are weighed; docs/diagnosing.md says on which cases the numbers were found.
+/// How answers are weighed; docs/developer/diagnosis.md says on which cases the numbers were found.
 struct Weighing {
   double per_misfit = 24;             ///< ln of the odds per unit of log misfit per affected cell, beyond what a law not quite ours leaves
   double per_closer_misfit = 3;       ///< the same beyond what a law close to ours leaves

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Writes the tables of all named parameters into docs/parameters.md, below its hand-written introduction, as the program prints them, and
-# the defaults into the tables of docs/controlling.md.
+# Writes the tables of all named parameters into docs/reference/parameters.md, below its hand-written introduction, as the program prints them, and
+# the defaults into the tables of docs/user/controlling.md.
 # Usage: scripts/make_parameter_docs.sh [musclesim]   (the program; default: build/release/musclesim)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 program="${1:-build/release/musclesim}"
-document=docs/parameters.md
+document=docs/reference/parameters.md
 marker='<!-- Below this line: made by scripts/make_parameter_docs.sh; do not edit. -->'
 [[ -x "$program" ]] || { echo "make_parameter_docs.sh: there is no program $program; build it first or name it" >&2; exit 1; }
 grep -qxF -- "$marker" "$document" || { echo "make_parameter_docs.sh: $document has no line \"$marker\"" >&2; exit 1; }
@@ -131,8 +131,8 @@ chmod 644 "$new"
 mv "$new" "$document"
 trap - EXIT
 
-# docs/controlling.md: "| symbol | `parameter` | default |".
-controlling=docs/controlling.md
+# docs/user/controlling.md: "| symbol | `parameter` | default |".
+controlling=docs/user/controlling.md
 new="$(mktemp "$controlling.XXXXXX")"
 trap 'rm -f "$new"' EXIT
 { config --controller asm --task height; config --controller asm --task reach; config --controller aasm; } | rows '.*' |

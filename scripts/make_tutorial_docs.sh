@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs every command of the diagnosis tutorial and writes docs/tutorial_diagnosis.md with what they printed.
+# Runs every command of the diagnosis tutorial and writes docs/user/tutorial_diagnosis.md with what they printed.
 #
 #     scripts/make_tutorial_docs.sh [build folder]
 #
@@ -98,7 +98,7 @@ TEXT
 show 'for run in 1 2 3 4; do musclesim import logger$run.csv bench.toml bench$run.csv --quiet; done'
 text <<'TEXT'
 
-A robot of your own is a subclass of `Robot` that is built into the program; see [Building a robot](building_a_robot.md#registering). `spring_bench`, `wrist`, `rig`, `elbow` and `arm` come with the program, and `[robot_parameters]` sets their numbers.
+A robot of your own is a subclass of `Robot` that is built into the program; see [A robot of your own](own_robot.md#registering). `spring_bench`, `wrist`, `rig`, `elbow` and `arm` come with the program, and `[robot_parameters]` sets their numbers.
 
 ## 3. The gap
 
@@ -147,7 +147,7 @@ text <<'TEXT'
 
 ## When it is not that easy
 
-Real machines have several causes at once, laws that no catalogue follows to the letter, and data with faults of their own. The [case studies](case_studies.md) show what is left then and what to do:
+Real machines have several causes at once, laws that no catalogue follows to the letter, and data with faults of their own. The [case studies](../research/case_studies.md) show what is left then and what to do:
 
 - `--max-effects 3` looks for more effects, one beside the other; `--effects answer/effects.json --config answer/nominal.toml` gives what was found to the next diagnosis.
 - A gap that grows with time need not be a muscle that creeps or drifts. If readings fall ever further behind the commands, a clock is slow: look at the curves in the report before you believe a number.
@@ -156,6 +156,6 @@ Real machines have several causes at once, laws that no catalogue follows to the
 
 [Recording data that can be diagnosed](diagnosing.md#recording-data-that-can-be-diagnosed) saves most of the trouble.
 TEXT
-cp "$page" "$root/docs/tutorial_diagnosis.md"
-chmod 644 "$root/docs/tutorial_diagnosis.md"
-echo "docs/tutorial_diagnosis.md" >&2
+cp "$page" "$root/docs/user/tutorial_diagnosis.md"
+chmod 644 "$root/docs/user/tutorial_diagnosis.md"
+echo "docs/user/tutorial_diagnosis.md" >&2

@@ -8,7 +8,7 @@
 
 namespace musclesim::program {
 
-/// What the program ends with; see the table in docs/getting_started.md.
+/// What the program ends with; see the table in docs/user/getting_started.md.
 enum ExitStatus {
   done = 0,
   internal_error = 1,

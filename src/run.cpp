@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// In the original's units the paper's 6 s; in true seconds the time the arm takes to settle (docs/parameters.md).
+/// In the original's units the paper's 6 s; in true seconds the time the arm takes to settle (docs/reference/parameters.md).
 double defaultDecisionIntervalS(const PhysicsSettings& physics) {
   constexpr double original_s = 6.0, si_s = 3.0;
   if (physics.kind == PhysicsKind::si) return si_s;

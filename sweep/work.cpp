@@ -34,7 +34,7 @@ constexpr std::chrono::milliseconds longest_wait(1000);
 constexpr std::chrono::milliseconds interrupt_delay(300);  ///< between the ends of a run and of its worker by the same cause, at most
 constexpr double end_margin_s = 1.0;                       ///< what a worker needs to give a row back
 
-/// What the program's exit statuses say about a row; see docs/getting_started.md.
+/// What the program's exit statuses say about a row; see docs/user/getting_started.md.
 enum Status { done = 0, bad_usage = 2, bad_input = 3, diverged = 4 };
 
 void requireSameModel(const Sweep& sweep, const std::string& folder) {

@@ -1,5 +1,5 @@
 // What the effects of one stage cost: CPU time of a control step of the arm with all of them active on all components, over that without.
-// Usage: effect_cost [--document docs/effects.md]
+// Usage: effect_cost [--document docs/reference/effects.md]
 #include <fmt/format.h>
 
 #include <algorithm>

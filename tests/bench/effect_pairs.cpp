@@ -1,6 +1,6 @@
 // Look-alikes: data made with one effect, explained by another one as well as it can. For every pair of the catalogue's list one recording
 // in which the two cannot be told apart and one in which they can. The number is the largest RMSE of any measured signal over its noise
-// that is left by the best fit of the look-alike: below 1 it hides in the noise. Usage: effect_pairs [--document docs/effects.md]
+// that is left by the best fit of the look-alike: below 1 it hides in the noise. Usage: effect_pairs [--document docs/reference/effects.md]
 #include <fmt/format.h>
 
 #include <algorithm>

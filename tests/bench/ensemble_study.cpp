@@ -1,5 +1,5 @@
 /// Throughput of several simulations in one process: one thread against two, the same simulations.
-/// Usage: ensemble_study [--document docs/stepper.md]
+/// Usage: ensemble_study [--document docs/developer/stepper.md]
 /// Throughput = threads * serial time / parallel time, times of all simulations on the clock less what their threads waited for a processor
 /// (Linux: schedstat): other programs of the machine are left out, while waiting for each other counts.
 #include <fmt/format.h>

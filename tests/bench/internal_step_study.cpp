@@ -1,5 +1,5 @@
 /// `si` physics: how the motion of the arm converges as the internal step shrinks, and what every step costs.
-/// Usage: internal_step_study [--muscles N] [--recording FILE.csv] [--document docs/stepper.md] [--seed N] [--steps MS,MS,...] [name=value
+/// Usage: internal_step_study [--muscles N] [--recording FILE.csv] [--document docs/developer/stepper.md] [--seed N] [--steps MS,MS,...] [name=value
 /// ...] Commands: of the recording with its times divided by sqrt(1000); without one, random pressures every 0.19 s.
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 /// What viscous friction in the joints of the muscles changes: the same commands with dry and with viscous friction, in `si`.
-/// Usage: joint_friction_study [--document docs/stepper.md]
+/// Usage: joint_friction_study [--document docs/developer/stepper.md]
 #include <fmt/format.h>
 
 #include <algorithm>
