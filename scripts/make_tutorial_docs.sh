@@ -154,7 +154,7 @@ Real machines have several causes at once, laws that no catalogue follows to the
 - A fault of a sensor that you know, take out in the mapping (`offset`, `factor`).
 - "I cannot explain" with a probability is an answer. `attempt.json`, where there is one, holds what comes nearest.
 
-[Recording data that can be diagnosed](diagnosing.md#recording-data-that-can-be-diagnosed) saves most of the trouble.
+[Recording data that can be diagnosed](recordings.md#recording-data-that-can-be-diagnosed) saves most of the trouble.
 TEXT
 cp "$page" "$root/docs/user/tutorial_diagnosis.md"
 chmod 644 "$root/docs/user/tutorial_diagnosis.md"
