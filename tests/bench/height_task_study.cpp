@@ -2,7 +2,7 @@
 /// random pressures on both. Resumable: every run is a line of a CSV file, and runs that are there are not repeated. A run that diverges is
 /// listed; the time that it lacks counts as time away from the target.
 /// Usage: height_task_study RUNS.csv [--seeds 1-20] [--duration 300] [--physics original] [--controllers asm,random,aasm]
-///                          [--document docs/user/controlling.md --figure docs/user/figures/controllers.svg] [name=value ...]
+///                          [--document docs/research/controllers.md --figure docs/user/figures/controllers.svg] [name=value ...]
 #include <fmt/format.h>
 
 #include <algorithm>
