@@ -9,7 +9,7 @@ namespace musclesim {
 
 namespace {
 
-/// Weights of the penalty, found by leaving out lengths and pressures of measured maps (docs/user/laboratory.md).
+/// Weights of the penalty, found by leaving out lengths and pressures of measured maps (docs/reference/force_law_fits.md).
 constexpr double over_length_weight = 0.003, over_pressure_weight = 0.03;
 
 int lengthCount(double range_ratio) {

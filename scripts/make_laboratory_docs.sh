@@ -28,7 +28,7 @@ table() { grep '^|'; }
 
 <!-- Made by scripts/make_laboratory_docs.sh; do not edit. -->
 
-[The laboratory](../user/laboratory.md) explains laws, error function, cross-validation and experiment.
+[Force laws and their fits](../reference/force_law_fits.md) explains laws, error function, cross-validation and experiment.
 
 ## Measured muscles
 
