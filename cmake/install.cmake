@@ -6,7 +6,7 @@ set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/musclesim)
 target_compile_features(musclesim_core PUBLIC cxx_std_20)  # the headers need it
 install(TARGETS musclesim COMPONENT program)
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
-install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program PATTERN examples EXCLUDE PATTERN decisions EXCLUDE)
+install(DIRECTORY docs/user docs/reference DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs COMPONENT program)
 install(FILES packaging/musclesim.bash-completion DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME musclesim
         COMPONENT program)
 install(FILES packaging/musclesim.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications COMPONENT program)

@@ -26,7 +26,7 @@ struct FittedHypothesis {
   const Eigen::VectorXd& validationResidual() const { return cross_validated.size() ? cross_validated : residual; }
 };
 
-/// Weights of the odds; docs/diagnosing.md says on which cases they were found.
+/// Weights of the odds; docs/developer/diagnosis.md says on which cases they were found.
 struct Weighing {
   double per_misfit = 24;        ///< ln odds per unit of log misfit per affected block, beyond the misfit that a law unlike ours leaves
   double per_closer_misfit = 3;  ///< the same beyond the misfit that a law close to ours leaves

@@ -9,7 +9,7 @@ namespace musclesim {
 
 namespace {
 
-/// Weights of the penalty, chosen by cross-validation on measured maps (docs/laboratory.md).
+/// Weights of the penalty, chosen by cross-validation on measured maps (docs/user/laboratory.md).
 constexpr double over_length_weight = 0.003, over_pressure_weight = 0.03;
 
 int lengthCount(double range_ratio) {

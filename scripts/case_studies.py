@@ -1,6 +1,6 @@
-"""The page docs/case_studies.md from the diagnoses of scripts/make_case_studies.sh.
+"""The page docs/research/case_studies.md from the diagnoses of scripts/make_case_studies.sh.
 
-    case_studies.py ANSWERS >docs/case_studies.md
+    case_studies.py ANSWERS >docs/research/case_studies.md
 
 Every number of a result is read from the diagnoses; the numbers of the authors are those that their READMEs and tables state.
 """
@@ -197,7 +197,7 @@ print(f'''# Case studies: published records of real machines
 
 <!-- Made by scripts/make_case_studies.sh, diagnoses by {versions}; do not edit. -->
 
-What `musclesim diagnose` says about two machines of other laboratories, against what their authors and the notes on their data say. The measurements are not part of this project; [the mappings](examples/import) and [the script](../scripts/make_case_studies.sh) are. Nothing in the diagnosis knows these machines.
+What `musclesim diagnose` says about two machines of other laboratories, against what their authors and the notes on their data say. The measurements are not part of this project; [the mappings](../examples/import) and [the script](../../scripts/make_case_studies.sh) are. Nothing in the diagnosis knows these machines.
 
 ## Results
 
@@ -260,7 +260,7 @@ print(f'''
 | set | use | mapping |
 |---|---|---|
 | static force map of a Festo DMSP-20-300; braided muscle of 10 mm, static points | force laws | `musclesim fit`; see [results of the laboratory](laboratory_results.md) |
-| braided muscle of 10 mm, isometric, filled and vented in pulses | pressure to force | [isometric.toml](examples/import/isometric.toml) |
-| filling of a muscle of 20 mm | valve; pressure stage only | [fill.toml](examples/import/fill.toml) |
+| braided muscle of 10 mm, isometric, filled and vented in pulses | pressure to force | [isometric.toml](../examples/import/isometric.toml) |
+| filling of a muscle of 20 mm | valve; pressure stage only | [fill.toml](../examples/import/fill.toml) |
 | leaking of a muscle behind a closed valve | none: a recording's command is a pressure that a regulator keeps, and a closed valve is none | |
 ''')

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Checks the project's Markdown files: every relative link leads to a file, and to a heading where it names one; every file and every test
-# that docs/equations.md names exists.
+# that docs/developer/equations.md names exists.
 # Usage: scripts/check_docs.sh [folder]   (default: the project). Exit status 1 if something is missing; each is listed.
 set -euo pipefail
 cd "${1:-"$(dirname "${BASH_SOURCE[0]}")/.."}"
@@ -50,7 +50,7 @@ while IFS= read -r document; do
   done < <(links_of "$document")
 done < <(find . -name '*.md' -not -path './build/*' -not -path './.git/*' -not -path './log/runs/*' | sort)
 
-equations=docs/equations.md
+equations=docs/developer/equations.md
 if [[ -e "$equations" ]]; then
   while IFS= read -r name; do
     checked=$((checked + 1))

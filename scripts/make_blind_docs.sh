@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Writes docs/blind.md and three figures: makes cases with withheld causes from a seed, diagnoses them without the key, scores.
+# Writes docs/research/blind.md and three figures: makes cases with withheld causes from a seed, diagnoses them without the key, scores.
 # Resumable: the same call goes on where it was stopped. On two free cores, recordings of 4 s: 300 cases on rig and elbow and 12 on the arm
 # took 22 minutes to make, two hours and three quarters (rig and elbow) and an hour and a half (arm) to diagnose; following up takes about a
 # minute each (FOLLOW=no leaves that out, an interrupt ends it where it is). The defaults, 120 and 12 cases of 6 s: by that about four hours
@@ -10,7 +10,8 @@
 #     KEYS           folder for the key, out of reach of the diagnosis: not in CASES, beside it or in the project
 #     build folder   default: build/release; holds musclesim
 # KEEP=FILE.tar.xz keeps seal, answers and follow-ups in an archive too, whenever the call ends, and takes them from there where CASES has
-# none: a check can go on on another machine, and anybody can score it again. docs/blind_answers.tar.xz is that of docs/blind.md.
+# none: a check can go on on another machine, and anybody who has the archive can score it again. The page then names the archive's SHA-256; the
+# archive itself does not belong into the repository.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 usage='usage: scripts/make_blind_docs.sh SEED CASES KEYS [build folder] [options of `blind make`]'
@@ -45,4 +46,17 @@ fi
 key_file="$(sed -n 's/.*"key_file": "\([0-9a-f]*\.json\)".*/\1/p' "$cases/seal.json")"
 "$program" blind run "$cases" "${noted[@]}"
 [[ ${FOLLOW:-yes} == no ]] || "$program" blind follow "$cases" --keys "$keys/$key_file"
-"$program" blind score "$cases" --keys "$keys/$key_file" --docs docs
+"$program" blind score "$cases" --keys "$keys/$key_file" --docs docs/research
+if [[ -n "${KEEP:-}" ]]; then
+  keep
+  cat >>docs/research/blind.md <<TEXT
+
+## The answers
+
+Seal, answers and follow-ups of this check are in the archive \`$(basename "$KEEP")\` ($(du --apparent-size -BK "$KEEP" | cut -f1 | tr -d K) KiB), which is not part of the repository: \`seal.json\` (seed, version and fingerprints of all recordings), and per case \`answers/caseNNN.json\` (the diagnosis), \`answers/caseNNN.effects.json\` (the chosen effects, where there are any) and \`answers/caseNNN.cost.json\` (replays and seconds), \`answers.json\` (fingerprint of all answers, versions, seconds per case), and \`follow_up/caseNNN.json\` for the cases that were followed up (the answer tried on a fresh recording, the diagnosis with the true effect left out of the catalogue, the diagnosis with the proposed recording added). Its SHA-256:
+
+    $(sha256sum "$KEEP" | cut -d' ' -f1)
+
+With the archive, \`KEEP=FILE scripts/make_blind_docs.sh SEED CASES KEYS\` makes the cases again from the seed and scores these answers.
+TEXT
+fi

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Diagnoses published records of real machines and writes docs/case_studies.md.
+# Diagnoses published records of real machines and writes docs/research/case_studies.md.
 #
 #     scripts/make_case_studies.sh REAL ANSWERS [build folder]
 #
@@ -60,6 +60,6 @@ diagnose bench_step $load bench_step
 
 
 python3 "$root/scripts/case_studies.py" "$answers" >"$answers/case_studies.md"
-cp "$answers/case_studies.md" "$root/docs/case_studies.md"
-chmod 644 "$root/docs/case_studies.md"
-echo "docs/case_studies.md" >&2
+cp "$answers/case_studies.md" "$root/docs/research/case_studies.md"
+chmod 644 "$root/docs/research/case_studies.md"
+echo "docs/research/case_studies.md" >&2

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Writes docs/laboratory_results.md: errors of all force laws on measured muscles, coverage of the intervals, the load-frame experiment; and
-# the figures docs/figures/fit_festo.svg and docs/figures/experiment_medium.svg.
+# Writes docs/research/laboratory_results.md: errors of all force laws on measured muscles, coverage of the intervals, the load-frame experiment; and
+# the figures docs/user/figures/fit_festo.svg and docs/user/figures/experiment_medium.svg.
 # Usage: scripts/make_laboratory_docs.sh DATA [build folder]
 #     DATA           folder with martens-dmsp-static/dmsp20_300.csv and psu-bpa10-isometric/static_points.csv
 #     build folder   default: build/release; holds musclesim and tests/bench/fit_coverage
@@ -28,7 +28,7 @@ table() { grep '^|'; }
 
 <!-- Made by scripts/make_laboratory_docs.sh; do not edit. -->
 
-[The laboratory](laboratory.md) explains laws, error function, cross-validation and experiment.
+[Force laws and their fits](../reference/force_law_fits.md) explains laws, error function, cross-validation and experiment.
 
 ## Measured muscles
 
@@ -76,9 +76,9 @@ Relative squared error of the force between the simulated rig and the law F(p, l
 TEXT
   "$build/musclesim" experiment --out "$work/experiment" --quiet | table
 } >"$work/results.md"
-mkdir -p docs/figures
-cp "$work/festo/sarosi.svg" docs/figures/fit_festo.svg
-cp "$work/experiment/medium.svg" docs/figures/experiment_medium.svg
-cp "$work/results.md" docs/laboratory_results.md
-chmod 644 docs/laboratory_results.md docs/figures/fit_festo.svg docs/figures/experiment_medium.svg
-echo "docs/laboratory_results.md and two figures"
+mkdir -p docs/user/figures
+cp "$work/festo/sarosi.svg" docs/user/figures/fit_festo.svg
+cp "$work/experiment/medium.svg" docs/user/figures/experiment_medium.svg
+cp "$work/results.md" docs/research/laboratory_results.md
+chmod 644 docs/research/laboratory_results.md docs/user/figures/fit_festo.svg docs/user/figures/experiment_medium.svg
+echo "docs/research/laboratory_results.md and two figures"

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Writes the tables of all named parameters into docs/parameters.md, below its hand-written introduction, as the program prints them, and
-# the defaults into the tables of docs/controlling.md.
+# Writes the tables of all named parameters into docs/reference/parameters.md, below its hand-written introduction, as the program prints them, and
+# the defaults into the tables of docs/reference/controllers.md.
 # Usage: scripts/make_parameter_docs.sh [musclesim]   (the program; default: build/release/musclesim)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 program="${1:-build/release/musclesim}"
-document=docs/parameters.md
+document=docs/reference/parameters.md
 marker='<!-- Below this line: made by scripts/make_parameter_docs.sh; do not edit. -->'
 [[ -x "$program" ]] || { echo "make_parameter_docs.sh: there is no program $program; build it first or name it" >&2; exit 1; }
 grep -qxF -- "$marker" "$document" || { echo "make_parameter_docs.sh: $document has no line \"$marker\"" >&2; exit 1; }
@@ -131,9 +131,9 @@ chmod 644 "$new"
 mv "$new" "$document"
 trap - EXIT
 
-# docs/controlling.md: "| symbol | `parameter` | default |".
-controlling=docs/controlling.md
-new="$(mktemp "$controlling.XXXXXX")"
+# docs/reference/controllers.md: "| symbol | `parameter` | default |".
+controllers=docs/reference/controllers.md
+new="$(mktemp "$controllers.XXXXXX")"
 trap 'rm -f "$new"' EXIT
 { config --controller asm --task height; config --controller asm --task reach; config --controller aasm; } | rows '.*' |
   awk -F'\t' '
@@ -144,8 +144,8 @@ trap 'rm -f "$new"' EXIT
       print cell[1] " | " cell[2] " | " text[name] " |"
       next
     }
-    { print }' - "$controlling" >"$new"
+    { print }' - "$controllers" >"$new"
 chmod 644 "$new"
-mv "$new" "$controlling"
+mv "$new" "$controllers"
 trap - EXIT
 echo "$document: $(grep -c '^| `' "$document") parameters"

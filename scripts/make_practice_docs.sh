@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Diagnoses the practice cases (recordings with a hidden cause, made by an independent program) and writes docs/practice_even.md or docs/practice_odd.md.
+# Diagnoses the practice cases (recordings with a hidden cause, made by an independent program) and writes docs/research/practice_even.md or docs/research/practice_odd.md.
 #
 #     scripts/make_practice_docs.sh PRACTICE ANSWERS [even|odd] [build folder]
 #
@@ -40,7 +40,7 @@ for folder in "$practice"/case*; do
   "$program" diagnose "$folder"/r?.csv --out "$answers/$name" --quiet || echo "$name failed" >&2
 done
 
-python3 - "$practice" "$answers" "$which" "$commit" >"$root/docs/practice_$which.md" <<'PYTHON'
+python3 - "$practice" "$answers" "$which" "$commit" >"$root/docs/research/practice_$which.md" <<'PYTHON'
 import json, math, os, subprocess, sys, tempfile
 practice, answers, which, commit = sys.argv[1:]
 keys = {n: k for n, k in json.load(open(practice + '/keys.json')).items() if int(n[4:]) % 2 == (which == 'odd')}
@@ -86,4 +86,4 @@ for name, key in keys.items():
           (f'{first["id"]}@{first["component"]} {first["probability"]:.2f}' if first else '') +
           f' | {d["none_of_these"]:.2f} | {d["gap"]["shrink_percent"]:.1f} |')
 PYTHON
-echo "docs/practice_$which.md" >&2
+echo "docs/research/practice_$which.md" >&2

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Runs the checks behind docs/reliability.md and writes it.
+# Runs the checks behind docs/developer/reliability.md and writes it.
 #
 #     scripts/make_reliability_docs.sh [ROW ...]       default: all that need no fresh machine; DATE of the last run stands in each row
 #
-# A command that ends with status 77 could not try what it should: "not tried". The last result of every row is kept in docs/reliability/ROW.txt: how it ended, when, and what its command printed. Rows that are not named
+# A command that ends with status 77 could not try what it should: "not tried". The last result of every row is kept in docs/research/reliability/ROW.txt: how it ended, when, and what its command printed. Rows that are not named
 # keep theirs. Uses build/release and, for the parsers, build/fuzz. BUILD=folder chooses another build.
 set -euo pipefail
 root=$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")
@@ -31,7 +31,7 @@ rows=(
 
 [[ -e $build/build.ninja ]] || { echo "make_reliability_docs: there is no build in $build; cmake --preset release makes one" >&2; exit 2; }
 cmake --build "$build" --target musclesim fuzz_tests reliability_tests robot_tests log_tests analytic_tests soak_study sweep_study >&2
-mkdir -p docs/reliability
+mkdir -p docs/research/reliability
 # passed_some: whether a test program's output (standard input) tells of at least one test that passed; a filter may match none.
 passed_some() {
   grep -qaE '^\[  PASSED  \] [1-9][0-9]* tests?\.'
@@ -67,7 +67,7 @@ for row in "${rows[@]}"; do
     else
       tail -n 25 <<<"$output"
     fi | cut -c1-300 | sed -e "s|$root/||g" || true
-  } >"docs/reliability/$name.txt"
+  } >"docs/research/reliability/$name.txt"
   echo "  $result" >&2
 done
 
@@ -84,14 +84,14 @@ The same binary, ODE build, input and seed give the same bits, whatever the numb
 TEXT
   for row in "${rows[@]}"; do
     IFS='|' read -r name promise _ <<<"$row"
-    file=docs/reliability/$name.txt
+    file=docs/research/reliability/$name.txt
     if [[ -e $file ]]; then result="$(sed -n 1p "$file"), $(sed -n 2p "$file"), $(sed -n 3p "$file")"; else result="never run"; fi
     printf '| [%s](#%s) | %s | %s |\n' "$name" "$name" "$promise" "$result"
   done
   for row in "${rows[@]}"; do
     IFS='|' read -r name _ command <<<"$row"
     printf '\n## %s\n\n`%s`\n' "$name" "$command"
-    if [[ -e docs/reliability/$name.txt ]]; then printf '\n```\n%s\n```\n' "$(tail -n +4 "docs/reliability/$name.txt")"; fi
+    if [[ -e docs/research/reliability/$name.txt ]]; then printf '\n```\n%s\n```\n' "$(tail -n +4 "docs/research/reliability/$name.txt")"; fi
   done
   cat <<'TEXT'
 
@@ -103,6 +103,6 @@ TEXT
 - Fuzzing lasts 60 s per target; 1e6 executions per target are what a release needs (`scripts/fuzz.sh SECONDS`).
 - The Debian packages: `scripts/debian_package_check.sh DIR` installs them on a fresh Debian 12.
 TEXT
-} >docs/reliability.md
-echo "docs/reliability.md" >&2
+} >docs/developer/reliability.md
+echo "docs/developer/reliability.md" >&2
 exit "$status"

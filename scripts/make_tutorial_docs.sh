@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs every command of the diagnosis tutorial and writes docs/tutorial_diagnosis.md with what they printed.
+# Runs every command of the diagnosis tutorial and writes docs/user/tutorial_diagnosis.md with what they printed.
 #
 #     scripts/make_tutorial_docs.sh [build folder]
 #
@@ -31,11 +31,21 @@ text <<'TEXT'
 
 <!-- Made by scripts/make_tutorial_docs.sh, which ran every command; do not edit. -->
 
-You have a muscle on a bench, a logger that writes tables, and a simulation that does not do what the machine does. This page goes from the tables to a simulation that does. So that you can follow it without a machine, the program plays the machine, too.
+You have a muscle on a bench, a logger that writes tables, and a simulation that does not do what the machine does. This page goes from the tables to a simulation that does:
+
+```
+musclesim import logger1.csv bench.toml bench1.csv                 # a table becomes a recording
+musclesim diagnose bench1.csv bench2.csv bench3.csv --out answer   # why does the machine differ?
+musclesim replay bench4.csv --effects answer/effects.json          # the better simulation
+```
+
+![The top of a report](figures/report.png)
+
+You can follow it without a machine: the program simulates the machine, too.
 
 ## 1. The measurements
 
-The machine of this tutorial is a `spring_bench`, a muscle against a spring. Two things about it are not what the simulation's user thinks: its valve lags, and its spring is stiffer than the drawing says.
+The machine of this tutorial is a `spring_bench`, a muscle against a spring. Its user does not know two things: the valve lags, and the spring is stiffer than the drawing says.
 
 TEXT
 file machine.json json <<'TEXT'
@@ -44,7 +54,7 @@ file machine.json json <<'TEXT'
 TEXT
 text <<'TEXT'
 
-Four runs with random steps of pressure, and a logger with columns, units and a zero of its own:
+Make four runs with random steps of pressure. The logger has its own columns, units and zero:
 
 ```
 for run in 1 2 3 4; do
@@ -71,7 +81,7 @@ text <<'TEXT'
 
 ## 2. Recordings
 
-A mapping says what the columns are, which robot this is, and how noisy the sensors are. The noise is the standard deviation of a reading while nothing moves, in the unit of the name: `pressure_0` is a fraction of full scale, `pressure_0_bar = 0.018` would say the same. [Recordings](recordings.md#tables-of-other-programs) has all that a mapping can say.
+A mapping says what the columns are, which robot this is, and how noisy the sensors are. The noise is the standard deviation of a reading while nothing moves, in the unit of the name: `pressure_0` is a fraction of full scale; `pressure_0_bar = 0.018` is equivalent. [Recordings](recordings.md#tables-of-other-programs) explains mappings.
 
 TEXT
 file bench.toml toml <<'TEXT'
@@ -98,7 +108,7 @@ TEXT
 show 'for run in 1 2 3 4; do musclesim import logger$run.csv bench.toml bench$run.csv --quiet; done'
 text <<'TEXT'
 
-A robot of your own is a subclass of `Robot` that is built into the program; see [Building a robot](building_a_robot.md#registering). `spring_bench`, `wrist`, `rig`, `elbow` and `arm` come with the program, and `[robot_parameters]` sets their numbers.
+A robot of your own is a subclass of `Robot` that is built into the program; see [A robot of your own](own_robot.md#registering). `spring_bench`, `wrist`, `rig`, `elbow` and `arm` come with the program, and `[robot_parameters]` sets their numbers.
 
 ## 3. The gap
 
@@ -106,11 +116,11 @@ TEXT
 show 'musclesim replay bench1.csv'
 text <<'TEXT'
 
-The length is off by forty times the noise. Where does that come from?
+The length is off by forty times the noise. Why?
 
 ## 4. The diagnosis
 
-Nobody measured the spring, so `--tune` names it. Two recordings are for fitting, the last one only measures the result (of a real machine it should differ more from them than here); the fourth stays in the drawer.
+Nobody measured the spring, so `--tune` names it. The first two recordings are fitted, the last one only measures the result. (With a real machine, the last recording should differ more from the others than here.) The fourth recording is kept for the end.
 
 TEXT
 show 'musclesim diagnose bench1.csv bench2.csv bench3.csv --tune spring_bench.spring_N_per_mm --out answer'
@@ -118,28 +128,28 @@ text <<'TEXT'
 
 Read it from the top:
 
-- *where*: the stage. Here measured pressures tell: the model driven by them in place of its own shows the gap of the length too, so it arises before the force. Whether the command came late or the pressure did is told by the gap's shape alone.
-- *which*: the effects with their probabilities; "none of these" is one of the answers.
-- *how far*: on `bench3.csv`, which neither fitting nor choosing has seen. The nominal refit is what the simulation's own numbers could have gained without any effect, the sham what a meaningless disturbance gains.
+- *where*: the stage. If the measured pressures are the model's commands, the gap of the length is reproduced; so the gap arises before the force. Command and pressure can then be told apart only by the shape of the gap.
+- *which*: the effects with their probabilities. "None of these" is a possible answer.
+- *how far*: the gap reduction on `bench3.csv`, which neither fitting nor choosing has seen. The nominal refit is the reduction by the model's own numbers without any effect, the sham that by a disturbance without meaning.
 
-`answer/report.html` shows the same with the curves; drag over one to zoom. [Diagnosing](diagnosing.md) explains what each number means and when not to believe it.
+`answer/report.html` shows the same with curves; drag over one to zoom. [Diagnosing](diagnosing.md) explains each number and when not to believe it.
 
 ## 5. The better simulation
 
-`effects.json` and `nominal.toml` are what was learnt:
+`effects.json` and `nominal.toml` hold the result:
 
 TEXT
 show 'cat answer/effects.json answer/nominal.toml'
 text <<'TEXT'
 
-On the recording from the drawer:
+Try them on the fourth recording:
 
 TEXT
 show 'musclesim replay bench4.csv'
 show 'musclesim replay bench4.csv --config answer/nominal.toml --effects answer/effects.json'
 text <<'TEXT'
 
-What is left is the noise. Every run takes the two files, also with a controller:
+Only the noise remains. Every run accepts the two files, also with a controller:
 
 TEXT
 show 'musclesim --simple --quiet --robot spring_bench --muscle line --controller random --duration 2 --config answer/nominal.toml --effects answer/effects.json --record better.csv | head -1'
@@ -147,15 +157,15 @@ text <<'TEXT'
 
 ## When it is not that easy
 
-Real machines have several causes at once, laws that no catalogue follows to the letter, and data with faults of their own. The [case studies](case_studies.md) show what is left then and what to do:
+Real machines have several causes at once, laws that differ from any catalogue's, and faulty data. The [case studies](../research/case_studies.md) show what remains then and what to do:
 
-- `--max-effects 3` looks for more effects, one beside the other; `--effects answer/effects.json --config answer/nominal.toml` gives what was found to the next diagnosis.
-- A gap that grows with time need not be a muscle that creeps or drifts. If readings fall ever further behind the commands, a clock is slow: look at the curves in the report before you believe a number.
-- A fault of a sensor that you know, take out in the mapping (`offset`, `factor`).
-- "I cannot explain" with a probability is an answer. `attempt.json`, where there is one, holds what comes nearest.
+- `--max-effects 3` looks for further effects. `--effects answer/effects.json --config answer/nominal.toml` includes the findings in the next diagnosis.
+- A gap that grows with time may have another cause than creep or drift. If readings lag more and more behind the commands, a clock is slow: look at the curves in the report before you believe a number.
+- Correct known faults of a sensor in the mapping (`offset`, `factor`).
+- "I cannot explain" with a probability is an answer, too. `attempt.json`, if there is one, holds the nearest explanation.
 
-[Recording data that can be diagnosed](diagnosing.md#recording-data-that-can-be-diagnosed) saves most of the trouble.
+[Recording data that can be diagnosed](recordings.md#recording-data-that-can-be-diagnosed) saves most of the trouble.
 TEXT
-cp "$page" "$root/docs/tutorial_diagnosis.md"
-chmod 644 "$root/docs/tutorial_diagnosis.md"
-echo "docs/tutorial_diagnosis.md" >&2
+cp "$page" "$root/docs/user/tutorial_diagnosis.md"
+chmod 644 "$root/docs/user/tutorial_diagnosis.md"
+echo "docs/user/tutorial_diagnosis.md" >&2

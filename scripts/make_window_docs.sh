@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Makes the pictures of docs/window.md, docs/figures/window*.png, and the table of its section "Measured".
+# Makes the pictures of docs/user/window.md, docs/user/figures/window*.png, and the table of its section "Measured".
 # Usage: scripts/make_window_docs.sh [build folder]   (default: build/release)
 # Needs Xvfb, xdotool, ffmpeg and ImageMagick.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 build="${1:-build/release}"
 program="$PWD/$build/musclesim"
-figures="$PWD/docs/figures"
-page="$PWD/docs/window.md"
+figures="$PWD/docs/user/figures"
+page="$PWD/docs/user/window.md"
 [[ -x "$program" ]] || { echo "make_window_docs.sh: there is no program $program; build it first" >&2; exit 1; }
 for tool in Xvfb xdotool ffmpeg ffprobe import montage; do
   command -v "$tool" >/dev/null || { echo "make_window_docs.sh: $tool is not installed" >&2; exit 1; }

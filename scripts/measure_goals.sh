@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Cost and accuracy of the automatic internal step of `si`, for ten and thirty muscles, with contacts and without, on the commands of a
-# recording and under random pressures; writes the table into docs/stepper.md. A few minutes; run it while the machine does nothing else.
+# recording and under random pressures; writes the table into docs/developer/stepper.md. A few minutes; run it while the machine does nothing else.
 # Usage: scripts/measure_goals.sh RECORDING.csv [BUILD_FOLDER]
 #     RECORDING.csv    commands; their times are divided by sqrt(1000)
 #     BUILD_FOLDER     default: build/release, with target internal_step_study
@@ -11,7 +11,7 @@ program="$(realpath "${2:-$root/build/release}")/tests/bench/internal_step_study
 cd "$root"
 # shellcheck source=scripts/common.sh
 source "$root/scripts/common.sh"
-document=docs/stepper.md
+document=docs/developer/stepper.md
 require_section "$document" goals scripts/measure_goals.sh
 
 # row COMMANDS MUSCLES CONTACTS [OPTION...]: the arm's automatic step, 10 ms / 12, against 0.05 ms.

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # How the cost of a step grows with the number of muscles: counts instructions of the arm's steps in `si` with callgrind, whose counts do not
-# depend on what else the machine does, and writes the table into docs/stepper.md. Needs valgrind; some minutes.
+# depend on what else the machine does, and writes the table into docs/developer/stepper.md. Needs valgrind; some minutes.
 # Usage: scripts/measure_growth.sh [BUILD_FOLDER]      default: build/release
 set -euo pipefail
 root=$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")
@@ -8,7 +8,7 @@ cd "$root"
 # shellcheck source=scripts/common.sh
 source "$root/scripts/common.sh"
 program="${1:-build/release}/musclesim"
-document=docs/stepper.md
+document=docs/developer/stepper.md
 require_section "$document" growth scripts/measure_growth.sh
 command -v valgrind >/dev/null || { echo "measure_growth.sh: there is no valgrind" >&2; exit 1; }
 work="$(mktemp -d)"

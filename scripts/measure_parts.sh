@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Where a step's time goes: samples a running simulation with perf, times the parts with google-benchmark, and writes both tables into
-# docs/stepper.md.
+# docs/developer/stepper.md.
 # Usage: scripts/measure_parts.sh [BUILD_FOLDER]      default: build/release, with targets robustness_study and parts_benchmark
 set -euo pipefail
 root=$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")
@@ -8,7 +8,7 @@ cd "$root"
 # shellcheck source=scripts/common.sh
 source "$root/scripts/common.sh"
 programs="${1:-build/release}/tests/bench"
-document=docs/stepper.md
+document=docs/developer/stepper.md
 require_section "$document" parts scripts/measure_parts.sh
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Measures what the constants of `si` do to the arm's motion, and writes the table into docs/parameters.md.
+# Measures what the constants of `si` do to the arm's motion, and writes the table into docs/reference/parameters.md.
 # Usage: scripts/measure_si_constants.sh RECORDING.csv [internal_step_study]
 # RECORDING.csv: commands, their times are divided by sqrt(1000); the program's default is build/release/tests/bench/internal_step_study.
 set -euo pipefail
@@ -9,7 +9,7 @@ root=$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")
 cd "$root"
 # shellcheck source=scripts/common.sh
 source "$root/scripts/common.sh"
-document=docs/parameters.md
+document=docs/reference/parameters.md
 require_section "$document" constants scripts/measure_si_constants.sh
 
 # A row "description | distances | gap": the first internal step in ms against a run of its own with 0.05 ms.

@@ -23,7 +23,7 @@ struct BenchArguments {
   double duration_s = 2, time_limit_s = 5;
   int repeat_count = 3;
   std::vector<int> muscle_counts = {1, 2, 5, 10, 15, 20, 25, 30};
-  std::string out = "docs";
+  std::string out = "docs/reference";
 };
 
 constexpr double shortest_cpu_s =

@@ -8,7 +8,7 @@
 
 namespace musclesim::program {
 
-/// Exit statuses of the program; see the table in docs/getting_started.md.
+/// Exit statuses of the program; see the table in docs/user/getting_started.md.
 enum ExitStatus {
   done = 0,
   internal_error = 1,

@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Default decision interval: the paper's 6 s in original physics; in true seconds the time that the arm takes to settle
-/// (docs/parameters.md).
+/// (docs/reference/parameters.md).
 double defaultDecisionIntervalS(const PhysicsSettings& physics) {
   constexpr double original_s = 6.0, si_s = 3.0;
   if (physics.kind == PhysicsKind::si) return si_s;

@@ -34,7 +34,7 @@ constexpr std::chrono::milliseconds longest_wait(1000);
 constexpr std::chrono::milliseconds interrupt_delay(300);  ///< a signal that ends a run reaches its worker within this time, if both get it
 constexpr double end_margin_s = 1.0;                       ///< time that a worker needs to give a row back
 
-/// Exit statuses of the program, which give the status of a row; see docs/getting_started.md.
+/// Exit statuses of the program, which give the status of a row; see docs/user/getting_started.md.
 enum Status { done = 0, bad_usage = 2, bad_input = 3, diverged = 4 };
 
 void requireSameModel(const Sweep& sweep, const std::string& folder) {

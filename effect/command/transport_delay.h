@@ -3,7 +3,7 @@
 /// u commanded, u' delivered pressure, fractions of full scale; T = delay_s. Over an internal step u' is the mean of u(t - T), so that the
 /// motion depends smoothly on T. Before the start u is the first command.
 /// Neutral: T = 0. Range 0 .. 2 s, usually 0.003 .. 0.1 s.  Source: pure dead time of tube and electronics; 44 to 96 ms measured on a
-/// pneumatic muscle drive (see docs/effects.md).
+/// pneumatic muscle drive (see docs/reference/effects.md).
 #pragma once
 
 #include "../history.h"

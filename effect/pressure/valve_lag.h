@@ -4,7 +4,7 @@
 /// muscle, p actual pressure, fractions of full scale; s = second_lag_share; s = 0 is a single lag with p = v. Exact if u is constant over
 /// the step.
 /// Neutral: both 0, p = u. Range 0 .. 5 s, usually 0.01 .. 0.2 s.  Source: first-order lag of valve and volume; time constants of 0.05 and
-/// 0.084 s, 0.126 and 0.089 s (filling and venting) measured on two pneumatic muscle drives (see docs/effects.md).
+/// 0.084 s, 0.126 and 0.089 s (filling and venting) measured on two pneumatic muscle drives (see docs/reference/effects.md).
 #pragma once
 
 #include "musclesim/effect/effect_info.h"

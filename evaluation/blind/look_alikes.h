@@ -20,7 +20,7 @@ struct Measured {
 Measured measuredBy(const std::vector<std::string>& signals);
 
 /// Patterns "id@component", component "*" for any. The truth comes first. An effect that acts on one place only may be named with any
-/// component. Look-alikes (docs/effects.md):
+/// component. Look-alikes (docs/reference/effects.md):
 ///   neither pressure nor force measured   valve_lag, viscous_loss, joint_viscous_friction; transport_delay, sensor_delay of all signals
 ///   pressure not measured                 force_gain, pressure_calibration; leak, creep
 ///   always                                contact of a joint for joint_stop_offset: a stop within reach is a wall
@@ -32,7 +32,7 @@ std::vector<std::string> acceptableAnswers(const std::string& id, const std::str
 bool fits(const std::string& answer, const std::string& pattern);
 bool fitsAny(const std::string& answer, const std::vector<std::string>& patterns);
 
-/// Whether two effects are a pair that some recordings cannot distinguish (docs/effects.md), whatever is measured.
+/// Whether two effects are a pair that some recordings cannot distinguish (docs/reference/effects.md), whatever is measured.
 bool areOfOneClass(const std::string& one_id, const std::string& other_id);
 
 /// "valve_lag" of "valve_lag@muscle_0".

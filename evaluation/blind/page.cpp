@@ -44,7 +44,7 @@ std::string introduction(const Score& score) {
 
 <!-- Made by scripts/make_blind_docs.sh; do not edit. -->
 
-`musclesim blind make` draws plants: a robot, a cause, a component, a size, excitations, sensors. The truth is simulated with another law than the catalogue's (three lags for one, Bouc-Wen for play, LuGre for Coulomb), with a cause that the catalogue does not have, or without a cause; with half the internal step of the model (arm: the same step, because a finer one alone moves its hand by millimetres), other seeds and sensor noise. The key is sealed; `musclesim blind run` diagnoses without it and refuses to start if the key is within reach; `musclesim blind score` checks all fingerprints, then opens the key. [Diagnosing](diagnosing.md) explains the method that is tested here.
+`musclesim blind make` draws plants: a robot, a cause, a component, a size, excitations, sensors. The truth is simulated with another law than the catalogue's (three lags for one, Bouc-Wen for play, LuGre for Coulomb), with a cause that the catalogue does not have, or without a cause; with half the internal step of the model (arm: the same step, because a finer one alone moves its hand by millimetres), other seeds and sensor noise. The key is sealed; `musclesim blind run` diagnoses without it and refuses to start if the key is within reach; `musclesim blind score` checks all fingerprints, then opens the key. [Diagnosing](../developer/diagnosis.md) explains the method that is tested here.
 
 | | |
 |---|---|

@@ -12,7 +12,7 @@
 #include "display_options.h"
 #include "musclesim/controller/manual.h"
 #include "pace.h"
-#include "simulation/scene/snapshot.h"
+#include "simulation/snapshot.h"
 
 namespace musclesim {
 

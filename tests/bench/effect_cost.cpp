@@ -1,5 +1,5 @@
 // Cost of the effects of one stage: CPU time of a control step of the arm with all of them active on all components, over the time without
-// effects. Usage: effect_cost [--document docs/effects.md]
+// effects. Usage: effect_cost [--document docs/reference/effects.md]
 #include <fmt/format.h>
 
 #include <algorithm>

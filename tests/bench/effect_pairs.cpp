@@ -1,6 +1,6 @@
 // Look-alikes: fits data made with one effect by another effect. For every pair of the catalogue's list there is one recording that cannot
 // tell the two apart and one that can. The number is the largest RMSE of any measured signal over its noise after the best fit of the
-// look-alike; below 1 the difference is hidden in the noise. Usage: effect_pairs [--document docs/effects.md]
+// look-alike; below 1 the difference is hidden in the noise. Usage: effect_pairs [--document docs/reference/effects.md]
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 /// Throughput of several simulations in one process: one thread against two, the same simulations.
-/// Usage: ensemble_study [--document docs/stepper.md]
+/// Usage: ensemble_study [--document docs/developer/stepper.md]
 /// Throughput = threads * serial time / parallel time. The times are wall times of all simulations minus the time their threads waited for
 /// a processor (Linux: schedstat), so other programs on the machine do not count, but waiting for each other does.
 #include <fmt/format.h>

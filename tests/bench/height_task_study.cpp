@@ -2,7 +2,7 @@
 /// task, random pressures on both. The study can be resumed: every run is a line of a CSV file, and runs in the file are not repeated. Runs
 /// that diverge are listed; their missing time counts as time away from the target. Usage: height_task_study RUNS.csv [--seeds 1-20]
 /// [--duration 300] [--physics original] [--controllers asm,random,aasm]
-///                          [--document docs/controlling.md --figure docs/figures/controllers.svg] [name=value ...]
+///                          [--document docs/user/controlling.md --figure docs/figures/controllers.svg] [name=value ...]
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 /// Effect of viscous instead of dry friction in the joints of the muscles: the same commands with each, in `si`.
-/// Usage: joint_friction_study [--document docs/stepper.md]
+/// Usage: joint_friction_study [--document docs/developer/stepper.md]
 #include <fmt/format.h>
 
 #include <algorithm>

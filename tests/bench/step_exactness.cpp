@@ -1,5 +1,5 @@
 /// Relative difference of velocities between the chain stepper and dWorldStep, step by step from the same state along dWorldStep's path.
-/// Usage: step_exactness [--document docs/stepper.md] [--resume] [--quick]
+/// Usage: step_exactness [--document docs/developer/stepper.md] [--resume] [--quick]
 /// --quick: a tenth of the steps.   --resume: does not repeat rows that are already in the document.
 /// Moving: random pressures, new ones every 0.25 s of true time. Resting: the first pressures held, 20 s of true time beforehand (5 s for
 /// more than ten muscles).

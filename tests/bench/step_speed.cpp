@@ -1,5 +1,5 @@
 /// CPU time of the chain stepper and of dWorldStep on the arm in `original` physics, in one process.
-/// Usage: step_speed RECORDING.csv ... [--time-limit S] [--document docs/stepper.md]
+/// Usage: step_speed RECORDING.csv ... [--time-limit S] [--document docs/developer/stepper.md]
 /// Commands are those of the recordings, in their order; muscles beyond the tenth repeat them. With 30 muscles
 /// dWorldStep runs until the time limit, the chain stepper over the same steps.
 #include <fmt/format.h>

@@ -4,7 +4,7 @@
 #     tests/cluster/cluster_check.sh parallel|slurm|mpirun [PROGRAM]      default: build/release/musclesim
 #
 # slurm: starts munged, slurmctld and slurmd on this machine with a configuration of their own in a temporary folder, submits the batch file
-# of docs/cluster.md as an array of three workers, kills one worker (SIGKILL) in mid-row and lets one run crash (SIGSEGV). Needs root.
+# of docs/user/sweeps.md as an array of three workers, kills one worker (SIGKILL) in mid-row and lets one run crash (SIGSEGV). Needs root.
 # Exit status 77, with a line that says why, if the tool is not available.
 set -euo pipefail
 root=$(dirname "$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")")
@@ -151,8 +151,8 @@ under_slurm() {
   say "Slurm runs after $((SECONDS - start)) s: $(sinfo -h -o '%P %D node, %c processors, %t')"
   # The batch file from the documentation.
   awk '/^```$/ { inside = !inside; text = ""; next } inside { text = text $0 "\n" } inside && /^musclesim work RUNS --time-limit/ { printf "%s", text }' \
-    "$root/docs/cluster.md" >workers.sh
-  grep -q '^#SBATCH --array' workers.sh || fail "docs/cluster.md has no batch file"
+    "$root/docs/user/sweeps.md" >workers.sh
+  grep -q '^#SBATCH --array' workers.sh || fail "docs/user/sweeps.md has no batch file"
   local job state
   job=$(sbatch --parsable --array=1-3 --time=00:02:00 --output="$work/log/worker-%a" workers.sh)
   sbatch --parsable --dependency="afterany:$job" --output="$work/log/collect" --wrap "musclesim collect RUNS" >/dev/null

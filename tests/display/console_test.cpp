@@ -72,7 +72,7 @@ TEST_F(ConsoleOfTwelveMuscles, UnboundKeysDoNothing) {
   EXPECT_EQ(console.state(), before);
 }
 
-/// docs/window.md lists the same keys as the help.
+/// docs/user/window.md lists the same keys as the help.
 TEST(KeysOfTheWindow, AreDocumented) {
   const std::string page = readTextFile(MUSCLESIM_WINDOW_PAGE, 1 << 20);
   for (const auto& binding : Console::bindings())

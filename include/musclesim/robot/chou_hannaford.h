@@ -22,7 +22,7 @@ struct ChouHannafordConstants {
 ///     F(p, l) = max(0, p (A s^2 - B) + C (s - 1) - D + E exp(beta (s - 1))),    s = l / l_0
 /// p pressure (fraction of full scale), l length, l_0 rest length. Beyond l_0 the exponential continues as its tangent, 1 + beta (s - 1). A
 /// slack muscle does not push. Source: Chou and Hannaford 1996 for A and B (Eq. 10: F = P b^2 (3 cos^2 - 1) / (4 pi n^2)); the corrections
-/// are the elastic, threshold and stretch forces seen in measured maps, see docs/laboratory.md.
+/// are the elastic, threshold and stretch forces seen in measured maps, see docs/user/laboratory.md.
 class ChouHannafordForceLaw final : public ForceLaw {
  public:
   /// Throws BadParameter unless the rest length is positive, all constants are finite and beta is not negative.
