@@ -1,4 +1,4 @@
-// What is made of recordings before anything is diagnosed: stretches of the first look, sensors that are dead, effects beforehand.
+// Preparation of recordings: segments for screening, dead sensors, effects that the model already has.
 #include "diagnosis/plant.h"
 
 #include <gtest/gtest.h>
