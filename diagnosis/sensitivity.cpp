@@ -349,19 +349,19 @@ std::vector<Sensitivity> sensitivitiesOf(const Comparison& comparison, std::vect
         if (changes[i].size())
           sensitivities[target.hypothesis].per_strength[target.strength] = only(comparison, changes[i] / strength, target.signal);
   };
-  auto look = [&](const std::vector<Probe>& probes, double strength) { probeInto(result, probes, strength); };
-  look(probes(comparison, hypotheses), 1);
+  auto probeAll = [&](const std::vector<Probe>& probes, double strength) { probeInto(result, probes, strength); };
+  probeAll(probes(comparison, hypotheses), 1);
   for (Sensitivity& sensitivity : result)
     if (std::ranges::all_of(sensitivity.per_strength, [](const Eigen::VectorXd& change) { return change.size() > 0; }))
       sensitivity.excitation_ratio = excitationRatio(comparison, sensitivity.per_strength);
   const Eigen::VectorXd residual = comparison.measured() - nominal;
   const bool adapt = strengths == Strengths::adapted;
   auto adaptOnlyStrengths = [&](const std::function<bool(std::size_t)>& chosen, const std::function<void(OnlyStrength&)>& adapted) {
-    std::vector<std::size_t> those;
+    std::vector<std::size_t> chosen_indices;
     for (std::size_t s = 0; adapt && s < hypotheses.size(); ++s)
-      if (hypotheses[s].info().stage != Stage::sensor && hypotheses[s].strengths().size() == 1 && chosen(s)) those.push_back(s);
-    parallelFor(static_cast<int>(those.size()), job_count, [&](int i) {
-      const std::size_t s = those[static_cast<std::size_t>(i)];
+      if (hypotheses[s].info().stage != Stage::sensor && hypotheses[s].strengths().size() == 1 && chosen(s)) chosen_indices.push_back(s);
+    parallelFor(static_cast<int>(chosen_indices.size()), job_count, [&](int i) {
+      const std::size_t s = chosen_indices[static_cast<std::size_t>(i)];
       OnlyStrength only_strength(comparison, nominal, base, on_simulation, hypotheses[s], result[s]);
       adapted(only_strength);
     });
@@ -369,16 +369,16 @@ std::vector<Sensitivity> sensitivitiesOf(const Comparison& comparison, std::vect
   adaptOnlyStrengths(
       [&](std::size_t s) { return result[s].per_strength.front().size() && !shows(comparison, hypotheses[s], 0, result[s]); },
       [](OnlyStrength& it) { it.searchThreshold(); });
-  for (const int direction : {1, -1}) look(strongerProbes(comparison, hypotheses, result, direction), direction * strong);
+  for (const int direction : {1, -1}) probeAll(strongerProbes(comparison, hypotheses, result, direction), direction * strong);
   for (std::size_t s = 0; adapt && s < hypotheses.size(); ++s) leaveOutIdle(comparison, hypotheses[s], result[s]);
   const int weakenings = adapt ? 3 : 0;
-  for (int i = 0; i < weakenings; ++i) look(weakerProbes(comparison, hypotheses, result, residual), 1);
-  std::vector<Sensitivity> lately = result;
-  probeInto(lately, lateProbes(hypotheses), late);
+  for (int i = 0; i < weakenings; ++i) probeAll(weakerProbes(comparison, hypotheses, result, residual), 1);
+  std::vector<Sensitivity> late_result = result;
+  probeInto(late_result, lateProbes(hypotheses), late);
   for (std::size_t s = 0; s < hypotheses.size(); ++s) {
     fitLinearly(comparison, hypotheses[s], residual, result[s]);
-    fitLinearly(comparison, hypotheses[s], residual, lately[s]);
-    if (lately[s].log_misfit < result[s].log_misfit) result[s] = std::move(lately[s]);
+    fitLinearly(comparison, hypotheses[s], residual, late_result[s]);
+    if (late_result[s].log_misfit < result[s].log_misfit) result[s] = std::move(late_result[s]);
   }
   adaptOnlyStrengths([](std::size_t) { return true; }, [](OnlyStrength& it) { it.relinearise(); });
   return result;
