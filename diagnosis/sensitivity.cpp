@@ -138,9 +138,9 @@ std::vector<Eigen::VectorXd> changesBy(const Comparison& comparison, const std::
 }
 
 /// Whether a strength at its typical value changes the prediction visibly.
-bool shows(const Comparison& comparison, const Hypothesis& hypothesis, std::size_t strength, const Sensitivity& look) {
+bool shows(const Comparison& comparison, const Hypothesis& hypothesis, std::size_t strength, const Sensitivity& sensitivity) {
   const double least = hypothesis.isSigned(hypothesis.strengths()[strength]) ? nothing : 1;
-  return excitationRatio(comparison, {look.per_strength[strength]}) >= least;
+  return excitationRatio(comparison, {sensitivity.per_strength[strength]}) >= least;
 }
 
 /// Probes of strengths that change nothing at their typical value but would if they were stronger, such as limits that nothing reaches.
@@ -196,13 +196,13 @@ std::vector<Probe> weakerProbes(const Comparison& comparison, std::vector<Hypoth
 class OnlyStrength {
  public:
   OnlyStrength(const Comparison& comparison, const Eigen::VectorXd& nominal, const Model& base, const OnSimulation& on_simulation,
-               Hypothesis& hypothesis, Sensitivity& look)
+               Hypothesis& hypothesis, Sensitivity& sensitivity)
       : comparison_(comparison),
         nominal_(nominal),
         base_(base),
         on_simulation_(on_simulation),
         hypothesis_(hypothesis),
-        sensitivity_(look) {}
+        sensitivity_(sensitivity) {}
 
   /// For a typical strength that shows nothing: increases it, in both directions if it is signed, until it shows, then bisects the
   /// threshold and refines around the strength with the least misfit. Makes that strength the typical one. Derivatives at the threshold say
@@ -303,20 +303,20 @@ bool actAlike(const Eigen::VectorXd& one, const Eigen::VectorXd& other) {
 
 /// Drops signed strengths whose change is a small share of another strength's change, or a multiple of it: the recordings cannot determine
 /// them, and a fit would give them arbitrary values.
-void leaveOutIdle(const Comparison& comparison, Hypothesis& hypothesis, Sensitivity& look) {
+void leaveOutIdle(const Comparison& comparison, Hypothesis& hypothesis, Sensitivity& sensitivity) {
   constexpr double small_share = 0.1;
   std::vector<double> excitation;
-  for (const Eigen::VectorXd& change : look.per_strength)
+  for (const Eigen::VectorXd& change : sensitivity.per_strength)
     excitation.push_back(change.size() ? excitationRatio(comparison, {change}) : std::numeric_limits<double>::quiet_NaN());
   for (std::size_t k = hypothesis.strengths().size(); k-- > 0;) {
     const int coordinate = hypothesis.strengths()[k];
     const bool idle = std::ranges::any_of(excitation, [&](double other) { return excitation[k] < small_share * other; });
-    const auto before_k = look.per_strength.begin() + static_cast<std::ptrdiff_t>(k);
+    const auto before_k = sensitivity.per_strength.begin() + static_cast<std::ptrdiff_t>(k);
     const bool double_of_another =
-        std::any_of(look.per_strength.begin(), before_k, [&](const Eigen::VectorXd& other) { return actAlike(*before_k, other); });
+        std::any_of(sensitivity.per_strength.begin(), before_k, [&](const Eigen::VectorXd& other) { return actAlike(*before_k, other); });
     if (!(idle || double_of_another) || !hypothesis.isSigned(coordinate)) continue;
     hypothesis.leaveOut(coordinate);
-    look.per_strength.erase(look.per_strength.begin() + static_cast<std::ptrdiff_t>(k));
+    sensitivity.per_strength.erase(sensitivity.per_strength.begin() + static_cast<std::ptrdiff_t>(k));
     excitation.erase(excitation.begin() + static_cast<std::ptrdiff_t>(k));
   }
 }
