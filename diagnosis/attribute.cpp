@@ -159,7 +159,7 @@ bool Attributor::gainsOnScreening(const Candidate& candidate) const {
 }
 
 /// Whether a fitted hypothesis is close enough to the most probable one to be refined.
-bool Attributor::mayBeBelieved(const FittedHypothesis& fitted) const {
+bool Attributor::isProbableEnough(const FittedHypothesis& fitted) const {
   constexpr double far_behind = 13.5;  // ln odds; a fit in fine steps may gain this much
   if (fitted.members.size() == 1) return true;
   double best = -std::numeric_limits<double>::infinity();
@@ -234,7 +234,7 @@ void Attributor::fitTogether(std::vector<Candidate> candidates, PruningMargins m
   keepBetterOfSame(candidates);
   forEach(all, [&](Candidate& candidate) { refit(candidate.fitted, fit_, 0, Fidelity::coarse); });
   forEach([&, within = limit(margins.on_all)](
-              const Candidate& candidate) { return candidate.fitted.log_misfit <= within && mayBeBelieved(candidate.fitted); },
+              const Candidate& candidate) { return candidate.fitted.log_misfit <= within && isProbableEnough(candidate.fitted); },
           [&](Candidate& candidate) { fitToAll(candidate.fitted); });
   for (Candidate& candidate : candidates)
     if (candidate.fitted.residual.size() == fit_.size()) result_.fits.push_back(std::move(candidate.fitted));

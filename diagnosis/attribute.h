@@ -81,7 +81,7 @@ class Attributor {
   void checkExcitation(const std::vector<Hypothesis>& typical);
   void weakenStart(Candidate& candidate) const;
   bool gainsOnScreening(const Candidate& candidate) const;
-  bool mayBeBelieved(const FittedHypothesis& fitted) const;
+  bool isProbableEnough(const FittedHypothesis& fitted) const;
   void fitTogether(std::vector<Candidate> candidates, PruningMargins reach);
   std::vector<std::size_t> survivors(const std::vector<double>& log_misfit, std::size_t count, bool from_every_stage) const;
   Eigen::VectorXd startOf(std::size_t index, const Sensitivity& sensitivity) const;

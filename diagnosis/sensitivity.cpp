@@ -138,9 +138,9 @@ std::vector<Eigen::VectorXd> changesBy(const Comparison& comparison, const std::
 }
 
 /// Whether a strength at its typical value changes the prediction visibly.
-bool shows(const Comparison& comparison, const Hypothesis& hypothesis, std::size_t strength, const Sensitivity& look) {
+bool shows(const Comparison& comparison, const Hypothesis& hypothesis, std::size_t strength, const Sensitivity& sensitivity) {
   const double least = hypothesis.isSigned(hypothesis.strengths()[strength]) ? nothing : 1;
-  return excitationRatio(comparison, {look.per_strength[strength]}) >= least;
+  return excitationRatio(comparison, {sensitivity.per_strength[strength]}) >= least;
 }
 
 /// Probes of strengths that change nothing at their typical value but would if they were stronger, such as limits that nothing reaches.
@@ -196,13 +196,13 @@ std::vector<Probe> weakerProbes(const Comparison& comparison, std::vector<Hypoth
 class OnlyStrength {
  public:
   OnlyStrength(const Comparison& comparison, const Eigen::VectorXd& nominal, const Model& base, const OnSimulation& on_simulation,
-               Hypothesis& hypothesis, Sensitivity& look)
+               Hypothesis& hypothesis, Sensitivity& sensitivity)
       : comparison_(comparison),
         nominal_(nominal),
         base_(base),
         on_simulation_(on_simulation),
         hypothesis_(hypothesis),
-        sensitivity_(look) {}
+        sensitivity_(sensitivity) {}
 
   /// For a typical strength that shows nothing: increases it, in both directions if it is signed, until it shows, then bisects the
   /// threshold and refines around the strength with the least misfit. Makes that strength the typical one. Derivatives at the threshold say
@@ -303,20 +303,20 @@ bool actAlike(const Eigen::VectorXd& one, const Eigen::VectorXd& other) {
 
 /// Drops signed strengths whose change is a small share of another strength's change, or a multiple of it: the recordings cannot determine
 /// them, and a fit would give them arbitrary values.
-void leaveOutIdle(const Comparison& comparison, Hypothesis& hypothesis, Sensitivity& look) {
+void leaveOutIdle(const Comparison& comparison, Hypothesis& hypothesis, Sensitivity& sensitivity) {
   constexpr double small_share = 0.1;
   std::vector<double> excitation;
-  for (const Eigen::VectorXd& change : look.per_strength)
+  for (const Eigen::VectorXd& change : sensitivity.per_strength)
     excitation.push_back(change.size() ? excitationRatio(comparison, {change}) : std::numeric_limits<double>::quiet_NaN());
   for (std::size_t k = hypothesis.strengths().size(); k-- > 0;) {
     const int coordinate = hypothesis.strengths()[k];
     const bool idle = std::ranges::any_of(excitation, [&](double other) { return excitation[k] < small_share * other; });
-    const auto before_k = look.per_strength.begin() + static_cast<std::ptrdiff_t>(k);
+    const auto before_k = sensitivity.per_strength.begin() + static_cast<std::ptrdiff_t>(k);
     const bool double_of_another =
-        std::any_of(look.per_strength.begin(), before_k, [&](const Eigen::VectorXd& other) { return actAlike(*before_k, other); });
+        std::any_of(sensitivity.per_strength.begin(), before_k, [&](const Eigen::VectorXd& other) { return actAlike(*before_k, other); });
     if (!(idle || double_of_another) || !hypothesis.isSigned(coordinate)) continue;
     hypothesis.leaveOut(coordinate);
-    look.per_strength.erase(look.per_strength.begin() + static_cast<std::ptrdiff_t>(k));
+    sensitivity.per_strength.erase(sensitivity.per_strength.begin() + static_cast<std::ptrdiff_t>(k));
     excitation.erase(excitation.begin() + static_cast<std::ptrdiff_t>(k));
   }
 }
@@ -349,19 +349,19 @@ std::vector<Sensitivity> sensitivitiesOf(const Comparison& comparison, std::vect
         if (changes[i].size())
           sensitivities[target.hypothesis].per_strength[target.strength] = only(comparison, changes[i] / strength, target.signal);
   };
-  auto look = [&](const std::vector<Probe>& probes, double strength) { probeInto(result, probes, strength); };
-  look(probes(comparison, hypotheses), 1);
+  auto probeAll = [&](const std::vector<Probe>& probes, double strength) { probeInto(result, probes, strength); };
+  probeAll(probes(comparison, hypotheses), 1);
   for (Sensitivity& sensitivity : result)
     if (std::ranges::all_of(sensitivity.per_strength, [](const Eigen::VectorXd& change) { return change.size() > 0; }))
       sensitivity.excitation_ratio = excitationRatio(comparison, sensitivity.per_strength);
   const Eigen::VectorXd residual = comparison.measured() - nominal;
   const bool adapt = strengths == Strengths::adapted;
   auto adaptOnlyStrengths = [&](const std::function<bool(std::size_t)>& chosen, const std::function<void(OnlyStrength&)>& adapted) {
-    std::vector<std::size_t> those;
+    std::vector<std::size_t> chosen_indices;
     for (std::size_t s = 0; adapt && s < hypotheses.size(); ++s)
-      if (hypotheses[s].info().stage != Stage::sensor && hypotheses[s].strengths().size() == 1 && chosen(s)) those.push_back(s);
-    parallelFor(static_cast<int>(those.size()), job_count, [&](int i) {
-      const std::size_t s = those[static_cast<std::size_t>(i)];
+      if (hypotheses[s].info().stage != Stage::sensor && hypotheses[s].strengths().size() == 1 && chosen(s)) chosen_indices.push_back(s);
+    parallelFor(static_cast<int>(chosen_indices.size()), job_count, [&](int i) {
+      const std::size_t s = chosen_indices[static_cast<std::size_t>(i)];
       OnlyStrength only_strength(comparison, nominal, base, on_simulation, hypotheses[s], result[s]);
       adapted(only_strength);
     });
@@ -369,16 +369,16 @@ std::vector<Sensitivity> sensitivitiesOf(const Comparison& comparison, std::vect
   adaptOnlyStrengths(
       [&](std::size_t s) { return result[s].per_strength.front().size() && !shows(comparison, hypotheses[s], 0, result[s]); },
       [](OnlyStrength& it) { it.searchThreshold(); });
-  for (const int direction : {1, -1}) look(strongerProbes(comparison, hypotheses, result, direction), direction * strong);
+  for (const int direction : {1, -1}) probeAll(strongerProbes(comparison, hypotheses, result, direction), direction * strong);
   for (std::size_t s = 0; adapt && s < hypotheses.size(); ++s) leaveOutIdle(comparison, hypotheses[s], result[s]);
   const int weakenings = adapt ? 3 : 0;
-  for (int i = 0; i < weakenings; ++i) look(weakerProbes(comparison, hypotheses, result, residual), 1);
-  std::vector<Sensitivity> lately = result;
-  probeInto(lately, lateProbes(hypotheses), late);
+  for (int i = 0; i < weakenings; ++i) probeAll(weakerProbes(comparison, hypotheses, result, residual), 1);
+  std::vector<Sensitivity> late_result = result;
+  probeInto(late_result, lateProbes(hypotheses), late);
   for (std::size_t s = 0; s < hypotheses.size(); ++s) {
     fitLinearly(comparison, hypotheses[s], residual, result[s]);
-    fitLinearly(comparison, hypotheses[s], residual, lately[s]);
-    if (lately[s].log_misfit < result[s].log_misfit) result[s] = std::move(lately[s]);
+    fitLinearly(comparison, hypotheses[s], residual, late_result[s]);
+    if (late_result[s].log_misfit < result[s].log_misfit) result[s] = std::move(late_result[s]);
   }
   adaptOnlyStrengths([](std::size_t) { return true; }, [](OnlyStrength& it) { it.relinearise(); });
   return result;

@@ -14,7 +14,7 @@ std::string detectabilitySvg(const Score& score);
 /// Confusion: true stage against the stage of the answer.
 std::string confusionSvg(const Score& score);
 
-/// The class of an answer in the confusion figure: a stage, "none of these" or "no gap".
+/// The class of an answer in the confusion figure: a stage, "none" or "no gap".
 std::string answeredClass(const Judgement& judgement);
 
 }  // namespace musclesim::blind

@@ -1,4 +1,4 @@
-// Residuals, their sizes, the first look and the fit, on short rigs.
+// Residuals, their size, sensitivities and the fit, on short recordings of a rig.
 #include "diagnosis/comparison.h"
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ TEST_F(Rig, MisfitIsTheLogarithmOfTheResidualOverTheFloorPerCell) {
   EXPECT_TRUE(std::isinf(both.logMisfit(residual)));
 }
 
-/// Two cells, their residuals three and five floors: half of the sum of mean square over (floor^2 + residual^2).
+/// Two blocks with residuals of three and five sigmas: half of the sum of mean square over (sigma^2 + residual^2).
 TEST_F(Rig, BySquaresWeighsCellsByAResidual) {
   const double sigma = planted::noise_mm;
   Eigen::VectorXd residual = Eigen::VectorXd::Constant(300, 3 * sigma);
@@ -56,7 +56,7 @@ TEST_F(Rig, BySquaresWeighsCellsByAResidual) {
   EXPECT_EQ(squares.predicted(Model{}), both.predicted(Model{}));
 }
 
-/// Every row a reading of its own, every reading held for four rows, one reading held throughout, a third of the rows without a number.
+/// In turn: a reading per row, a reading held for four rows, a reading held throughout, a third of the rows without a number.
 TEST(AveragedShareOfSigma, CountsReadingsNotRows) {
   auto every = [](int held) {
     std::vector<double> values;
@@ -73,7 +73,7 @@ TEST(AveragedShareOfSigma, CountsReadingsNotRows) {
   EXPECT_NEAR(averagedShareOfSigma({}), share(1), 1e-12);
 }
 
-/// As if usual steps led elsewhere than all others, 100 floors away.
+/// Makes coarse steps differ from all others by 100 sigmas.
 TEST_F(Rig, SaysWhatStepsChangeWhereCoarserOnesFollowAnotherMotion) {
   const Eigen::VectorXd nominal = both.predicted(Model{});
   both.goCoarse(nominal);
@@ -122,7 +122,7 @@ TEST_F(Rig, ActuationPhasesFollowTheCommand) {
     EXPECT_NEAR(sums.meanSquare(phase), 4, 1e-9);
 }
 
-/// Where rows lie further apart than a step is remembered, the row before counts.
+/// If rows are further apart than the window of the phases, the row before counts.
 TEST(ActuationPhases, FollowTheCommandInSparseRows) {
   Recording sparse;
   sparse.file = "sparse.csv";
@@ -141,7 +141,7 @@ TEST(ActuationPhases, FollowTheCommandInSparseRows) {
   EXPECT_GT(sums.rows[static_cast<std::size_t>(ActuationPhase::venting)], 30);
 }
 
-/// A problem without a simulation: the measured values are reached at z = (2, -1) along two directions, one of them bent.
+/// A problem without a simulation: the measured values are reached at z = (2, -1) along two directions, one of them curved.
 TEST_F(Rig, FitFindsTheBottomOfABentValley) {
   Eigen::VectorXd first(300), second(300);
   for (Eigen::Index i = 0; i < 300; ++i) {
@@ -174,7 +174,7 @@ TEST_F(Rig, AveragesShowWhatIsWeakButSlow) {
   EXPECT_EQ(averaged.gap(2 * weak).normalised, both.gap(2 * weak.head(300)).normalised) << "the gap is that of the signals as recorded";
 }
 
-/// The cheap prediction is off by what depends on z; only the exact one has the bottom at 2.
+/// The cheap prediction has an error that depends on z; only the exact one has its minimum at 2.
 TEST_F(Rig, CorrectedFitEndsWhereTheExactPredictionDoes) {
   int exact_count = 0;
   Eigen::VectorXd shape(300);
@@ -194,7 +194,7 @@ TEST_F(Rig, CorrectedFitEndsWhereTheExactPredictionDoes) {
   EXPECT_GT(found.half_width[0], 0);
 }
 
-/// One coordinate does nothing, two act alike, one is by itself.
+/// One coordinate has no influence, two act alike, and one is independent.
 TEST_F(Rig, IntervalsOfWhatTheDataDoNotDetermineAreUnbounded) {
   FitProblem problem;
   problem.start = Eigen::VectorXd::Constant(4, 0.5);
@@ -304,7 +304,7 @@ class TiltedRig : public Rig {
   TiltedRig() : Rig({{"base_tilt", "base", {{"tilt_z_deg", 6.0}}}}, 0.05) {}
 };
 
-/// On the rig a tilt to the front and one to the side do the same, and in either direction: one of them is left, and it explains the gap.
+/// On the rig a tilt to the front and one to the side act alike, in either direction: one of them is kept, and it explains the gap.
 TEST_F(TiltedRig, OfStrengthsThatActAlikeOneIsLeft) {
   options.candidates = {"base_tilt"};
   std::vector<Hypothesis> all = hypotheses(plant, options), fresh = all;
@@ -324,7 +324,7 @@ class AnotherLaw : public Rig {
       {"law", std::string("corrected")}, {"bore_N", -1.0}, {"braid_N", -1.9}, {"stretch_N", 0.15}, {"threshold_N", 0.05}};
 };
 
-/// Dry friction in the muscle swallows small changes: derivatives by small differences point nowhere.
+/// Dry friction in the muscle hides small changes, so derivatives from small differences are useless.
 TEST_F(AnotherLaw, IsFittedThroughDryFriction) {
   options.candidates = {"force_law"};
   std::vector<Hypothesis> all = hypotheses(plant, options);

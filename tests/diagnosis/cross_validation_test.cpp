@@ -1,4 +1,4 @@
-// Explanations are judged by recordings that their numbers were not fitted to.
+// Fitted hypotheses are judged by recordings that their parameters were not fitted to.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ const Trial& trialOf(const Diagnosis& diagnosis, const std::string& label) {
   return *std::ranges::find(diagnosis.trials, std::vector<std::string>{label}, &Trial::effects);
 }
 
-/// ln of what is left unseen over what is left seen, summed over all cells.
+/// ln of the cross-validated RMS residual over the fitted one, summed over all blocks.
 double lostUnseen(const Trial& trial) {
   double sum = 0;
   for (std::size_t i = 0; i < trial.rms.size(); ++i) sum += std::log(trial.rms_cross_validated.at(i) / trial.rms[i]);

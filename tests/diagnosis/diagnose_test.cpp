@@ -37,7 +37,7 @@ TEST(Diagnose, FindsAPlantedPayload) {
   EXPECT_GT(found.reduction_percent, found.nominal_refit_percent);
 }
 
-/// What an elbow measures but for forces under waves and a step, and once more under larger ones.
+/// Recordings of all signals of an elbow except forces, under waves and a step, and again under larger ones.
 std::vector<Recording> elbow(const ActiveEffect& effect) {
   std::vector<Recording> recordings;
   for (const double amplitude : {0.05, 0.07}) {
@@ -68,7 +68,7 @@ std::vector<Recording> elbow(const ActiveEffect& effect) {
   return recordings;
 }
 
-/// Along the lever arm alone another offset, of the other sign, fits best.
+/// Along the lever arm alone, another offset with the opposite sign fits best.
 TEST(Diagnose, FindsAnAttachmentThatIsOffInAnyDirection) {
   const ActiveEffect bracket = {"foreign.turned_attachment", "muscle_1", {{"offset_mm", 3.0}, {"turn_deg", -15.0}}};
   const Diagnosis found = diagnose(elbow(bracket), few({"attachment_offset"}));
@@ -77,7 +77,7 @@ TEST(Diagnose, FindsAnAttachmentThatIsOffInAnyDirection) {
   EXPECT_NEAR(found.effects.front().parameters.at("rise_mm").value, -3 * std::sin(0.2618), 0.05);
 }
 
-/// The forearm's attachment is off: the moment arm is longer, which no place of the start brings about.
+/// The attachment on the forearm is displaced: the moment arm is longer, which no displacement of the start causes.
 TEST(Diagnose, FindsAnAttachmentThatIsOffOnWhatMoves) {
   const ActiveEffect bracket = {"foreign.turned_end", "muscle_0", {{"offset_mm", 2.0}, {"turn_deg", 10.0}}};
   const Diagnosis found = diagnose(elbow(bracket), few({"attachment_offset", "force_gain", "length_offset"}));
@@ -88,7 +88,7 @@ TEST(Diagnose, FindsAnAttachmentThatIsOffOnWhatMoves) {
   EXPECT_NEAR(found.effects.front().parameters.at("offset_mm").value, 2 * std::cos(0.1745), 0.1);
 }
 
-/// About an axis in the plane of motion a tilt acts by its square.
+/// A tilt about an axis in the plane of motion acts by its square.
 TEST(Diagnose, FindsATiltThatSmallStepsDoNotShow) {
   const Diagnosis found = diagnose(elbow({"base_tilt", "base", {{"tilt_x_deg", 14.0}}}), few({"base_tilt", "external_force", "payload"}));
   ASSERT_EQ(found.chosen, std::vector<std::string>{"base_tilt@base"}) << diagnosisSummary(found);
@@ -315,7 +315,7 @@ TEST(Diagnose, EffectsThatThePlantCannotTakeAreNoCandidates) {
   EXPECT_EQ(found.chosen, std::vector<std::string>{"sensor_bias@signal_length_0"}) << diagnosisSummary(found);
 }
 
-/// What was never looked at is not said to be invisible, and nothing is weighed.
+/// Effects that were not screened are not called invisible, and no probabilities are given.
 TEST(Diagnose, AnInterruptedSearchClaimsNothing) {
   DiagnosisOptions options = few({"payload", "transport_delay"});
   int simulations = 0;
@@ -330,7 +330,7 @@ TEST(Diagnose, AnInterruptedSearchClaimsNothing) {
   EXPECT_TRUE(contains(diagnosisSummary(found), "the search for its cause was interrupted"));
 }
 
-/// An interrupt is no divergence, not even before anything was simulated.
+/// An interrupt is not taken for a divergence, even before the first simulation.
 TEST(Diagnose, AnInterruptAtTheStartLeavesTheGap) {
   const std::vector<Recording> recordings = plant({{"payload", "hand", {{"mass_kg", 0.3}}}});
   DiagnosisOptions options = few({"payload"});
@@ -360,7 +360,7 @@ TEST(Diagnose, RestingCommandsAreNotExcited) {
   EXPECT_TRUE(lists(found.not_excited, "valve_lag@muscle_0"));
 }
 
-/// That there is no gap does not mean that there is no effect.
+/// An effect may be present even without a gap.
 TEST(Diagnose, SaysWhatCouldNotHaveShownWhereThereIsNoGap) {
   const Diagnosis found = diagnose(plant({}), few({"valve_lag", "command_dead_band"}));
   ASSERT_EQ(found.verdict, Verdict::no_gap);
@@ -368,7 +368,7 @@ TEST(Diagnose, SaysWhatCouldNotHaveShownWhereThereIsNoGap) {
   EXPECT_TRUE(lists(found.not_excited, "command_dead_band@muscle_0")) << "all commands are above it";
 }
 
-/// A leak without a leak, and a coupling without a coupling, are their regulators' lags.
+/// At zero strength a leak and a coupling are the lags of their regulators.
 TEST(Diagnose, DoesNotBelieveAnEffectThatDoesAsWellAtNoStrength) {
   const std::vector<ActiveEffect> lag = {{"valve_lag", "all", {{"fill_time_constant_s", 0.08}, {"vent_time_constant_s", 0.08}}}};
   const Diagnosis found = diagnose(plant(lag), few({"valve_lag", "leak", "volume_coupling"}));
@@ -377,7 +377,7 @@ TEST(Diagnose, DoesNotBelieveAnEffectThatDoesAsWellAtNoStrength) {
   EXPECT_EQ(found.ambiguity_set, found.chosen);
 }
 
-/// The muscle only vents: it is filled before the recording begins.
+/// The muscle only vents, because it is filled before the recording begins.
 TEST(Diagnose, WhatWasNotRecordedIsNotDetermined) {
   const std::vector<ActiveEffect> lag = {{"valve_lag", "all", {{"fill_time_constant_s", 0.08}, {"vent_time_constant_s", 0.08}}}};
   const auto venting = [&](double highest, std::uint64_t seed) {

@@ -1,4 +1,4 @@
-// The shrink of the gap and the interval in which that of another recording is expected.
+// The gap reduction and the interval in which that of another recording is expected.
 #include "diagnosis/gap_reduction.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ TEST(ClearlyBeats, RefusesWhatGainsNothingHoweverBadTheOthersAre) {
   EXPECT_TRUE(clearlyBeats(6, -80, -9));
 }
 
-/// Residuals that are constant on each recording: 10 floors without, `left` floors with what was found.
+/// Residuals that are constant on each recording: 10 sigmas without effects, `left` sigmas with them.
 class ThreeRigs : public testing::Test {
  protected:
   Estimate intervalOf(double left_on_held_out, double left_on_first, double left_on_second) const {

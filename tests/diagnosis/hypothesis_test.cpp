@@ -1,4 +1,4 @@
-// Coordinates of suspects, and how coarse simulations stand in for fine ones.
+// Coordinates of hypotheses, and coarse simulations in place of fine ones.
 #include "diagnosis/hypothesis.h"
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ TEST_F(PlantedRig, ExcessIsTheLogarithmOfTheDistanceBeyondTheUsualRange) {
   EXPECT_EQ(limit.excess(z), 0);
 }
 
-/// Twenty-five times what is usual, whatever the first look made of the typical value.
+/// The bound is twenty-five times the usual value, whatever screening made of the typical value.
 TEST_F(PlantedRig, BoundsAreThoseOfTheUsualRange) {
   for (const double share : {1.0, 0.01}) {
     Hypothesis leak = hypothesis("leak", "muscle_0"), spring = hypothesis("series_elasticity", "muscle_0");
@@ -150,7 +150,7 @@ TEST_F(PlantedRig, CoarseStepsAreCorrected) {
   EXPECT_LT(error, 0.02 * rms(with - fine)) << "of the payload's own change";
 }
 
-/// Between what coarse and what medium steps differ by from the fine ones.
+/// A tolerance between the errors of coarse and of medium steps.
 TEST_F(PlantedRig, MediumStepsAreTakenWhereOnlyTheyFollow) {
   Comparison comparison(plant_, plant_.split().fit);
   const Eigen::VectorXd coarse = comparison.predicted(Model{}, Fidelity::coarse), medium = comparison.predicted(Model{}, Fidelity::medium);
@@ -163,7 +163,7 @@ TEST_F(PlantedRig, MediumStepsAreTakenWhereOnlyTheyFollow) {
   EXPECT_EQ(comparison.fidelity(), Fidelity::medium);
 }
 
-/// They are taken by a look alone, where they follow.
+/// Only screening uses the coarsest steps, if they follow the motion.
 TEST_F(PlantedRig, ALookBeginsWithTheCoarsestSteps) {
   Comparison screening(plant_, plant_.split().fit), fit = screening;
   const Eigen::VectorXd coarse = screening.predicted(Model{}, Fidelity::coarse),
@@ -175,7 +175,7 @@ TEST_F(PlantedRig, ALookBeginsWithTheCoarsestSteps) {
   EXPECT_NE(fit.fidelity(), Fidelity::coarsest);
 }
 
-/// Three millimetres, sixty floors, a tenth of which is six.
+/// The gap is three millimetres or sixty sigmas; a tenth of it is six sigmas.
 TEST_F(PlantedRig, ALookBearsMoreBesideALargeGap) {
   std::vector<Recording> recordings = planted::plant({});
   for (Recording& recording : recordings)

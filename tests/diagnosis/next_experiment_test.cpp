@@ -56,7 +56,7 @@ ActiveEffect weaker(double gain) {
   return {"force_gain", "muscle_0", {{"gain", gain}}};
 }
 
-/// Two effects whose predictions differ by speed: the bank's best tells them apart by more than the noise.
+/// Two effects whose predictions differ by speed: the best schedule of the bank separates them by more than the noise.
 TEST(NextExperiment, TellsALagFromAWeakerMuscle) {
   DiagnosisOptions options;
   const Plant plant(planted::plant({}), options);
@@ -91,7 +91,8 @@ TEST(NextExperiment, KeepsAboutWhereThePlantHasBeenWhateverTheContender) {
   }
 }
 
-/// An elbow whose first muscle is so much fuller that it never leaves its stop of 70 degrees: pressures tell contenders apart there too.
+/// An elbow whose first muscle is so much fuller that the joint never leaves its stop at 70 degrees: pressures distinguish the rivals there
+/// too.
 TEST(NextExperiment, LetsThePlantRestOnAStopWhereItHasDoneSo) {
   std::vector<Recording> recordings;
   for (const double size : {0.06, 0.09}) {
@@ -128,7 +129,7 @@ TEST(NextExperiment, LetsThePlantRestOnAStopWhereItHasDoneSo) {
   }
 }
 
-/// What a contender's numbers can take up is no difference, unless its own recordings hold them where they are.
+/// A difference that refitting a rival removes does not count, unless its own recordings fix its parameters.
 TEST(NextExperiment, CountsWhatIsLeftWhenContendersAreFittedAnew) {
   DiagnosisOptions options;
   const Plant plant(planted::plant({}), options);
@@ -143,7 +144,7 @@ TEST(NextExperiment, CountsWhatIsLeftWhenContendersAreFittedAnew) {
   EXPECT_LT(free, 0.1 * held);
 }
 
-/// A schedule that tells one contender from the likeliest does not tell the likeliest from its twin.
+/// A schedule that separates one rival from the most probable one does not separate that one from its twin.
 TEST(NextExperiment, SaysWhatItSeparatesAndWhatNot) {
   DiagnosisOptions options;
   const Plant plant(planted::plant({}), options);
@@ -155,7 +156,7 @@ TEST(NextExperiment, SaysWhatItSeparatesAndWhatNot) {
   EXPECT_TRUE(contains(experiment.why, "lag and weaker"));
 }
 
-/// An experiment is no less worth where nothing that is known is likely.
+/// The worth of an experiment does not depend on the sum of the probabilities.
 TEST(NextExperiment, DoesNotAskHowLikelyContendersAreInAll) {
   DiagnosisOptions options;
   const Plant plant(planted::plant({}), options);
@@ -163,7 +164,7 @@ TEST(NextExperiment, DoesNotAskHowLikelyContendersAreInAll) {
   EXPECT_FALSE(nextExperiment(plant, rivals, Fidelity::coarse, 2, [] {}).commands.empty());
 }
 
-/// A contender that no schedule tells from the likeliest is no reason for an experiment.
+/// A rival that no schedule separates from the most probable one does not justify an experiment.
 TEST(NextExperiment, ProposesNothingWhereAllPredictTheSame) {
   DiagnosisOptions options;
   const Plant plant(planted::plant({}), options);

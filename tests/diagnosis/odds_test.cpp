@@ -1,4 +1,4 @@
-// What makes an explanation likelier than another.
+// The odds of fitted hypotheses.
 #include "diagnosis/odds.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace musclesim {
 namespace {
 
-/// Residuals are constant: the model without effects leaves 20 floors.
+/// Residuals are constant: the model without effects leaves 20 sigmas.
 class OddsOnARig : public testing::Test {
  protected:
   enum Index : std::size_t { payload, bias, gain, threshold };

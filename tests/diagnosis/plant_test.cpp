@@ -1,4 +1,4 @@
-// What is made of recordings before anything is diagnosed: stretches of the first look, sensors that are dead, effects beforehand.
+// Preparation of recordings: segments for screening, dead sensors, effects that the model already has.
 #include "diagnosis/plant.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ Recording stepped(double step_s, double rest_s, double duration_s, const std::st
   return recording;
 }
 
-std::vector<Segment> describeResidual(double step_s, double rest_s, double duration_s) {
+std::vector<Segment> segmentsOf(double step_s, double rest_s, double duration_s) {
   const DiagnosisOptions options;
   std::vector<Recording> recordings;
   for (const char* file : {"a.csv", "b.csv", "c.csv"}) recordings.push_back(stepped(step_s, rest_s, duration_s, file));
@@ -39,18 +39,18 @@ std::vector<Segment> describeResidual(double step_s, double rest_s, double durat
 }
 
 TEST(ScreeningSegments, LastAFewSecondsFromTheFirstChangeOfACommand) {
-  for (const Segment& segment : describeResidual(0.01, 0, 20)) EXPECT_EQ(segment.end_row, 650);
-  const std::vector<Segment> late = describeResidual(0.01, 5, 20);
+  for (const Segment& segment : segmentsOf(0.01, 0, 20)) EXPECT_EQ(segment.end_row, 650);
+  const std::vector<Segment> late = segmentsOf(0.01, 5, 20);
   ASSERT_EQ(late.size(), 2u);
   for (const Segment& segment : late) EXPECT_EQ(segment.end_row, 1100);
 }
 
 TEST(ScreeningSegments, ComparesOnlySomeOfManyRows) {
-  for (const Segment& segment : describeResidual(0.001, 0.5, 10)) {
+  for (const Segment& segment : segmentsOf(0.001, 0.5, 10)) {
     EXPECT_EQ(segment.end_row, 6500);
     EXPECT_EQ(segment.every, 10);
   }
-  for (const Segment& segment : describeResidual(0.05, 0, 60)) {
+  for (const Segment& segment : segmentsOf(0.05, 0, 60)) {
     EXPECT_EQ(segment.end_row, 610) << "of few rows as many, whatever time they take";
     EXPECT_EQ(segment.every, 1);
   }

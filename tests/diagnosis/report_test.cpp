@@ -1,4 +1,4 @@
-// What report.html shows of an answer.
+// The contents of report.html.
 #include <gtest/gtest.h>
 
 #include "musclesim/diagnosis/diagnosis.h"

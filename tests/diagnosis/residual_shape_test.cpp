@@ -1,4 +1,4 @@
-// What a residual looks like.
+// The shape of a residual.
 #include "diagnosis/residual_shape.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 namespace musclesim {
 namespace {
 
-/// Of 8 s with 100 rows per second, noise of 0.1 on the measured values.
+/// 8 s with 100 rows per second; the measured values have noise of 0.1.
 ResidualDescription lookAt(const std::function<double(double)>& residual, double jump_s = 0) {
   RandomStream random(5, "residual");
   std::vector<double> time_s, measured, simulated;

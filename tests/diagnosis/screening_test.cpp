@@ -1,4 +1,4 @@
-// With many muscles most suspects are looked at on the first recording only.
+// With many muscles, most hypotheses are screened on the first recording only.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -107,7 +107,7 @@ Recording betweenTwo(const std::vector<ActiveEffect>& effects, double low, doubl
   return planted::measuredUnder(effects, plan, seed);
 }
 
-/// The first recording's levels are as exact with five bits as with six to ten: only the others tell.
+/// The levels of the first recording are exact with five bits as well as with six to ten; only the other recordings distinguish them.
 class NumbersOfBits : public ScreeningOfHypotheses, public testing::WithParamInterface<double> {};
 INSTANTIATE_TEST_SUITE_P(Look, NumbersOfBits, testing::Values(6.0, 9.0));
 TEST_P(NumbersOfBits, AreChosenByAllRecordingsOfTheLook) {

@@ -1,4 +1,4 @@
-// The first look where a typical strength is far from the right one.
+// Sensitivities if the typical strength is far from the right one.
 #include "diagnosis/sensitivity.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace musclesim {
 namespace {
 
-/// A rig with one effect, looked at for one alone: the same or another one.
+/// A rig with one effect, screened for a single effect: the same or another one.
 struct Looked {
   Looked(const ActiveEffect& effect, Strengths strengths, const std::string& for_effect = "")
       : options(planted::few({for_effect.empty() ? effect.id : for_effect})),
@@ -43,7 +43,7 @@ struct Looked {
   Sensitivity sensitivity;
 };
 
-/// Usual thresholds, 0.02 to 0.1, are below all commands.
+/// The usual thresholds, 0.02 to 0.1, are below all commands.
 const ActiveEffect wide_dead_band = {"command_dead_band", "muscle_0", {{"threshold", 0.32}}};
 
 TEST(SensitivityAtAThreshold, BeginsWhereTheEffectShows) {

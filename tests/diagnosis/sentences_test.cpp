@@ -1,4 +1,4 @@
-// What a diagnosis says in words.
+// The sentences of a diagnosis.
 #include "diagnosis/sentences.h"
 
 #include <gtest/gtest.h>

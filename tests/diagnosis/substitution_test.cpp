@@ -1,4 +1,4 @@
-// What measured signals say of each other, on short recordings of the elbow and of the rig.
+// Substitution tests on short recordings of the elbow and of the rig.
 #include "diagnosis/substitution.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 const std::map<std::string, double> noise = {{"pressure_0", 0.003}, {"pressure_1", 0.003}, {"force_0_N", 0.3},       {"force_1_N", 0.3},
                                              {"length_0_mm", 0.05}, {"length_1_mm", 0.05}, {"angle_elbow_deg", 0.05}};
 
-/// Of `signals` of a plant under waves, with noise and, then, a fault.
+/// A recording of `signals` of a plant under waves, with noise and then with a fault.
 Recording recorded(const std::string& robot, const std::vector<std::string>& signals, const std::vector<ActiveEffect>& effects,
                    std::uint64_t seed, const std::function<void(Recording&)>& fault) {
   Recording plan;
@@ -50,7 +50,7 @@ Recording recorded(const std::string& robot, const std::vector<std::string>& sig
   return recording;
 }
 
-/// A plant and what the clean model leaves of two recordings of it.
+/// A plant and the residual of the model without effects on two recordings of it.
 struct Compared {
   Compared(
       const std::string& robot, const std::vector<std::string>& signals, const std::vector<ActiveEffect>& effects,
@@ -231,7 +231,7 @@ TEST(Pressures, ThatAreNoisyStillTellWhereAWeakGapArises) {
   for (const char* stage : {"command", "pressure"}) EXPECT_FALSE(isRuledOut(isolation, stage)) << isolation.method;
 }
 
-/// A weak muscle is no matter of pressures, even where these are not as predicted.
+/// The gap of a weak muscle does not come from the pressures, even if these are not as predicted.
 TEST(Pressures, MakeNothingOfAGapBehindThem) {
   const Compared weak("rig", {"pressure_0", "length_0_mm"}, {{"force_gain", "muscle_0", {{"gain", 0.95}}}}, hum("pressure_0", 0.01));
   EXPECT_GT(*ratioOf(weak.comparison, weak.residual, "pressure_"), agrees);

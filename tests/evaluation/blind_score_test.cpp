@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "blind_answers.h"
+#include "evaluation/blind/figures.h"
 #include "evaluation/blind/judge.h"
 #include "evaluation/blind/look_alikes.h"
 #include "evaluation/blind/page.h"
@@ -184,6 +185,27 @@ TEST(BlindPage, ShowsEveryFailure) {
       contains(followed,
                "| true effect not among the candidates: a wrong cause with more than 0.9 that is no look-alike | <= 5 % | 100 %, 1 of 1,"));
   EXPECT_TRUE(contains(followed, "| b | rig | 10.0 | valve_lag@muscle_0 | without the true effect: effects_found, creep@all 0.95 |"));
+}
+
+TEST(BlindFigures, ClassAnAnswerByTheStageOfItsTopEffect) {
+  EXPECT_EQ(answeredClass(rightSingle()), "pressure");
+  EXPECT_EQ(answeredClass(wrongSingle()), "force");
+  const auto said = [](const std::string& verdict, double none) {
+    return answeredClass(judge("m", keyOf("single", {lag}, {{"valve_lag@*"}}), answerOf(verdict, {candidate("creep", "all", 0.3)}, none)));
+  };
+  EXPECT_EQ(said("no_gap", 0), "no gap");
+  EXPECT_EQ(said("failed", 0), "none");
+  EXPECT_EQ(said("unexplained", 0.7), "none") << "none of these is likelier than the effect";
+}
+
+TEST(BlindFigures, DrawWhatWasCounted) {
+  Score score;
+  score.cases = {rightSingle(), rightSingle(), wrongSingle()};
+  const std::string confusion = confusionSvg(score);
+  EXPECT_TRUE(contains(confusion, ">2</text>")) << "two answers of the true stage";
+  EXPECT_TRUE(contains(confusion, ">1</text>")) << "one of another";
+  EXPECT_TRUE(contains(reliabilitySvg(score), "answers, 95 % interval"));
+  EXPECT_TRUE(contains(detectabilitySvg(score), "acceptable answer first"));
 }
 
 }  // namespace
