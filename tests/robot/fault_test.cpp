@@ -3,12 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <functional>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "musclesim/base/error.h"
 #include "musclesim/simulation/simulation.h"
+#include "support/not_finite.h"
 #include "support/support.h"
 
 /// An exception out of the middle of a step leaves ODE's list of jobs behind. Nothing else may leak.
@@ -18,9 +18,6 @@ extern "C" const char* __lsan_default_suppressions() {
 
 namespace musclesim {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double inf = std::numeric_limits<double>::infinity();
 
 SimulationOptions smallArm() {
   SimulationOptions options;
