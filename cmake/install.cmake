@@ -3,24 +3,25 @@
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/musclesim)
 
-target_compile_features(musclesim_core PUBLIC cxx_std_20)  # the headers need it
-install(TARGETS musclesim COMPONENT program)
-install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
-install(DIRECTORY docs/user docs/reference DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs COMPONENT program)
-install(FILES packaging/musclesim.bash-completion DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME musclesim
-        COMPONENT program)
-install(FILES packaging/musclesim.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications COMPONENT program)
-install(FILES packaging/musclesim.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps COMPONENT program)
+if(MUSCLESIM_PROGRAM)
+  install(TARGETS musclesim COMPONENT program)
+  install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+  install(DIRECTORY docs/user docs/reference DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs COMPONENT program)
+  install(FILES packaging/musclesim.bash-completion DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME musclesim
+          COMPONENT program)
+  install(FILES packaging/musclesim.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications COMPONENT program)
+  install(FILES packaging/musclesim.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps COMPONENT program)
 
-find_program(HELP2MAN help2man)
-if(HELP2MAN)
-  set(manual_page ${PROJECT_BINARY_DIR}/musclesim.1)
-  add_custom_command(OUTPUT ${manual_page} COMMAND ${PROJECT_SOURCE_DIR}/packaging/make_man_page.sh $<TARGET_FILE:musclesim> ${manual_page}
-                     DEPENDS musclesim packaging/make_man_page.sh VERBATIM)
-  add_custom_target(manual_page ALL DEPENDS ${manual_page})
-  install(FILES ${manual_page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
-else()
-  message(STATUS "No manual page: help2man is not installed")
+  find_program(HELP2MAN help2man)
+  if(HELP2MAN)
+    set(manual_page ${PROJECT_BINARY_DIR}/musclesim.1)
+    add_custom_command(OUTPUT ${manual_page} COMMAND ${PROJECT_SOURCE_DIR}/packaging/make_man_page.sh $<TARGET_FILE:musclesim> ${manual_page}
+                       DEPENDS musclesim packaging/make_man_page.sh VERBATIM)
+    add_custom_target(manual_page ALL DEPENDS ${manual_page})
+    install(FILES ${manual_page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
+  else()
+    message(STATUS "No manual page: help2man is not installed")
+  endif()
 endif()
 
 install(TARGETS musclesim_core EXPORT musclesimTargets COMPONENT development)
@@ -45,6 +46,9 @@ install(CODE "
 install(FILES ${PROJECT_BINARY_DIR}/musclesim.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
 
 # Debian packages: cpack -G DEB in the build folder.
+if(NOT PROJECT_IS_TOP_LEVEL)
+  return()
+endif()
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME musclesim)
 set(CPACK_PACKAGE_CONTACT "The musclesim developers <musclesim@localhost>")

@@ -13,7 +13,7 @@ namespace musclesim {
 namespace {
 
 constexpr Eigen::Index fewest_rows = 64;
-constexpr double enough = 0.5;  ///< least share of the power for a shape to be named
+constexpr double enough_power = 0.5;  ///< least share of the power for a shape to be named
 
 bool evenlySpaced(const Eigen::VectorXd& time_s) {
   const Eigen::Index last = time_s.size() - 1;
@@ -52,7 +52,7 @@ ResidualDescription rippleIn(const Eigen::VectorXd& residual, double step_s, dou
     within += power[k];
     weighted += power[k] * static_cast<double>(k);
   }
-  if (within < enough * all_power) return {};
+  if (within < enough_power * all_power) return {};
   return {ResidualShape::ripple, weighted / within / (static_cast<double>(residual.size()) * step_s)};
 }
 
@@ -72,10 +72,10 @@ ResidualDescription describeResidual(const std::vector<double>& time_s, const st
   const Eigen::VectorXd residual = Eigen::Map<const Eigen::VectorXd>(values.data(), count);
   const double all_power = residual.squaredNorm(), mean = residual.mean();
   if (!(all_power > 0) || !evenlySpaced(t)) return {};
-  if (mean * mean * static_cast<double>(count) >= enough * all_power) return {ResidualShape::offset, mean};
+  if (mean * mean * static_cast<double>(count) >= enough_power * all_power) return {ResidualShape::offset, mean};
   const Eigen::VectorXd centred_time = t.array() - t.mean(), centred = residual.array() - mean;
   const double slope = centred_time.dot(centred) / centred_time.squaredNorm();
-  if (slope * slope * centred_time.squaredNorm() >= enough * all_power) return {ResidualShape::drift, slope};
+  if (slope * slope * centred_time.squaredNorm() >= enough_power * all_power) return {ResidualShape::drift, slope};
   return rippleIn(centred, (t[count - 1] - t[0]) / static_cast<double>(count - 1), all_power);
 }
 

@@ -13,7 +13,7 @@ namespace musclesim {
 
 namespace {
 
-constexpr int round_count = 20;
+constexpr int tuning_round_count = 20;
 
 }  // namespace
 
@@ -21,7 +21,7 @@ Tuning tune(const std::vector<Recording>& recordings, DiagnosisOptions& options)
   const Plant plant(recordings, options);
   const Comparison fitted(plant, plant.split().fit);
   std::mutex mutex;  // derivatives are simulated by several threads
-  DiagnosisProgress progress{"fitting parameters of the model", 0, round_count * static_cast<long>(plant.tunedCount() + 2)};
+  DiagnosisProgress progress{"fitting parameters of the model", 0, tuning_round_count * static_cast<long>(plant.tunedCount() + 2)};
   FitProblem problem;
   problem.start = Eigen::VectorXd::Zero(plant.tunedCount());
   problem.clamped = Plant::clampedTuning;
@@ -35,7 +35,7 @@ Tuning tune(const std::vector<Recording>& recordings, DiagnosisOptions& options)
     model.parameters = plant.tunedAt(z);
     return fitted.predicted(model);
   };
-  FitResult result = fit(fitted, problem, round_count);
+  FitResult result = fit(fitted, problem, tuning_round_count);
   if (!result.residual.size()) {
     if (!plant.interrupted()) throw Diverged(0, plant.robot(), "the model without further effects cannot follow the recordings");
     result.half_width.setConstant(std::numeric_limits<double>::infinity());

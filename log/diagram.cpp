@@ -13,7 +13,8 @@ using namespace figure_style;
 namespace {
 
 constexpr double cell_width = 520, cell_height = 400;
-constexpr double left_margin = 68, right_margin = 22, top_margin = 34, bottom_margin = 50, heading_height = 44;
+constexpr double diagram_left_margin = 68, diagram_right_margin = 22, diagram_top_margin = 34, diagram_bottom_margin = 50,
+                 heading_height = 44;
 
 Extent extentOf(const Diagram& diagram, const std::vector<double> DiagramSeries::*numbers) {
   Extent extent;
@@ -32,7 +33,8 @@ void drawSeries(Svg& svg, const DiagramSeries& series, const Axis& x_axis, const
 }
 
 void drawDiagram(Svg& svg, const Diagram& diagram, double left, double top) {
-  const SvgBox box{left + left_margin, top + top_margin, cell_width - left_margin - right_margin, cell_height - top_margin - bottom_margin};
+  const SvgBox box{left + diagram_left_margin, top + diagram_top_margin, cell_width - diagram_left_margin - diagram_right_margin,
+                   cell_height - diagram_top_margin - diagram_bottom_margin};
   const Axis x_axis(extentOf(diagram, &DiagramSeries::x), box.left, box.right(), 8, true);
   const Axis y_axis(extentOf(diagram, &DiagramSeries::y), box.bottom(), box.top, 8, true);
   svg.text({box.left, box.top - 8}, diagram.title, {axis_title_size, SvgAnchor::start, title_color, true, false});
@@ -70,11 +72,11 @@ std::string diagramsSvg(const std::string& title, const std::vector<Diagram>& di
   const auto columns = static_cast<std::size_t>(std::max(column_count, 1));
   const std::size_t row_count = (diagrams.size() + columns - 1) / columns;
   const double width = cell_width * static_cast<double>(columns);
-  const auto legend = legendRows(legendOf(diagrams), width - left_margin - right_margin);
+  const auto legend = legendRows(legendOf(diagrams), width - diagram_left_margin - diagram_right_margin);
   const double diagrams_top = heading_height + legend_height * static_cast<double>(legend.size());
   Svg svg(width, diagrams_top + cell_height * static_cast<double>(row_count), title);
-  svg.text({left_margin, 28}, title, {title_size, SvgAnchor::start, title_color, true, false});
-  drawLegend(svg, legend, left_margin, heading_height);
+  svg.text({diagram_left_margin, 28}, title, {title_size, SvgAnchor::start, title_color, true, false});
+  drawLegend(svg, legend, diagram_left_margin, heading_height);
   for (std::size_t i = 0; i < diagrams.size(); ++i) {
     const std::size_t column = i % columns, row = i / columns;
     drawDiagram(svg, diagrams[i], cell_width * static_cast<double>(column), diagrams_top + cell_height * static_cast<double>(row));

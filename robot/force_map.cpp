@@ -20,7 +20,7 @@ double defaultForceN(double pressure_ratio, double length_ratio) {
   return equation_1.tensionN(pressure_ratio, length_ratio);
 }
 
-double positionOf(int node, int count) {
+double gridPositionOf(int node, int count) {
   return static_cast<double>(node) / (count - 1);
 }
 
@@ -61,8 +61,8 @@ ForceMapTable::ForceMapTable(Parameters& p)
   force_N.resize(pressure_count, length_count);
   for (int i = 0; i < pressure_count; ++i)
     for (int j = 0; j < length_count; ++j) {
-      const double pressure = positionOf(i, pressure_count);
-      const double length = shortest_ratio + (longest_ratio - shortest_ratio) * positionOf(j, length_count);
+      const double pressure = gridPositionOf(i, pressure_count);
+      const double length = shortest_ratio + (longest_ratio - shortest_ratio) * gridPositionOf(j, length_count);
       force_N(i, j) = p.number(fmt::format("force_law.map_force_{}_{}_N", i, j), defaultForceN(pressure, length), "N", -1e6, 1e6,
                                fmt::format("map: force at pressure {:.4g}, relative length {:.4g}", pressure, length));
     }

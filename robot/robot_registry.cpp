@@ -16,18 +16,18 @@ namespace musclesim {
 
 namespace {
 
-struct Registered {
+struct RegisteredRobot {
   std::string description;
   RobotFactory build;
 };
 
 template <class RobotType>
-Registered builtIn(const std::string& description) {
+RegisteredRobot builtIn(const std::string& description) {
   return {description, [](World& world) { return std::make_unique<RobotType>(world); }};
 }
 
-std::map<std::string, Registered>& registry() {
-  static std::map<std::string, Registered> robots = {
+std::map<std::string, RegisteredRobot>& robotRegistry() {
+  static std::map<std::string, RegisteredRobot> robots = {
       {"arm", builtIn<RoboticArm>("the paper's RoboticArm: shoulder, elbow, wrist and ten muscles (up to 30)")},
       {"rig", builtIn<Rig>("the paper's load frame: one hanging muscle with a load")},
       {"elbow", builtIn<Elbow>("an antagonistic pair of muscles on one hinge")},
@@ -38,7 +38,7 @@ std::map<std::string, Registered>& registry() {
 }
 
 /// Guards the registry: simulations are built in several threads.
-std::mutex& registryMutex() {
+std::mutex& robotRegistryMutex() {
   static std::mutex mutex;
   return mutex;
 }
@@ -46,15 +46,15 @@ std::mutex& registryMutex() {
 }  // namespace
 
 void registerRobot(const std::string& name, const std::string& description, RobotFactory build) {
-  const std::lock_guard lock(registryMutex());
-  registry()[name] = {description, std::move(build)};
+  const std::lock_guard lock(robotRegistryMutex());
+  robotRegistry()[name] = {description, std::move(build)};
 }
 
 std::unique_ptr<Robot> makeRobot(const std::string& name, World& world) {
   RobotFactory build;
   {
-    const std::lock_guard lock(registryMutex());
-    if (const auto found = registry().find(name); found != registry().end()) build = found->second.build;
+    const std::lock_guard lock(robotRegistryMutex());
+    if (const auto found = robotRegistry().find(name); found != robotRegistry().end()) build = found->second.build;
   }
   if (!build) {
     std::vector<std::string> names;
@@ -69,9 +69,9 @@ std::unique_ptr<Robot> makeRobot(const std::string& name, World& world) {
 }
 
 std::vector<std::pair<std::string, std::string>> registeredRobots() {
-  const std::lock_guard lock(registryMutex());
+  const std::lock_guard lock(robotRegistryMutex());
   std::vector<std::pair<std::string, std::string>> result;
-  for (const auto& [name, entry] : registry()) result.emplace_back(name, entry.description);
+  for (const auto& [name, entry] : robotRegistry()) result.emplace_back(name, entry.description);
   return result;
 }
 

@@ -3,7 +3,8 @@
 #
 #     scripts/install_dependencies.sh          what the program needs
 #     scripts/install_dependencies.sh --test      and what the tests need
-#     scripts/install_dependencies.sh --cluster   and what the tests of sweeps under GNU parallel and Slurm need
+#     scripts/install_dependencies.sh --check     and what the tests and scripts/check.sh need
+#     scripts/install_dependencies.sh --cluster   and what all tests need, also those of sweeps under GNU parallel and Slurm
 #     scripts/install_dependencies.sh --package   and what the Debian packages of musclesim need
 #
 # When everything is there it does nothing, needs no rights and no network. On a system without apt-get it says what is needed.
@@ -32,13 +33,16 @@ build_packages=(
 )
 test_packages=(
   "libgtest-dev           test framework"
-  "clang-format           checks the layout of the sources"
-  "clang-tidy             looks for mistakes in the sources"
+  "python3                the test of scripts/check_layers.py"
   "gnuplot-nox            draws figures from recordings"
   "librsvg2-bin           checks that figures can be rendered"
   "ffmpeg                 videos"
   "xvfb                   a display for the tests of the window"
   "xdotool                keys and mouse for the tests of the window"
+)
+check_packages=(
+  "clang-format           checks the layout of the sources"
+  "clang-tidy             looks for mistakes in the sources"
 )
 cluster_packages=(
   "parallel               GNU parallel"
@@ -60,9 +64,10 @@ wanted=("${build_packages[@]}")
 case "${1-}" in
   "") ;;
   --test) wanted+=("${test_packages[@]}") ;;
+  --check) wanted+=("${test_packages[@]}" "${check_packages[@]}") ;;
   --cluster) wanted+=("${test_packages[@]}" "${cluster_packages[@]}") ;;
   --package) wanted+=("${package_packages[@]}") ;;
-  *) fail "unknown argument '$1'; allowed: --test, --cluster, --package" ;;
+  *) fail "unknown argument '$1'; allowed: --test, --check, --cluster, --package" ;;
 esac
 
 if ! command -v apt-get >/dev/null; then

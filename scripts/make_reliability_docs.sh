@@ -97,7 +97,7 @@ TEXT
 
 ## Not covered by a row above
 
-- Sanitizers: `scripts/test.sh` runs the whole suite under the address and undefined-behaviour sanitizers; continuous integration leaves it out. There is no run under the thread sanitizer: ODE and its threading are not instrumented.
+- Sanitizers: `scripts/check.sh` runs the whole suite (without slow tests) under the address and undefined-behaviour sanitizers; continuous integration leaves it out. There is no run under the thread sanitizer: ODE and its threading are not instrumented.
 - The window against a headless run: `tests/src` compares the recordings of runs with and without pictures.
 - Hinges and sliders are compared with closed forms and between two steppers, not with Simbody.
 - Fuzzing lasts 60 s per target; 1e6 executions per target are what a release needs (`scripts/fuzz.sh SECONDS`).

@@ -11,7 +11,7 @@ if nm -D --undefined-only "$program" | sed 's/@.*//' | grep -wE "U ($forbidden)"
 else
   echo "of the network's and the shell's functions the program imports none: $(tr '|' ' ' <<<"$forbidden")"
 fi
-if grep -rnE '\b(std::)?(system|popen)\(' "$root"/{src,sweep,simulation,log,diagnosis,laboratory,effect,robot,controller}; then
+if grep -rnE '\b(std::)?(system|popen)\(' "$root"/{base,src,sweep,simulation,log,diagnosis,evaluation,laboratory,effect,robot,controller}; then
   echo "the sources call these"
   status=1
 fi

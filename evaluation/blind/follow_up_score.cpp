@@ -17,7 +17,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr double confident = 0.9, wide_points = 20;
+constexpr double confident_probability = 0.9, wide_points = 20;
 
 FreshReduction freshOf(const json& object) {
   const json& interval = object.at("interval_percent");
@@ -94,7 +94,7 @@ WithoutTruth withoutTruth(const Judgement& answer, const Judgement& with_truth) 
   const bool look_alike = answer.acceptable.value_or(false);
   const bool named_before =
       with_truth.covered.value_or(false) && std::ranges::find(with_truth.ambiguity_set, answer.top) != with_truth.ambiguity_set.end();
-  const bool confident_effect = answer.verdict == "effects_found" && answer.top_probability > confident;
+  const bool confident_effect = answer.verdict == "effects_found" && answer.top_probability > confident_probability;
   const bool class_mate =
       std::ranges::any_of(with_truth.true_ids, [&](const std::string& id) { return areOfOneClass(id, idOf(answer.top)); });
   if (confident_effect && !look_alike && !named_before) return class_mate ? WithoutTruth::class_mate : WithoutTruth::confidently_wrong;

@@ -11,7 +11,7 @@
 namespace musclesim::blind {
 
 namespace {
-constexpr std::size_t limit_bytes = std::size_t{1} << 30;
+constexpr std::size_t digest_limit_bytes = std::size_t{1} << 30;
 }
 
 std::string sha256(std::string_view bytes) {
@@ -26,7 +26,7 @@ std::string sha256(std::string_view bytes) {
 }
 
 std::string sha256OfFile(const std::filesystem::path& file) {
-  return sha256(readTextFile(file.string(), limit_bytes));
+  return sha256(readTextFile(file.string(), digest_limit_bytes));
 }
 
 std::string sha256OfFiles(const std::filesystem::path& folder, const std::vector<std::string>& names) {

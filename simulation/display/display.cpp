@@ -42,7 +42,7 @@ void abandon(std::jthread& thread, std::unique_ptr<DisplayShared>& shared) {
   static_cast<void>(shared.release());
 }
 
-constexpr auto look_around = std::chrono::milliseconds(5);
+constexpr auto poll_interval = std::chrono::milliseconds(5);
 
 }  // namespace
 
@@ -50,7 +50,7 @@ Display::Display(DisplayOptions options, ManualController& hands, Snapshot first
     : shared_(std::make_unique<DisplayShared>(std::move(options), hands, std::move(first))) {
   thread_ = std::jthread([shared = shared_.get()] { runWindow(*shared); });
   auto opened = shared_->opened.get_future();
-  while (opened.wait_for(look_around) != std::future_status::ready) {
+  while (opened.wait_for(poll_interval) != std::future_status::ready) {
     if (!shared_->is_stuck) continue;
     const std::string reason = shared_->loss().value_or("the display is gone");
     abandon(thread_, shared_);
@@ -61,7 +61,7 @@ Display::Display(DisplayOptions options, ManualController& hands, Snapshot first
 
 Display::~Display() {
   shared_->pace.close();
-  while (!shared_->has_ended && !shared_->is_stuck) std::this_thread::sleep_for(look_around);
+  while (!shared_->has_ended && !shared_->is_stuck) std::this_thread::sleep_for(poll_interval);
   if (shared_->is_stuck) abandon(thread_, shared_);
 }
 
@@ -74,7 +74,7 @@ bool Display::show(Snapshot snapshot, const Interrupted& interrupted) {
 void Display::showDivergence(const std::string& message, const Interrupted& interrupted) {
   shared_->setDivergence(message);
   shared_->pace.setPaused(true);
-  while (!shared_->pace.isClosed() && !interrupted()) std::this_thread::sleep_for(look_around);
+  while (!shared_->pace.isClosed() && !interrupted()) std::this_thread::sleep_for(poll_interval);
 }
 
 std::optional<std::string> Display::loss() const {

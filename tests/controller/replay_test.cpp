@@ -10,7 +10,7 @@
 namespace musclesim {
 namespace {
 
-State at(double time_s) {
+State atTime(double time_s) {
   State state;
   state.time_s = time_s;
   return state;
@@ -31,19 +31,19 @@ std::string refusal(const Recording& recording, int muscle_count = 2) {
 
 TEST(ReplayController, HoldsEachRowUntilTheNext) {
   ReplayController replay(threeRows(), 2);
-  EXPECT_EQ(replay.output(at(1.0)), Action({0.1, 1}));
-  EXPECT_EQ(replay.output(at(1.0999)), Action({0.1, 1}));
-  EXPECT_EQ(replay.output(at(1.1)), Action({0.2, 0}));
-  EXPECT_EQ(replay.output(at(1.99)), Action({0.2, 0}));
-  EXPECT_EQ(replay.output(at(2.0)), Action({0.3, 0.5}));
+  EXPECT_EQ(replay.output(atTime(1.0)), Action({0.1, 1}));
+  EXPECT_EQ(replay.output(atTime(1.0999)), Action({0.1, 1}));
+  EXPECT_EQ(replay.output(atTime(1.1)), Action({0.2, 0}));
+  EXPECT_EQ(replay.output(atTime(1.99)), Action({0.2, 0}));
+  EXPECT_EQ(replay.output(atTime(2.0)), Action({0.3, 0.5}));
 }
 
 TEST(ReplayController, HoldsTheFirstRowBeforeItAndTheLastAfterIt) {
   ReplayController replay(threeRows(), 2);
-  EXPECT_EQ(replay.output(at(-5)), Action({0.1, 1}));
-  EXPECT_EQ(replay.output(at(0)), Action({0.1, 1}));
-  EXPECT_EQ(replay.output(at(1e6)), Action({0.3, 0.5}));
-  EXPECT_EQ(replay.output(at(1.5)), Action({0.2, 0})) << "any order of times";
+  EXPECT_EQ(replay.output(atTime(-5)), Action({0.1, 1}));
+  EXPECT_EQ(replay.output(atTime(0)), Action({0.1, 1}));
+  EXPECT_EQ(replay.output(atTime(1e6)), Action({0.3, 0.5}));
+  EXPECT_EQ(replay.output(atTime(1.5)), Action({0.2, 0})) << "any order of times";
 }
 
 TEST(ReplayController, RoundingOfTimesDelaysNoRow) {
@@ -56,7 +56,7 @@ TEST(ReplayController, RoundingOfTimesDelaysNoRow) {
   recording.signals = {{"command_0", values}};
   ReplayController replay(recording, 1);
   double accumulated = 0;  // differs from 0.1 * row by rounding, in both directions
-  for (int row = 0; row < 1000; ++row, accumulated += 0.1) ASSERT_EQ(replay.output(at(accumulated)).at(0), row / 1000.0);
+  for (int row = 0; row < 1000; ++row, accumulated += 0.1) ASSERT_EQ(replay.output(atTime(accumulated)).at(0), row / 1000.0);
 }
 
 TEST(ReplayController, NeedsOneCommandPerMuscle) {

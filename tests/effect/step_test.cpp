@@ -41,13 +41,13 @@ TEST_P(Halving, ChangesLittle) {
   EXPECT_LT(changeOf(run(usual), run(2 * usual)), 0.5);
 }
 
-std::vector<std::string> allIds() {
+std::vector<std::string> catalogueIds() {
   std::vector<std::string> ids;
   for (const EffectInfo& info : effectCatalogue()) ids.push_back(info.id);
   return ids;
 }
 
-INSTANTIATE_TEST_SUITE_P(Catalogue, Halving, ::testing::ValuesIn(allIds()), [](const auto& place) { return place.param; });
+INSTANTIATE_TEST_SUITE_P(Catalogue, Halving, ::testing::ValuesIn(catalogueIds()), [](const auto& place) { return place.param; });
 
 }  // namespace
 }  // namespace musclesim

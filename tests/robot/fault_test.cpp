@@ -2,12 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <functional>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "musclesim/base/error.h"
 #include "musclesim/simulation/simulation.h"
+#include "support/not_finite.h"
 #include "support/support.h"
 
 /// An exception thrown during a step leaks ODE's list of jobs. Nothing else may leak.
@@ -17,9 +17,6 @@ extern "C" const char* __lsan_default_suppressions() {
 
 namespace musclesim {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double inf = std::numeric_limits<double>::infinity();
 
 SimulationOptions smallArm() {
   SimulationOptions options;

@@ -2,16 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "musclesim/base/error.h"
+#include "support/not_finite.h"
 #include "support/support.h"
 
 namespace musclesim {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double inf = std::numeric_limits<double>::infinity();
 
 struct Row {
   double pressure_ratio, length_mm, tension_N, stiffness_N_per_mm;

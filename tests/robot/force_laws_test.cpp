@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "musclesim/base/error.h"
 #include "musclesim/robot/chou_hannaford.h"
@@ -9,14 +8,13 @@
 #include "musclesim/robot/force_map.h"
 #include "musclesim/robot/sarosi.h"
 #include "musclesim/simulation/simulation.h"
+#include "support/not_finite.h"
 #include "support/support.h"
 
 namespace musclesim {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-/// One value per law, computed by hand; every term contributes to it.
+/// A value worked out by hand for each law: every term counts.
 TEST(ChouHannaford, AgreesWithTheFormulaWorkedOutByHand) {
   ChouHannafordConstants constants;
   constants.braid_N = 3000;

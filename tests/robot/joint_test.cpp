@@ -5,20 +5,17 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "musclesim/base/error.h"
 #include "musclesim/base/units.h"
 #include "musclesim/simulation/simulation.h"
+#include "support/not_finite.h"
 #include "support/support.h"
 
 namespace musclesim {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double inf = std::numeric_limits<double>::infinity();
 
 SimulationOptions weightless() {
   SimulationOptions options;

@@ -2,17 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "musclesim/base/error.h"
 #include "musclesim/simulation/simulation.h"
+#include "support/not_finite.h"
 #include "support/support.h"
 
 namespace musclesim {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double inf = std::numeric_limits<double>::infinity();
 
 TEST(LinearActuator, IsOneLinkThatKeepsItsMinimumLength) {
   Simulation simulation;

@@ -4,18 +4,15 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <limits>
 
 #include "musclesim/base/error.h"
 #include "musclesim/base/units.h"
 #include "musclesim/simulation/simulation.h"
+#include "support/not_finite.h"
 #include "support/support.h"
 
 namespace musclesim {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double inf = std::numeric_limits<double>::infinity();
 
 Vector positionOfBead(const Link& link, int end) {
   const dReal* p = dBodyGetPosition(link.bead[end]);

@@ -5,20 +5,18 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numbers>
 
 #include "musclesim/base/error.h"
 #include "musclesim/base/units.h"
 #include "musclesim/robot/muscle.h"
 #include "musclesim/simulation/simulation.h"
+#include "support/not_finite.h"
 #include "support/support.h"
 
 namespace musclesim {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double inf = std::numeric_limits<double>::infinity();
 constexpr double pi = std::numbers::pi;
 
 Eigen::Matrix3d matrixOf(const dReal* m) {

@@ -11,7 +11,7 @@
 namespace musclesim {
 namespace {
 
-SimulationOptions withParameters(const std::vector<std::pair<std::string, double>>& parameters) {
+SimulationOptions rigOptions(const std::vector<std::pair<std::string, double>>& parameters) {
   SimulationOptions options;
   options.substeps = 5;
   for (const auto& [name, value] : parameters) options.parameters.set(name, value, "test");
@@ -31,7 +31,7 @@ TEST(Rig, HasOneMuscleAndNoJointAngles) {
 }
 
 TEST(Rig, ItsNumbersAreParameters) {
-  Simulation simulation(withParameters({{"rig.load_kg", 0.5}, {"rig.minimum_length_mm", 90}, {"rig.maximum_length_mm", 200}}));
+  Simulation simulation(rigOptions({{"rig.load_kg", 0.5}, {"rig.minimum_length_mm", 90}, {"rig.maximum_length_mm", 200}}));
   Robot& robot = simulation.build("rig");
   EXPECT_EQ(simulation.world().primitives()[0]->massG(), 500);
   EXPECT_EQ(robot.actuators()[0]->links().size(), 6u);
@@ -44,16 +44,16 @@ TEST(Rig, ParametersOutOfRangeAreRefused) {
                             {"rig.minimum_length_mm", 14.0},
                             {"rig.maximum_length_mm", 100.0},
                             {"rig.maximum_length_mm", 1e9}}) {
-    Simulation simulation(withParameters({{wrong.first, wrong.second}}));
+    Simulation simulation(rigOptions({{wrong.first, wrong.second}}));
     EXPECT_THROW(simulation.build("rig"), BadParameter) << wrong.first << " = " << wrong.second;
   }
-  Simulation simulation(withParameters({{"rig.load_kg", -2.0}}));
+  Simulation simulation(rigOptions({{"rig.load_kg", -2.0}}));
   EXPECT_TRUE(contains(messageOf<BadParameter>([&] { simulation.build("rig"); }), "rig.load_kg = -2 kg: must"));
 }
 
 TEST(Rig, SettlesWhereTheForceCarriesTheLoadAndHalfTheChain) {
   for (const double pressure : {0.3, 0.6, 0.9}) {
-    Simulation simulation(withParameters({}));
+    Simulation simulation(rigOptions({}));
     Robot& robot = simulation.build("rig");
     robot.settle({pressure});
     const State state = robot.getState();
@@ -64,7 +64,7 @@ TEST(Rig, SettlesWhereTheForceCarriesTheLoadAndHalfTheChain) {
 }
 
 TEST(Rig, StaysWhereItSettled) {
-  Simulation simulation(withParameters({}));
+  Simulation simulation(rigOptions({}));
   Robot& robot = simulation.build("rig");
   robot.settle({0.5});
   const double length_mm = robot.getState().length_mm[0];
@@ -91,16 +91,16 @@ TEST(Rig, SettlesAlikeInAllPhysics) {
 }
 
 TEST(Rig, SettlesAtTheStopsWhereTheLoadIsTooLightOrTooHeavy) {
-  Simulation heavy(withParameters({{"rig.load_kg", 20}}));
+  Simulation heavy(rigOptions({{"rig.load_kg", 20}}));
   heavy.build("rig").settle({0.5});
   EXPECT_NEAR(heavy.robot().getState().length_mm[0], 300, 1e-9);
-  Simulation light(withParameters({{"rig.load_kg", 1e-4}, {"muscle.bead_mass_g", 1e-3}}));
+  Simulation light(rigOptions({{"rig.load_kg", 1e-4}, {"muscle.bead_mass_g", 1e-3}}));
   light.build("rig").settle({1});
   EXPECT_NEAR(light.robot().getState().length_mm[0], 120, 0.01);
 }
 
 TEST(Rig, TheLoadMovesVerticallyOnly) {
-  Simulation simulation(withParameters({}));
+  Simulation simulation(rigOptions({}));
   Robot& robot = simulation.build("rig");
   simulation.start("settled", {0.2});
   robot.step({0.9});

@@ -11,12 +11,11 @@
 #include "musclesim/robot/muscle.h"
 #include "musclesim/robot/robot_registry.h"
 #include "musclesim/simulation/simulation.h"
+#include "support/not_finite.h"
 #include "support/support.h"
 
 namespace musclesim {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Two muscles that carry one bar.
 class Swing : public Robot {

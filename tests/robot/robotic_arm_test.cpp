@@ -19,9 +19,9 @@ SimulationOptions with(const std::string& name, const Parameter::Value& value) {
   return options;
 }
 
-Primitive* bone(const Simulation& simulation, const std::string& name) {
+Primitive* boneOf(const Simulation& simulation, const std::string& name) {
   for (const auto& primitive : simulation.world().primitives())
-    if (primitive->name() == name) return primitive.get();
+    if (primitive->name() == name) return primitive;
   throw BadParameter("no bone " + name);
 }
 
@@ -55,7 +55,7 @@ void expectInertia(const PhysicsKind kind, const std::string& how, bool exact) {
   Simulation simulation(options);
   simulation.build("arm");
   for (const Expected& expected : composites) {
-    const Primitive* part = bone(simulation, expected.bone);
+    const Primitive* part = boneOf(simulation, expected.bone);
     dMass mass;
     dBodyGetMass(part->body().id, &mass);
     EXPECT_NEAR(mass.mass, expected.mass_g, 1e-9) << expected.bone;
@@ -150,7 +150,7 @@ void expectStop(const std::string& held, const std::string& hinge, double torque
   options.parameters.set("physics.gravity_m_per_s2", 0.0, "test");
   Simulation simulation(options);
   simulation.build("arm");
-  bone(simulation, held)->fix();
+  boneOf(simulation, held)->fix();
   simulation.start("built", {0.0});
   const Joint* turned = joint(simulation, hinge);
   for (int i = 0; i < 1500; ++i) {

@@ -15,7 +15,7 @@ namespace musclesim {
 
 namespace {
 
-std::string contentOf(const std::filesystem::path& file) {
+std::string outputIn(const std::filesystem::path& file) {
   std::ifstream stream(file);
   std::ostringstream text;
   text << stream.rdbuf();
@@ -71,7 +71,7 @@ ProgramResult interruptProgram(const std::vector<std::string>& arguments, int si
   }
   int status = 0;
   waitpid(child, &status, 0);
-  ProgramResult result{WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), contentOf(out_file), contentOf(err_file)};
+  ProgramResult result{WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), outputIn(out_file), outputIn(err_file)};
   std::filesystem::remove(out_file);
   std::filesystem::remove(err_file);
   return result;
