@@ -15,7 +15,7 @@ namespace musclesim {
 
 namespace {
 
-constexpr double least_change = 0.02;
+constexpr double least_signal_change = 0.02;
 constexpr double usual_steps = 10;  ///< a dropout is longer than this number of usual steps
 
 std::vector<std::string> dropoutNotes(const Recording& recording) {
@@ -47,7 +47,7 @@ bool commandsMove(const std::vector<Recording>& recordings) {
     for (const Signal& signal : recording.signals) {
       if (!signal.name.starts_with("command_")) continue;
       const auto [least, largest] = std::ranges::minmax_element(signal.values);
-      if (*largest - *least > least_change) return true;
+      if (*largest - *least > least_signal_change) return true;
     }
   return false;
 }
@@ -57,7 +57,7 @@ int firstChange(const Recording& recording) {
   for (const Signal& signal : recording.signals) {
     if (!signal.name.starts_with("command_")) continue;
     const auto changed =
-        std::ranges::find_if(signal.values, [&](double value) { return std::abs(value - signal.values.front()) > least_change; });
+        std::ranges::find_if(signal.values, [&](double value) { return std::abs(value - signal.values.front()) > least_signal_change; });
     first = std::min(first, changed - signal.values.begin());
   }
   return first < static_cast<std::ptrdiff_t>(recording.time_s.size()) ? static_cast<int>(first) : 0;
