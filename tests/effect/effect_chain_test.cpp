@@ -71,7 +71,7 @@ TEST(EffectChain, AnUnknownComponentIsRefusedWithTheKnownOnes) {
   EXPECT_TRUE(contains(messageOf<BadParameter>([] {
                          replayWith(wavesFor("rig", 0.1), {{"joint_viscous_friction", "all", {}}});
                        }),
-                       "rig has nothing"));
+                       "rig has no component that the effect can act on"));
 }
 
 TEST(EffectChain, EffectsNeedARobot) {
