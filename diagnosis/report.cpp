@@ -168,7 +168,7 @@ std::string signalTable(const Diagnosis& d) {
             "<td>" + shapeOfRest(d, name) + "</td></tr>\n";
   }
   const auto heads = [](const std::string& when) {
-    return "<th class=number>RMSE" + when + "</th><th class=number>over floor" + when + "</th>";
+    return "<th class=number>RMSE" + when + "</th><th class=number>RMSE / floor" + when + "</th>";
   };
   return sliding("<table><tr><th>signal</th><th class=number>noise floor</th>" +
                  (hasAfter(d) ? heads(" before") + heads(" after") : heads("")) + "<th>shape of the residual</th></tr>\n" + rows +
@@ -203,9 +203,7 @@ std::string phaseFigure(const Diagnosis& d) {
     if (hasAfter(d) && phase.after > 0) all.push_back({"after", phase.after, fmt::format("{:.3g}", phase.after), true});
   }
   if (all.empty()) return "";
-  return lead(
-             "Residual in units of the noise floor (1 is as good as it gets), while the commands rise (filling), fall (venting) and rest "
-             "(holding):") +
+  return lead("RMS residual over the noise floor (1: noise alone), while the commands rise (filling), fall (venting) and rest (holding):") +
          barsFigure("Residual by actuation phase", all, full);
 }
 
