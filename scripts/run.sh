@@ -5,8 +5,8 @@
 #                                       recording and a figure
 #     scripts/run.sh ARGUMENT...        runs musclesim with these arguments; scripts/run.sh --help lists them
 #
-# The program is build/release/musclesim. The first call builds it, later ones only what has changed. From a fresh Debian 12 without
-# packages to the figure it takes at most 5 minutes on two cores.
+# The program is build/release/musclesim. The first call builds it, later ones only what has changed. The aim: from a fresh
+# Debian 12 without packages to the figure in at most 5 minutes on two cores.
 # Own messages go to stderr, so stdout is the program's. Paths among the arguments are relative to the caller's folder.
 set -euo pipefail
 

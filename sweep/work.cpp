@@ -225,9 +225,9 @@ class Worker {
       return;
     }
     const std::string text = readTextFile(out + "/" + (from_file ? sweep_.result_file : "stdout.txt"), output_limit_bytes);
-    auto json = nlohmann::ordered_json::parse(from_file ? text : lastLine(text), nullptr, false);
-    if (json.is_object())
-      result.numbers = std::move(json);
+    auto document = nlohmann::ordered_json::parse(from_file ? text : lastLine(text), nullptr, false);
+    if (document.is_object())
+      result.numbers = std::move(document);
     else if (from_file)
       throwAway(result, fmt::format("{{out}}/{} is not a JSON object", sweep_.result_file));
     if (result.status == "done" && result.numbers.empty() && expectsNumbers(arguments)) throwAway(result, "gave no numbers");

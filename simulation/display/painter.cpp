@@ -10,7 +10,7 @@ void* font() {
   return GLUT_BITMAP_9_BY_15;
 }
 
-constexpr float height_px = 19, ascent_px = 14;
+constexpr float font_height_px = 19, ascent_px = 14;
 
 }  // namespace
 
@@ -52,7 +52,7 @@ float BitmapPainter::widthOf(const std::string& text) const {
 }
 
 float BitmapPainter::lineHeight() const {
-  return height_px;
+  return font_height_px;
 }
 
 }  // namespace musclesim

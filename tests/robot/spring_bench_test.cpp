@@ -7,7 +7,7 @@
 namespace musclesim {
 namespace {
 
-SimulationOptions options(const std::string& muscle_model) {
+SimulationOptions benchOptions(const std::string& muscle_model) {
   SimulationOptions result;
   result.parameters.set("muscle.model", muscle_model, "test");
   result.parameters.set("force_law.name", "chou-hannaford", "test");
@@ -18,7 +18,7 @@ SimulationOptions options(const std::string& muscle_model) {
 }
 
 TEST(SpringBench, ReportsOneMuscle) {
-  Simulation simulation(options("line"));
+  Simulation simulation(benchOptions("line"));
   EXPECT_EQ(simulation.build("spring_bench").signalNames(),
             (std::vector<std::string>{"command_0", "pressure_0", "force_0_N", "length_0_mm"}));
 }
@@ -26,7 +26,7 @@ TEST(SpringBench, ReportsOneMuscle) {
 TEST(SpringBench, TheMuscleBalancesSpringAndLoad) {
   for (const char* model : {"line", "chain"})
     for (const double pressure : {0.4, 0.7, 1.0}) {
-      Simulation simulation(options(model));
+      Simulation simulation(benchOptions(model));
       Robot& robot = simulation.build("spring_bench");
       robot.settle({pressure});
       const double length_mm = robot.getState().length_mm[0];
@@ -35,7 +35,7 @@ TEST(SpringBench, TheMuscleBalancesSpringAndLoad) {
 }
 
 TEST(SpringBench, StaysAtItsEquilibrium) {
-  Simulation simulation(options("line"));
+  Simulation simulation(benchOptions("line"));
   Robot& robot = simulation.build("spring_bench");
   simulation.start("settled", {0.7});
   const double length_mm = robot.getState().length_mm[0];
@@ -46,7 +46,7 @@ TEST(SpringBench, StaysAtItsEquilibrium) {
 TEST(SpringBench, AStifferSpringShortensTheStroke) {
   double lengths_mm[2];
   for (int i = 0; i < 2; ++i) {
-    SimulationOptions stiff = options("line");
+    SimulationOptions stiff = benchOptions("line");
     stiff.parameters.set("spring_bench.spring_N_per_mm", i == 0 ? 1.0 : 20.0, "test");
     Simulation simulation(stiff);
     Robot& robot = simulation.build("spring_bench");
