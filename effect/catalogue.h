@@ -1,14 +1,11 @@
 /// The library's own effects.
 #pragma once
 
-#include <limits>
 #include <vector>
 
 #include "musclesim/effect/catalogue.h"
 
 namespace musclesim {
-
-inline constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 /// In the order in which they act within their stages.
 std::vector<EffectInfo> builtInEffects();

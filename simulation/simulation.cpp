@@ -133,12 +133,16 @@ Controller& Simulation::control(std::unique_ptr<Controller> controller) {
   return *controller_;
 }
 
+void Simulation::settle(const Action& command) {
+  effects_->settlePressures(command);
+  robot().settle();
+  stop();
+}
+
 void Simulation::start(const std::string& initial_state, const Action& first_command) {
   Clock& clock = world_->clock();
   if (initial_state == "settled") {
-    effects_->settlePressures(first_command);
-    robot().settle();
-    stop();
+    settle(first_command);
     // In `original` units the same number of true seconds lasts sqrt(1000) times longer.
     const double slowness = std::sqrt(world_force_per_N / physics().force_per_N);
     clock.start(-settle_duration_s * slowness);

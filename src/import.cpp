@@ -49,7 +49,9 @@ int importCommand(const ImportArguments& arguments) {
 Action addImport(CLI::App& command) {
   auto arguments = std::make_shared<ImportArguments>();
   command.add_option("table", arguments->table, "Table of measurements: DATA.csv, one header row")->required();
-  command.add_option("mapping", arguments->mapping, "Meaning of its columns: MAPPING.toml; docs/reference/recording_format.md describes the format")
+  command
+      .add_option("mapping", arguments->mapping,
+                  "Meaning of its columns: MAPPING.toml; docs/reference/recording_format.md describes the format")
       ->required();
   command.add_option("out", arguments->out, "Recording to write: OUT.csv, with OUT.json beside it")->required();
   command.add_flag("--quiet", arguments->quiet, "No messages on standard error except errors");

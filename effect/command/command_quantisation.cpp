@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../catalogue.h"
-
 namespace musclesim {
 
 EffectInfo CommandQuantisation::info() {

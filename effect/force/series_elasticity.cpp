@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "../catalogue.h"
-
 namespace musclesim {
 
 EffectInfo SeriesElasticity::info() {

@@ -13,7 +13,7 @@ TEST(HangingChain, SettlesWhereForceCarriesTheLoadAndHalfTheChain) {
   options.parameters.set("muscle.hinge_friction_Nm", 0.0, "test");
   Simulation simulation(options);
   Robot& robot = simulation.build("rig");
-  robot.settle({0.6});
+  simulation.settle({0.6});
   // Eq. 1 solved by hand in decimal arithmetic: F = (2 + 0.16 / 2) kg * 9.81 m/s^2 at p = 0.6.
   EXPECT_NEAR(robot.getState().length_mm[0], 183.43977198, 1e-6);
 }
@@ -58,7 +58,7 @@ TEST(HangingChain, HeavierBeadsHangLongerByTheirWeightOverTheStiffness) {
     options.parameters.set("muscle.bead_mass_g", bead_g, "test");
     Simulation simulation(options);
     Robot& robot = simulation.build("rig");
-    robot.settle({0.6});
+    simulation.settle({0.6});
     return robot.getState().length_mm[0];
   };
   const double stiffness = BraunForceLaw(120, 300).stiffnessNPerMm(0.6, 183.29);

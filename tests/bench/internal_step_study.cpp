@@ -1,5 +1,6 @@
 /// In `si` physics: how the motion of the arm converges as the internal step shrinks, and the cost of each step.
-/// Usage: internal_step_study [--muscles N] [--recording FILE.csv] [--document docs/developer/stepper.md] [--seed N] [--steps MS,MS,...] [name=value
+/// Usage: internal_step_study [--muscles N] [--recording FILE.csv] [--document docs/developer/stepper.md] [--seed N] [--steps MS,MS,...]
+/// [name=value
 /// ...] The commands are those of the recording, with times divided by sqrt(1000); without a recording they are random, with new ones every
 /// 0.19 s.
 #include <fmt/format.h>

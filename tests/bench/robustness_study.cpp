@@ -1,7 +1,8 @@
 /// 20,000 internal steps of the arm under random pressures, new ones every 0.25 s, for many seeds: does any run diverge, leave a step
 /// unsolved, or allocate memory?
-/// Usage: robustness_study [--muscles 10,30] [--seeds 20] [--steps 20000] [--threads 1] [--physics si] [--document docs/developer/stepper.md]
-/// [name=value ...] With several threads simulations run side by side, one per thread; allocations are counted per thread.
+/// Usage: robustness_study [--muscles 10,30] [--seeds 20] [--steps 20000] [--threads 1] [--physics si] [--document
+/// docs/developer/stepper.md] [name=value ...] With several threads simulations run side by side, one per thread; allocations are counted
+/// per thread.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -22,7 +22,7 @@ constexpr double weight_N = mass_kg * gravity_m_per_s2;
 class Pendulum : public Robot {
  public:
   explicit Pendulum(World& world) : Robot(world) {
-    auto* bob = new Sphere(world(), nullptr, {0, -length_m * mm_per_m, 0}, mass_kg * g_per_kg, 0, 1);
+    auto* bob = new Sphere(world, nullptr, {0, -length_m * mm_per_m, 0}, mass_kg * g_per_kg, 0, 1);
     addAngle("top", bob->attachHinge(nullptr, Vector::Zero(), Vector::UnitZ(), -120, 120));
     setHand(bob);
   }
@@ -276,7 +276,7 @@ TEST(AttachmentOffset, MovesTheEndOfTheMuscleWithTheForearm) {
   Robot& robot = simulation.build("elbow");
   EXPECT_NEAR(robot.truth().length_mm[0], std::hypot(258, 8), 1e-6);
   EXPECT_NEAR(robot.truth().length_mm[1], 260, 1e-6);
-  robot.settle({0.6, 0.4});
+  simulation.settle({0.6, 0.4});
   const double angle_rad = robot.truth().angle_deg[0] * rad_per_deg;
   EXPECT_GT(angle_rad, 0.1);
   const Vector end = Eigen::AngleAxisd(angle_rad, Vector::UnitZ()) * Vector(43, -18, 0);
@@ -317,7 +317,7 @@ TEST(AttachmentOffset, IsRefusedByRobotsThatDoNotAskForIt) {
   class Plain : public Robot {
    public:
     explicit Plain(World& world) : Robot(world) {
-      auto* muscle = new Muscle(world(), space(), {0, 0, 0}, {0, -70, 0}, {0, -140, 0}, {0, -210, 0}, 120, 300);
+      auto* muscle = new Muscle(world, space(), {0, 0, 0}, {0, -70, 0}, {0, -140, 0}, {0, -210, 0}, 120, 300);
       muscle->connectStartTo(nullptr);
       addActuator(muscle);
     }

@@ -12,7 +12,7 @@ class LengthMachine {
       : simulation_(optionsWith(std::move(effects))), robot_(simulation_.build("rig")) {
     simulation_.effects().settlePressures({pressure_ratio});
     setLength(length_mm);
-    simulation_.effects().begin(0);
+    simulation_.effects().begin();
     look();
   }
 
@@ -30,8 +30,7 @@ class LengthMachine {
   }
   /// Holds the present length for a step of h_s.
   double hold(double h_s) {
-    stages(h_s);
-    simulation_.effects().track(h_s);
+    step(h_s);
     return look();
   }
   /// Moves to a length at a constant rate in steps of h_s and calls `each(length_mm, tension_N)` after each step.
@@ -40,8 +39,7 @@ class LengthMachine {
     const double begin_mm = lengthMm();
     const auto count = static_cast<int>(std::lround(std::abs(length_mm - begin_mm) / rate_mm_per_s / h_s));
     for (int i = 1; i <= count; ++i) {
-      stages(h_s);
-      simulation_.effects().track(h_s);
+      step(h_s);
       setLength(begin_mm + (length_mm - begin_mm) * i / count);
       each(lengthMm(), look());
     }
@@ -59,9 +57,15 @@ class LengthMachine {
   Actuator& muscle() const { return *robot_.actuators()[0]; }
   void setLength(double length_mm) { muscle().placeStraight({0, 0, 0}, {0, -length_mm, 0}); }
   void stages(double h_s) {
-    simulation_.effects().command(h_s);
-    simulation_.effects().pressure(h_s);
-    simulation_.effects().force(h_s);
+    MuscleValues& values = simulation_.world().values();
+    simulation_.effects().command(values, h_s);
+    simulation_.effects().pressure(values, h_s);
+    simulation_.effects().force(values, h_s);
+  }
+  void step(double h_s) {
+    stages(h_s);
+    simulation_.effects().track(h_s);
+    simulation_.world().clock().countInternalStep(h_s);
   }
   double look() {
     stages(0);

@@ -71,7 +71,7 @@ TEST(SensorBacklash, IsFlatAfterAReversalForItsWidth) {
   auto& sensor = dynamic_cast<SensorEffect&>(*effect);
   const std::vector<std::string> names = robot.signalNames();
   const int angle = static_cast<int>(std::find(names.begin(), names.end(), "angle_elbow_deg") - names.begin());
-  sensor.attach({simulation, robot, ComponentKind::signal, -1, -1, "", angle, "signal_angle_elbow", false});
+  sensor.attach({simulation.world(), robot, ComponentKind::signal, -1, -1, "", angle, "signal_angle_elbow", false});
   sensor.reset();
   auto read = [&](double value) {
     sensor.track(value, {0, 1e-3});

@@ -103,9 +103,9 @@ class OddMuscle : public Muscle {
 class OddLever : public Robot {
  public:
   explicit OddLever(World& world) : Robot(world) {
-    auto* bar = new Box(world(), space(), {0, 0, 0}, 400, 0, 200, 20, 20);
+    auto* bar = new Box(world, space(), {0, 0, 0}, 400, 0, 200, 20, 20);
     addAngle("lever", bar->attachHinge(nullptr, {0, 0, 0}, Vector::UnitZ(), -40, 40));
-    auto* muscle = new OddMuscle(world(), space(), {80, -260, 0}, {80, -180, 0}, {80, -100, 0}, {80, -10, 0}, 150, 320);
+    auto* muscle = new OddMuscle(world, space(), {80, -260, 0}, {80, -180, 0}, {80, -100, 0}, {80, -10, 0}, 150, 320);
     muscle->connectStartTo(nullptr);
     muscle->connectEndTo(bar);
     addActuator(muscle);

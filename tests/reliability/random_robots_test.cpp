@@ -17,7 +17,7 @@ namespace {
 /// A tree of primitives with random joints, and muscles between them. One call may get an impossible number.
 class RandomRobot : public Robot {
  public:
-  RandomRobot(Simulation& simulation, std::uint64_t seed, bool spoil) : Robot(simulation), random_(seed, "random_robot"), spoil_(spoil) {
+  RandomRobot(World& world, std::uint64_t seed, bool spoil) : Robot(world), random_(seed, "random_robot"), spoil_(spoil) {
     const int part_count = whole(1, 5);
     spoilt_call_ = whole(0, 2 * part_count - 1);
     for (int i = 0; i < part_count; ++i) addPart();
@@ -113,7 +113,7 @@ void run(std::uint64_t seed, bool spoil, Ends& ends) {
   current_spoil = spoil;
   class Built : public RandomRobot {
    public:
-    explicit Built(Simulation& simulation) : RandomRobot(simulation, current_seed, current_spoil) {}
+    explicit Built(World& world) : RandomRobot(world, current_seed, current_spoil) {}
   };
   SimulationOptions options;
   options.plane = seed % 3 == 0;

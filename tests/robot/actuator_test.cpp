@@ -181,7 +181,7 @@ TEST(Actuator, AreOwnedByTheSimulationAndNumbered) {
   auto *first = hangingMuscle(simulation),
        *second = new Muscle(simulation.world(), simulation.space(), {50, 0, 0}, {50, -70, 0}, {50, -140, 0}, {50, -210, 0}, 120, 300);
   ASSERT_EQ(simulation.world().actuators().size(), 2u);
-  EXPECT_EQ(simulation.world().actuators()[1].get(), second);
+  EXPECT_EQ(simulation.world().actuators()[1], second);
   EXPECT_EQ(first->name(), "muscle_0");
   EXPECT_EQ(second->name(), "muscle_1");
   second->setColor(1, 0.5, 0, "orange");

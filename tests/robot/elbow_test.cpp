@@ -50,7 +50,7 @@ TEST(Elbow, TheForearmHasItsMassAndItsInertiaAboutTheHinge) {
 TEST(Elbow, TheFlexorMovesTheHandTowardsPlusX) {
   Simulation simulation(withParameters({}));
   Robot& robot = simulation.build("elbow");
-  robot.settle({0.8, 0.2});
+  simulation.settle({0.8, 0.2});
   const State state = robot.getState();
   EXPECT_GT(state.angle_deg[0], 5);
   const double angle_rad = state.angle_deg[0] * rad_per_deg;
@@ -61,18 +61,18 @@ TEST(Elbow, TheFlexorMovesTheHandTowardsPlusX) {
 TEST(Elbow, EqualPressuresSettleInTheMiddleAndExchangedOnesInTheMirror) {
   Simulation simulation(withParameters({}));
   Robot& robot = simulation.build("elbow");
-  robot.settle({0.5, 0.5});
+  simulation.settle({0.5, 0.5});
   EXPECT_NEAR(robot.getState().angle_deg[0], 0, 1e-9);
-  robot.settle({0.5, 0.4});
+  simulation.settle({0.5, 0.4});
   const double one_deg = robot.getState().angle_deg[0];
-  robot.settle({0.4, 0.5});
+  simulation.settle({0.4, 0.5});
   EXPECT_NEAR(robot.getState().angle_deg[0], -one_deg, 1e-9);
 }
 
 TEST(Elbow, SettlesWhereTheTorquesBalance) {
   Simulation simulation(withParameters({}));
   Robot& robot = simulation.build("elbow");
-  robot.settle({0.5, 0.4});
+  simulation.settle({0.5, 0.4});
   const State state = robot.getState();
   const double q = state.angle_deg[0] * rad_per_deg;
   double torque_Nmm = -0.6 * 9.81 * 120 * std::sin(q);
@@ -89,7 +89,7 @@ TEST(Elbow, SettlesWhereTheTorquesBalance) {
 TEST(Elbow, StaysWhereItSettled) {
   Simulation simulation(withParameters({}));
   Robot& robot = simulation.build("elbow");
-  robot.settle({0.5, 0.4});
+  simulation.settle({0.5, 0.4});
   const double angle_deg = robot.getState().angle_deg[0];
   simulation.start("settled", {0.5, 0.4});
   EXPECT_EQ(simulation.time_s(), 0);
@@ -117,7 +117,7 @@ TEST(Elbow, ItsStopsHold) {
 TEST(Elbow, SettlesNoFartherThanItsStops) {
   Simulation simulation(withParameters({{"elbow.stop_deg", 10}}));
   Robot& robot = simulation.build("elbow");
-  robot.settle({1, 0});
+  simulation.settle({1, 0});
   EXPECT_NEAR(robot.getState().angle_deg[0], 10, 1e-9);
 }
 

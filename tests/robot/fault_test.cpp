@@ -59,8 +59,8 @@ std::vector<Fault> faults() {
   addForce("LargeForceOnABone", 1e12);
   all.push_back({"NanTorqueOnABone", [](Simulation& s) { dBodyAddTorque(bone(s, "ulna"), nan, 0, 0); }});
   all.push_back({"HugeTorqueOnABone", [](Simulation& s) { dBodyAddTorque(bone(s, "ulna"), 1e300, 1e300, -1e300); }});
-  all.push_back({"NanForceOnABead", [](Simulation& s) { dBodyAddForce(s.actuators()[0]->links()[1].bead[0], nan, nan, nan); }});
-  all.push_back({"HugeForceOnABead", [](Simulation& s) { dBodyAddForce(s.actuators()[0]->links()[1].bead[0], 1e200, 0, 0); }});
+  all.push_back({"NanForceOnABead", [](Simulation& s) { dBodyAddForce(s.world().actuators()[0]->links()[1].bead[0], nan, nan, nan); }});
+  all.push_back({"HugeForceOnABead", [](Simulation& s) { dBodyAddForce(s.world().actuators()[0]->links()[1].bead[0], 1e200, 0, 0); }});
   all.push_back({"HandTornOff", [](Simulation& s) {
                    const double* p = dBodyGetPosition(bone(s, "medius"));
                    dBodySetPosition(bone(s, "medius"), p[0] + 100, p[1], p[2]);

@@ -51,8 +51,8 @@ TEST(LineMuscle, PullsAtItsViaPointsAlongBothPieces) {
   muscle->connectEndTo(nullptr);
   muscle->addViaPoint(ring, {100, -100, 0});
   EXPECT_NEAR(muscle->lengthMm(), 2 * std::sqrt(2e4), 1e-9);
-  muscle->takePressure(1);
-  muscle->updateTension();
+  muscle->setPressure(1);
+  simulation.effects().update();
   muscle->applyForces();
   const dReal* force = dBodyGetForce(ring->body().id);
   const double expected = -std::sqrt(2.0) * muscle->tensionN() * simulation.physics().force_per_N;
@@ -93,8 +93,8 @@ TEST(LineMuscle, SlackLinesDoNotPush) {
   muscle->connectStartTo(nullptr);
   muscle->connectEndTo(load);
   load->place({0, -60, 0}, Eigen::Matrix3d::Identity());
-  muscle->takePressure(1);
-  muscle->updateTension();
+  muscle->setPressure(1);
+  simulation.effects().update();
   EXPECT_LT(muscle->calculateForce(1, 60), 0) << "Eq. 1 continued below the shortest length";
   EXPECT_EQ(muscle->tensionN(), 0);
 }

@@ -16,7 +16,7 @@ namespace {
 /// Section 4.3: primitives, their joints, composites, actuators.
 class PaperRobot : public Robot {
  public:
-  explicit PaperRobot(World& world) : Robot(world) {
+  explicit PaperRobot(World& the_world) : Robot(the_world) {
     dWorldID world = this->world();
     dSpaceID space = this->space();
 

@@ -55,7 +55,7 @@ TEST(Rig, SettlesWhereTheForceCarriesTheLoadAndHalfTheChain) {
   for (const double pressure : {0.3, 0.6, 0.9}) {
     Simulation simulation(rigOptions({}));
     Robot& robot = simulation.build("rig");
-    robot.settle({pressure});
+    simulation.settle({pressure});
     const State state = robot.getState();
     EXPECT_NEAR(state.force_N[0], (2.0 + 0.08) * 9.81, 1e-9);
     EXPECT_EQ(state.pressure[0], pressure);
@@ -66,7 +66,7 @@ TEST(Rig, SettlesWhereTheForceCarriesTheLoadAndHalfTheChain) {
 TEST(Rig, StaysWhereItSettled) {
   Simulation simulation(rigOptions({}));
   Robot& robot = simulation.build("rig");
-  robot.settle({0.5});
+  simulation.settle({0.5});
   const double length_mm = robot.getState().length_mm[0];
   simulation.start("settled", {0.5});
   EXPECT_EQ(simulation.time_s(), 0);
@@ -83,7 +83,7 @@ TEST(Rig, SettlesAlikeInAllPhysics) {
     options.physics = kind;
     Simulation simulation(options);
     Robot& robot = simulation.build("rig");
-    robot.settle({0.5});
+    simulation.settle({0.5});
     lengths_mm.push_back(robot.getState().length_mm[0]);
   }
   EXPECT_NEAR(lengths_mm[1], lengths_mm[0], 1e-9);
@@ -92,10 +92,12 @@ TEST(Rig, SettlesAlikeInAllPhysics) {
 
 TEST(Rig, SettlesAtTheStopsWhereTheLoadIsTooLightOrTooHeavy) {
   Simulation heavy(rigOptions({{"rig.load_kg", 20}}));
-  heavy.build("rig").settle({0.5});
+  heavy.build("rig");
+  heavy.settle({0.5});
   EXPECT_NEAR(heavy.robot().getState().length_mm[0], 300, 1e-9);
   Simulation light(rigOptions({{"rig.load_kg", 1e-4}, {"muscle.bead_mass_g", 1e-3}}));
-  light.build("rig").settle({1});
+  light.build("rig");
+  light.settle({1});
   EXPECT_NEAR(light.robot().getState().length_mm[0], 120, 0.01);
 }
 

@@ -21,10 +21,10 @@ namespace {
 class Swing : public Robot {
  public:
   explicit Swing(World& world) : Robot(world) {
-    auto* bar = new Box(world(), space(), {0, -200, 0}, parameter("swing.bar_g", 500, "g", 1, 1e4, "mass of the bar"), 0, 120, 10, 10);
+    auto* bar = new Box(world, space(), {0, -200, 0}, parameter("swing.bar_g", 500, "g", 1, 1e4, "mass of the bar"), 0, 120, 10, 10);
     addAngle("bar", bar->attachHinge(nullptr, {0, -200, 0}, Vector::UnitZ(), -30, 30));
     for (const double x : {-40.0, 40.0}) {
-      auto* muscle = new Muscle(world(), space(), {x, 0, 0}, {x, -60, 0}, {x, -120, 0}, {x, -190, 0}, 100, 250);
+      auto* muscle = new Muscle(world, space(), {x, 0, 0}, {x, -60, 0}, {x, -120, 0}, {x, -190, 0}, 100, 250);
       muscle->connectStartTo(nullptr);
       muscle->connectEndTo(bar);
       addActuator(muscle);

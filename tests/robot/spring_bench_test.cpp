@@ -28,7 +28,7 @@ TEST(SpringBench, TheMuscleBalancesSpringAndLoad) {
     for (const double pressure : {0.4, 0.7, 1.0}) {
       Simulation simulation(benchOptions(model));
       Robot& robot = simulation.build("spring_bench");
-      robot.settle({pressure});
+      simulation.settle({pressure});
       const double length_mm = robot.getState().length_mm[0];
       EXPECT_NEAR(robot.actuators()[0]->calculateForce(pressure, length_mm), 20 + 5 * (250 - length_mm), 1e-6) << model << pressure;
     }
@@ -50,7 +50,7 @@ TEST(SpringBench, AStifferSpringShortensTheStroke) {
     stiff.parameters.set("spring_bench.spring_N_per_mm", i == 0 ? 1.0 : 20.0, "test");
     Simulation simulation(stiff);
     Robot& robot = simulation.build("spring_bench");
-    robot.settle({0.8});
+    simulation.settle({0.8});
     lengths_mm[i] = robot.getState().length_mm[0];
   }
   EXPECT_LT(lengths_mm[0], lengths_mm[1] - 5);

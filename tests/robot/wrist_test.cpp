@@ -35,11 +35,11 @@ TEST(Wrist, ReportsTwoMusclesOneAngleAndTheHand) {
 TEST(Wrist, TheVentedHandLiesOnTheLowStopAndMuscle0RaisesIt) {
   Simulation simulation(options("line"));
   Robot& robot = simulation.build("wrist");
-  robot.settle({0, 0});
+  simulation.settle({0, 0});
   EXPECT_NEAR(robot.getState().angle_deg[0], -2, 1e-6);
-  robot.settle({1, 0.2});
+  simulation.settle({1, 0.2});
   EXPECT_GT(robot.getState().angle_deg[0], 40);
-  robot.settle({0.2, 1});
+  simulation.settle({0.2, 1});
   EXPECT_NEAR(robot.getState().angle_deg[0], -2, 1e-6);
 }
 
@@ -47,7 +47,7 @@ TEST(Wrist, EqualMusclesWithoutWeightBalanceInTheMiddle) {
   for (const char* model : {"line", "chain"}) {
     Simulation simulation(options(model, {{"wrist.hand_kg", 1e-4}, {"wrist.center_of_mass_mm", 0}, {"muscle.bead_mass_g", 1e-3}}));
     Robot& robot = simulation.build("wrist");
-    robot.settle({0.6, 0.6});
+    simulation.settle({0.6, 0.6});
     EXPECT_NEAR(robot.getState().angle_deg[0], 35, 0.01) << model;
     EXPECT_NEAR(robot.getState().length_mm[0], 200, 0.01) << model;
   }
@@ -56,7 +56,7 @@ TEST(Wrist, EqualMusclesWithoutWeightBalanceInTheMiddle) {
 TEST(Wrist, LengthsFollowTheLever) {
   Simulation simulation(options("line"));
   Robot& robot = simulation.build("wrist");
-  robot.settle({0.8, 0.4});
+  simulation.settle({0.8, 0.4});
   const State state = robot.getState();
   const double turned_rad = (state.angle_deg[0] - 35) * rad_per_deg;
   const Vector upper(25, 200, 0), lower = 25 * Vector(std::cos(turned_rad), std::sin(turned_rad), 0);

@@ -125,7 +125,7 @@ TEST(ChainStepper, TakesOtherSkeletonsContactsAndForcesLikeDWorldStep) {
   options.stepper = StepperKind::chain;
   Simulation chain(options);
   for (Simulation* simulation : {&ode, &chain}) buildMixture(*simulation);
-  dBodySetAngularVel(ode.bodies()[4]->id, 10, 20, -5);
+  dBodySetAngularVel(ode.world().bodies()[4]->id, 10, 20, -5);
   int most_contacts = 0;
   for (int i = 0; i < 400; ++i) {
     copyState(ode, chain);
@@ -211,7 +211,7 @@ TEST(ChainStepper, TakesBodiesPutTogetherLaterLikeDWorldStep) {
   for (Simulation* simulation : {&ode, &chain}) {
     for (const double x_mm : {0.0, 40.0, 300.0}) new Box(simulation->world(), simulation->space(), {x_mm, -491, 0}, 100, 0, 30, 20, 30);
     simulation->step();
-    simulation->world().primitives()[0]->compositeWithPrimitive(simulation->world().primitives()[1].get());
+    simulation->world().primitives()[0]->compositeWithPrimitive(simulation->world().primitives()[1]);
     new Box(simulation->world(), simulation->space(), {10, -472, 5}, 300, 0, 30, 20, 30);
   }
   int most_contacts = 0;

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,6 +12,9 @@
 #include "musclesim/robot/robot_effects.h"
 
 namespace musclesim {
+
+/// Neutral value of a parameter that limits something.
+inline constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 /// Everything about an effect that does not need a simulation. What `musclesim effects ID` prints and a fit needs to know.
 struct EffectInfo {

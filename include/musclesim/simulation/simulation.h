@@ -68,6 +68,9 @@ class Simulation {
   /// held; effects are part of the equilibrium. Throws BadParameter for another name or a robot that cannot settle.
   void start(const std::string& initial_state, const Action& first_command);
 
+  /// Puts the robot at rest at its frictionless equilibrium, as if the command and its effects had acted for ever. Throws BadParameter for
+  /// a robot that cannot settle.
+  void settle(const Action& command);
   /// One control step: pressures, forces, then the bodies, in substeps() internal steps.
   /// Throws Diverged with time, place and cause; the world is then frozen as it was, and further steps throw the same again. Throws
   /// Interrupted within the step if the options ask for it; the time is then still that of the step's beginning.
