@@ -20,6 +20,16 @@ std::string nameOf(PhysicsKind kind) {
   return kind == PhysicsKind::si ? "si" : kind == PhysicsKind::original ? "original" : "scaled";
 }
 
+CompositeInertia compositeInertiaFromName(const std::string& name) {
+  if (name == "exact") return CompositeInertia::exact;
+  if (name == "summed") return CompositeInertia::summed;
+  throw BadParameter("composite inertia", name, "be one of exact, summed");
+}
+
+std::string nameOf(CompositeInertia how) {
+  return how == CompositeInertia::exact ? "exact" : "summed";
+}
+
 PhysicsSettings::PhysicsSettings(PhysicsKind physics_kind, Parameters& parameters) : kind(physics_kind) {
   const bool si = kind == PhysicsKind::si;
   const double deficit = kind == PhysicsKind::original ? original_force_deficit_ratio : 1.0;
@@ -37,8 +47,9 @@ PhysicsSettings::PhysicsSettings(PhysicsKind physics_kind, Parameters& parameter
   contact_friction_N = parameters.number("physics.contact_friction_N", si ? 0 : 1e-4, "N", 0, 1e3,
                                          "limit of the tangential force of one contact, practically frictionless");
   has_contacts = parameters.choice("physics.contacts", "on", {"on", "off"}, "whether bodies touch or pass through each other") == "on";
-  composite_inertia = parameters.choice("physics.composite_inertia", si ? "exact" : "summed", {"exact", "summed"},
-                                        "inertia of composite bodies: parallel-axis theorem, or the original's sum of the parts' own");
+  composite_inertia = compositeInertiaFromName(
+      parameters.choice("physics.composite_inertia", si ? "exact" : "summed", {"exact", "summed"},
+                        "inertia of composite bodies: parallel-axis theorem, or the original's sum of the parts' own"));
   longest_internal_step_s = std::numeric_limits<double>::infinity();
   contact_compliance = contact_time_constant_s = stability_margin_ratio = geometric_inertia_ratio = slider_stop_compliance =
       hinge_stop_compliance = stop_time_constant_s = 0;

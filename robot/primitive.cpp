@@ -392,6 +392,12 @@ Joint* Primitive::attachSlider(Primitive* other, const Vector& axis) {
   return addJoint(Joint::Kind::slider, joint, other, "slider");
 }
 
+Joint& Primitive::hinge(Primitive* other, const HingeOptions& options) {
+  const Vector anchor_mm = options.anchor_mm.value_or(getPosition());
+  if (!options.limits_deg) return *attachHinge(other, anchor_mm, options.axis);
+  return *attachHinge(other, anchor_mm, options.axis, options.limits_deg->low_deg, options.limits_deg->high_deg);
+}
+
 void Primitive::requireComposable() const {
   if (body_->has_joint) throw BadParameter("composing " + name_ + ": it already has a joint; compose first, then attach and fix");
 }
@@ -421,7 +427,7 @@ void Primitive::compositePrimitives(const std::vector<Primitive*>& parts, Primit
 ///     I = sum_i R_i I_i R_i^T + m_i (|d_i|^2 E - d_i d_i^T)
 /// in the parent's axes, R_i the orientation and d_i the displacement of part i; with "summed" the original's sum of the I_i as they are.
 void Primitive::merge(Body& target, const std::vector<Body*>& bodies, Primitive& parent) {
-  const bool exact = parent.world_.physics().composite_inertia == "exact";
+  const bool exact = parent.world_.physics().composite_inertia == CompositeInertia::exact;
   double total_mass_g = 0;
   Vector center = Vector::Zero();
   std::vector<dMass> masses(bodies.size());

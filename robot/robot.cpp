@@ -29,6 +29,39 @@ double Robot::parameter(const std::string& name, double default_value, const std
   return world_.parameters().number(name, default_value, unit, minimum, maximum, description);
 }
 
+namespace {
+
+template <class Part, class Options>
+Part& named(Part* part, const Options& options) {
+  if (!options.name.empty()) part->setName(options.name);
+  return *part;
+}
+
+}  // namespace
+
+Box& Robot::addBox(const BoxOptions& o) {
+  return named(new Box(world_, space(), o.center_mm, o.mass_g, o.density_g_per_mm3, o.size_mm.x(), o.size_mm.y(), o.size_mm.z()), o);
+}
+
+Sphere& Robot::addSphere(const SphereOptions& o) {
+  return named(new Sphere(world_, space(), o.center_mm, o.mass_g, o.density_g_per_mm3, o.radius_mm), o);
+}
+
+CappedCylinder& Robot::addCapsule(const CapsuleOptions& o) {
+  return named(new CappedCylinder(world_, space(), o.center_mm, o.mass_g, o.density_g_per_mm3, o.radius_mm, o.length_mm), o);
+}
+
+Muscle& Robot::addMuscle(const MuscleOptions& o) {
+  const Vector& start = o.from.point_mm;
+  const Vector third = (o.to.point_mm - start) / 3;
+  auto* muscle =
+      new Muscle(world_, space(), start, start + third, start + 2 * third, o.to.point_mm, o.length_mm.minimum, o.length_mm.maximum);
+  muscle->connectStartTo(o.from.primitive);
+  muscle->connectEndTo(o.to.primitive);
+  addActuator(muscle);
+  return named(muscle, o);
+}
+
 void Robot::addActuator(Actuator* actuator) {
   actuators_.push_back(actuator);
 }

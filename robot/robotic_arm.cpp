@@ -87,8 +87,8 @@ Vector leverOf(const MuscleRow& muscle) {
 }  // namespace
 
 RoboticArm::RoboticArm(World& world) : Robot(world) {
-  world.setCompositeInertia(world.parameters().choice("arm.composite_inertia", world.physics().composite_inertia, {"exact", "summed"},
-                                                      "inertia of the arm's composite bones"));
+  world.setCompositeInertia(compositeInertiaFromName(world.parameters().choice(
+      "arm.composite_inertia", nameOf(world.physics().composite_inertia), {"exact", "summed"}, "inertia of the arm's composite bones")));
   const int muscle_count = world.parameters().integer("arm.muscle_count", 10, 1, static_cast<int>(robotic_arm::muscles().size()),
                                                       "number of muscles, the first ones of the table");
   Bones bones;

@@ -11,15 +11,10 @@ using namespace musclesim;
 class Lever : public Robot {
  public:
   explicit Lever(World& world) : Robot(world) {
-    auto* bar = new Box(world, space(), {0, 0, 0}, 400, 0, 200, 20, 20);  // centre, g, density, edges
-    addAngle("lever", bar->attachHinge(nullptr, {0, 0, 0}, Vector::UnitZ(), -40, 40));
-    for (const double x : {80.0, -80.0}) {
-      auto* muscle = new Muscle(world, space(), {x, -260, 0}, {x, -180, 0}, {x, -100, 0}, {x, -10, 0}, 150, 320);
-      muscle->connectStartTo(nullptr);  // the environment
-      muscle->connectEndTo(bar);
-      addActuator(muscle);
-    }
-    setHand(bar, {100, 0, 0});
+    Box& bar = addBox({.mass_g = 400, .size_mm = {200, 20, 20}});
+    reportAngle("lever", bar.hingeToWorld({.axis = Vector::UnitZ(), .limits_deg = Limits{-40, 40}}));
+    for (const double x : {80.0, -80.0}) addMuscle({.from = fixedAt({x, -260, 0}), .to = bar.at({x, -10, 0}), .length_mm = {150, 320}});
+    setHand(&bar, {100, 0, 0});
   }
 };
 

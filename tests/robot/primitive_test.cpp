@@ -281,7 +281,7 @@ TEST_F(Composite, ExactInertiaDoesNotDependOnTheOrderOfComposing) {
 }
 
 TEST_F(Composite, SummedInertiaIsThePlainSumInThePartsOwnAxes) {
-  simulation.world().setCompositeInertia("summed");
+  simulation.world().setCompositeInertia(CompositeInertia::summed);
   auto* a = box({0, 0, 0}, 12, 10, 20, 30);
   auto* b = box({40, 10, 0}, 12, 30, 20, 10);
   b->rotate(90, {0, 1, 0});

@@ -192,5 +192,59 @@ TEST(Robot, SimulationsInSeveralThreadsGiveIdenticalBits) {
   }
 }
 
+/// Swing, by named fields.
+class NamedSwing : public Robot {
+ public:
+  explicit NamedSwing(World& world) : Robot(world) {
+    Box& bar = addBox({.mass_g = 500, .center_mm = {0, -200, 0}, .size_mm = {120, 10, 10}, .name = "bar"});
+    reportAngle("bar", bar.hingeToWorld({.axis = Vector::UnitZ(), .limits_deg = Limits{-30, 30}}));
+    for (const double x : {-40.0, 40.0})
+      addMuscle({.from = fixedAt({x, 0, 0}), .to = bar.at({x, -190, 0}), .length_mm = {100, 250}, .name = "lift"});
+  }
+};
+
+TEST(RobotBuilder, MovesAsTheSameRobotBuiltByThePapersCalls) {
+  class StraightSwing : public Robot {
+   public:
+    explicit StraightSwing(World& world) : Robot(world) {
+      auto* bar = new Box(world, space(), {0, -200, 0}, 500, 0, 120, 10, 10);
+      addAngle("bar", bar->attachHinge(nullptr, {0, -200, 0}, Vector::UnitZ(), -30, 30));
+      for (const double x : {-40.0, 40.0}) {
+        const Vector top(x, 0, 0), third = (Vector(x, -190, 0) - top) / 3;
+        auto* muscle = new Muscle(world, space(), top, top + third, top + 2 * third, {x, -190, 0}, 100, 250);
+        muscle->connectStartTo(nullptr);
+        muscle->connectEndTo(bar);
+        addActuator(muscle);
+      }
+    }
+  };
+  Simulation by_name, by_call;
+  Robot &one = by_name.build<NamedSwing>(), &other = by_call.build<StraightSwing>();
+  EXPECT_EQ(by_name.world().primitives().front()->name(), "bar");
+  EXPECT_EQ(one.actuators()[1]->name(), "lift");
+  for (int step = 0; step < 50; ++step) {
+    one.step({0.7, 0.2});
+    other.step({0.7, 0.2});
+    by_name.step();
+    by_call.step();
+  }
+  EXPECT_EQ(one.getState().angle_deg[0], other.getState().angle_deg[0]);
+  EXPECT_EQ(one.getState().force_N, other.getState().force_N);
+  EXPECT_NE(one.getState().angle_deg[0], 0);
+}
+
+TEST(RobotBuilder, RefusesWhatThePapersCallsRefuse) {
+  class Massless : public Robot {
+   public:
+    explicit Massless(World& world) : Robot(world) { addSphere({.radius_mm = 5}); }
+  };
+  class Flat : public Robot {
+   public:
+    explicit Flat(World& world) : Robot(world) { addCapsule({.mass_g = 5, .radius_mm = 2}); }
+  };
+  EXPECT_THROW(Simulation().build<Massless>(), BadParameter);
+  EXPECT_THROW(Simulation().build<Flat>(), BadParameter);
+}
+
 }  // namespace
 }  // namespace musclesim

@@ -1,7 +1,10 @@
 /// A pneumatic artificial muscle: a chain of links along a Bezier curve.
 #pragma once
 
+#include <string>
+
 #include "musclesim/robot/actuator.h"
+#include "musclesim/robot/primitive.h"
 
 namespace musclesim {
 
@@ -16,6 +19,15 @@ class Muscle : public Actuator {
   /// `maximum_length`, or if a link is shorter than its two beads.
   Muscle(dWorldID world, dSpaceID space, const Vector& start, const Vector& start_control, const Vector& end_control, const Vector& end,
          double minimum_length, double maximum_length);
+};
+
+/// A straight muscle by named fields, for Robot::addMuscle.
+struct MuscleOptions {
+  Attachment from = {}, to = {};
+  struct Lengths {
+    double minimum, maximum;
+  } length_mm = {0, 0};
+  std::string name = {};  ///< default: muscle_<number>
 };
 
 }  // namespace musclesim

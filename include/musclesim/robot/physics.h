@@ -18,6 +18,15 @@ enum class PhysicsKind {
 PhysicsKind physicsFromName(const std::string& name);
 std::string nameOf(PhysicsKind kind);
 
+/// How a composite body gets its moments of inertia.
+enum class CompositeInertia {
+  exact,  ///< by the parallel-axis theorem
+  summed  ///< the original's plain sum of the parts' own
+};
+/// "exact" or "summed". Throws BadParameter for any other name.
+CompositeInertia compositeInertiaFromName(const std::string& name);
+std::string nameOf(CompositeInertia how);
+
 /// Constants of the world, read from the parameters "physics.*"; their defaults depend on the kind.
 struct PhysicsSettings {
   PhysicsSettings(PhysicsKind kind, Parameters& parameters);
@@ -38,7 +47,7 @@ struct PhysicsSettings {
   double slider_stop_compliance;      ///< compliance of the links' slider stops, mm per world unit of force; 0 = ODE's own softness
   double hinge_stop_compliance;       ///< compliance of the stops of the hinges between links, rad per world unit of torque
   double stop_time_constant_s;        ///< damping of these stops over their stiffness
-  std::string composite_inertia;      ///< "exact" or "summed" (the original's plain sum of the parts' inertias)
+  CompositeInertia composite_inertia;
 
   /// ODE's error reduction (ERP) for a step of length `step_s`: the ratio, or min(0.8, rate * step).
   double errorReductionPerStep(double step_s) const;

@@ -7,6 +7,7 @@
 #include <ode/ode.h>
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,19 @@ struct Shape {
 /// Limits of one joint axis in degrees.
 struct Limits {
   double low_deg, high_deg;
+};
+
+/// A point of the world in the pose as built, mm, and the primitive that it is fixed to (null: the environment).
+struct Attachment {
+  Primitive* primitive = nullptr;
+  Vector point_mm = Vector::Zero();
+};
+
+/// A hinge by named fields.
+struct HingeOptions {
+  std::optional<Vector> anchor_mm = {};   ///< a point of the world; default: the centre of mass of the body
+  Vector axis = Vector::UnitZ();          ///< a direction in the world
+  std::optional<Limits> limits_deg = {};  ///< default: none
 };
 
 /// One part of a robot's skeleton.
@@ -71,6 +85,13 @@ class Primitive : public WorldPart {
   Joint* attachUniversal(Primitive* other, const Vector& anchor, const Vector& axis);
   Joint* attachUniversal(Primitive* other, const Vector& anchor, const Vector& axis, double low_deg, double high_deg);
 
+  /// The same joint as attachHinge, by named fields:
+  ///     bar.hingeToWorld({.axis = Vector::UnitZ(), .limits_deg = Limits{-40, 40}});
+  Joint& hingeToWorld(const HingeOptions& options) { return hinge(nullptr, options); }
+  Joint& hingeTo(Primitive& other, const HingeOptions& options) { return hinge(&other, options); }
+  /// A point of the world, fixed to this primitive: where a muscle starts or ends.
+  Attachment at(const Vector& point_mm) { return {this, point_mm}; }
+
   /// Slider along an axis of the world; it also keeps the body from turning.
   Joint* attachSlider(Primitive* other, const Vector& axis);
 
@@ -97,6 +118,7 @@ class Primitive : public WorldPart {
 
  private:
   Joint* addJoint(Joint::Kind kind, dJointID joint, Primitive* other, const std::string& what);
+  Joint& hinge(Primitive* other, const HingeOptions& options);
   void requireComposable() const;
   static void merge(Body& target, const std::vector<Body*>& bodies, Primitive& parent);
 
@@ -107,6 +129,27 @@ class Primitive : public WorldPart {
   Body* body_ = nullptr;
   Color color_;
   std::string name_;
+};
+
+/// Primitives by named fields, for Robot::addBox and its like. Either the mass or the density is given.
+struct BoxOptions {
+  double mass_g = 0, density_g_per_mm3 = 0;
+  Vector center_mm = Vector::Zero();  ///< in the world
+  Vector size_mm = Vector::Zero();    ///< edges along x, y, z
+  std::string name = {};
+};
+struct SphereOptions {
+  double mass_g = 0, density_g_per_mm3 = 0;
+  Vector center_mm = Vector::Zero();
+  double radius_mm = 0;
+  std::string name = {};
+};
+/// The capsule lies along z; `length_mm` is without the caps.
+struct CapsuleOptions {
+  double mass_g = 0, density_g_per_mm3 = 0;
+  Vector center_mm = Vector::Zero();
+  double radius_mm = 0, length_mm = 0;
+  std::string name = {};
 };
 
 /// A box with edges x, y, z (mm).

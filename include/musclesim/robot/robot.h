@@ -9,6 +9,7 @@
 #include "musclesim/base/color.h"
 #include "musclesim/base/parameters.h"
 #include "musclesim/robot/actuator.h"
+#include "musclesim/robot/muscle.h"
 #include "musclesim/robot/primitive.h"
 #include "musclesim/robot/robot_effects.h"
 #include "musclesim/robot/state.h"
@@ -84,6 +85,21 @@ class Robot {
   /// A parameter of this robot; see Parameters::number.
   double parameter(const std::string& name, double default_value, const std::string& unit, double minimum, double maximum,
                    const std::string& description) const;
+  // Building by named fields, beside the paper's calls. Everything belongs to the world.
+  //     Box& bar = addBox({.mass_g = 400, .size_mm = {200, 20, 20}});
+  //     reportAngle("lever", bar.hingeToWorld({.limits_deg = Limits{-40, 40}}));
+  //     addMuscle({.from = fixedAt({80, -260, 0}), .to = bar.at({80, -10, 0}), .length_mm = {150, 320}});
+  /// These throw BadParameter as the constructors of the primitives do.
+  Box& addBox(const BoxOptions& options);
+  Sphere& addSphere(const SphereOptions& options);
+  CappedCylinder& addCapsule(const CapsuleOptions& options);
+  /// A point of the environment.
+  static Attachment fixedAt(const Vector& point_mm) { return {nullptr, point_mm}; }
+  /// Builds a straight muscle, connects both ends and adds it as the next actuator. Throws BadParameter as Muscle.
+  Muscle& addMuscle(const MuscleOptions& options);
+  /// The same as addAngle.
+  void reportAngle(const std::string& name, const Joint& joint, int axis = 0) { addAngle(name, &joint, axis); }
+
   /// Actuators in the order of the action's entries.
   void addActuator(Actuator* actuator);
   /// A joint whose angle is reported as angle_<name>_deg.

@@ -67,8 +67,8 @@ class World {
   dSpaceID space() const { return space_; }
   Parameters& parameters() { return parameters_; }
   const PhysicsSettings& physics() const { return physics_; }
-  /// How composites built from now on get their inertia: "exact" or "summed".
-  void setCompositeInertia(const std::string& how) { physics_.composite_inertia = how; }
+  /// How composites built from now on get their inertia.
+  void setCompositeInertia(CompositeInertia how) { physics_.composite_inertia = how; }
   /// Seed of everything random; each part derives a stream of its own from it.
   std::uint64_t seed() const { return seed_; }
 
