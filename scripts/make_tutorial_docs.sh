@@ -31,7 +31,7 @@ text <<'TEXT'
 
 <!-- Made by scripts/make_tutorial_docs.sh, which ran every command; do not edit. -->
 
-You have a muscle on a bench, a logger that writes tables, and a simulation that does not do what the machine does. This page goes from the tables to a simulation that does:
+You have a muscle on a bench, a logger that writes tables, and a simulation that does not do what the machine does. This page leads from the tables to a simulation that moves like the machine:
 
 ```
 musclesim import logger1.csv bench.toml bench1.csv                 # a table becomes a recording
@@ -120,7 +120,7 @@ The length is off by forty times the noise. Why?
 
 ## 4. The diagnosis
 
-Nobody measured the spring, so `--tune` names it. The first two recordings are fitted, the last one only measures the result. (With a real machine, the last recording should differ more from the others than here.) The fourth recording is kept for the end.
+Nobody measured the spring, so `--tune` names it. The program fits the first two recordings (`bench1`, `bench2`) and uses the third one (`bench3`) only to measure the result. (With a real machine, this last recording should differ more from the others than it does here.) We keep the fourth recording for section 5.
 
 TEXT
 show 'musclesim diagnose bench1.csv bench2.csv bench3.csv --tune spring_bench.spring_N_per_mm --out answer'
@@ -128,9 +128,9 @@ text <<'TEXT'
 
 Read it from the top:
 
-- *where*: the stage. If the measured pressures are the model's commands, the gap of the length is reproduced; so the gap arises before the force. Command and pressure can then be told apart only by the shape of the gap.
+- *where*: the stage at which the gap arises. If the model is given the measured pressures instead of the commands, it reproduces the measured length; so the gap arises before the force. Only the shape of the gap can then tell whether it arises in command or in pressure.
 - *which*: the effects with their probabilities. "None of these" is a possible answer.
-- *how far*: the gap reduction on `bench3.csv`, which neither fitting nor choosing has seen. The nominal refit is the reduction by the model's own numbers without any effect, the sham that by a disturbance without meaning.
+- *how far*: the gap reduction on `bench3.csv`, which neither fitting nor choosing has seen. "Nominal refit" is the reduction that the model's own numbers achieve without any effect. "Sham" is the reduction that a meaningless disturbance achieves.
 
 `answer/report.html` shows the same with curves; drag over one to zoom. [Diagnosing](diagnosing.md) explains each number and when not to believe it.
 
@@ -157,7 +157,7 @@ text <<'TEXT'
 
 ## When it is not that easy
 
-Real machines have several causes at once, laws that differ from any catalogue's, and faulty data. The [case studies](../research/case_studies.md) show what remains then and what to do:
+Real machines have several causes at once, laws that differ from any catalogue's, and faulty data. The [case studies](../research/case_studies.md) show how much of the gap then remains and what to do:
 
 - `--max-effects 3` looks for further effects. `--effects answer/effects.json --config answer/nominal.toml` includes the findings in the next diagnosis.
 - A gap that grows with time may have another cause than creep or drift. If readings lag more and more behind the commands, a clock is slow: look at the curves in the report before you believe a number.
