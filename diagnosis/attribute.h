@@ -82,7 +82,7 @@ class Attributor {
   void weakenStart(Candidate& candidate) const;
   bool gainsOnScreening(const Candidate& candidate) const;
   bool isProbableEnough(const FittedHypothesis& fitted) const;
-  void fitTogether(std::vector<Candidate> candidates, PruningMargins reach);
+  void fitTogether(std::vector<Candidate> candidates, PruningMargins margins);
   std::vector<std::size_t> survivors(const std::vector<double>& log_misfit, std::size_t count, bool from_every_stage) const;
   Eigen::VectorXd startOf(std::size_t index, const Sensitivity& sensitivity) const;
   void fitSingles();
