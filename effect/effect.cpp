@@ -34,8 +34,8 @@ void MuscleRatioEffect::attach(const EffectPlace& place) {
   actuator_ = place.robot.actuators()[muscle_];
 }
 
-void MuscleRatioEffect::apply(std::vector<double>& ratios, const Moment& moment) {
-  ratios[muscle_] = output(ratios[muscle_], moment);
+void MuscleRatioEffect::apply(std::vector<double>& ratios, const StepTime& time) {
+  ratios[muscle_] = output(ratios[muscle_], time);
 }
 
 void MuscleRatioEffect::settle(std::vector<double>& ratios) {

@@ -22,7 +22,7 @@ double ForceStack::at(std::size_t level, const MuscleInput& input) {
 void ForceStack::advance(double h_s) {
   for (std::size_t i = 0; i < effects_.size(); ++i) {
     MuscleInput input = seen_[i];
-    input.moment.h_s = h_s;
+    input.time.h_s = h_s;
     effects_[i]->advance(input);
   }
 }

@@ -47,25 +47,25 @@ void SensorStage::reset() {
   for (const Sensor& sensor : sensors_) sensor.effect->reset();
 }
 
-void SensorStage::track(const Robot& robot, const Moment& moment) {
+void SensorStage::track(const Robot& robot, const StepTime& time) {
   if (!tracks_) return;
   std::vector<double> values = robot.signalValues(robot.truth());
   for (std::size_t i = 0; i < sensor_count_; ++i) {
     const Sensor& sensor = sensors_[i];
     double& value = values[static_cast<std::size_t>(sensor.signal)];
-    sensor.effect->track(value, moment);
-    value = sensor.effect->reading(value, moment, sample_);
+    sensor.effect->track(value, time);
+    value = sensor.effect->reading(value, time, sample_);
   }
 }
 
-void SensorStage::read(const Robot& robot, State& state, const Moment& moment) {
+void SensorStage::read(const Robot& robot, State& state, const StepTime& time) {
   if (sensors_.empty()) return;
-  if (sample_ < 0 || moment.clock_s != sample_clock_s_) ++sample_;
-  sample_clock_s_ = moment.clock_s;
+  if (sample_ < 0 || time.clock_s != sample_clock_s_) ++sample_;
+  sample_clock_s_ = time.clock_s;
   std::vector<double> values = robot.signalValues(state);
   for (const Sensor& sensor : sensors_) {
     double& value = values[static_cast<std::size_t>(sensor.signal)];
-    value = sensor.effect->reading(value, moment, sample_);
+    value = sensor.effect->reading(value, time, sample_);
   }
   robot.setSignalValues(values, state);
 }

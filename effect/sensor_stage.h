@@ -21,8 +21,8 @@ class SensorStage {
   bool empty() const { return sensors_.empty(); }
   void reset();
   /// Passes the present signals to the sensor effects that keep a history.
-  void track(const Robot& robot, const Moment& moment);
-  void read(const Robot& robot, State& state, const Moment& moment);
+  void track(const Robot& robot, const StepTime& time);
+  void read(const Robot& robot, State& state, const StepTime& time);
 
  private:
   struct Sensor {

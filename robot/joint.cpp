@@ -79,7 +79,7 @@ Vector Joint::separation() const {
   return rotationOf(first).transpose() * (other - positionOf(first));
 }
 
-double Joint::gapMm() const {
+double Joint::constraintErrorMm() const {
   dVector3 on_first, on_second;
   switch (kind_) {
     case Kind::ball:

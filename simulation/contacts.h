@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "near_pairs.h"
+#include "broad_phase.h"
 
 namespace musclesim {
 
@@ -39,7 +39,7 @@ class Contacts {
   void add(dGeomID first, dGeomID second);
 
   dWorldID world_;
-  NearPairs near_;
+  BroadPhase near_;
   double friction_limit_;
   dSurfaceParameters surface_ = {};
   dJointGroupID joints_;

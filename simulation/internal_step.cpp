@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "../robot/actuator_step.h"
 #include "bone_mobility.h"
 #include "musclesim/base/units.h"
 #include "musclesim/robot/line_of_pull.h"
@@ -61,7 +62,7 @@ double longestLineStepS(const PhysicsSettings& physics, const std::vector<std::u
 
 double longestChainStepS(const std::vector<Actuator*>& actuators) {
   double fastest = 0;
-  for (const auto& actuator : actuators) fastest = std::max(fastest, actuator->fastestSwayRadPerS());
+  for (const auto& actuator : actuators) fastest = std::max(fastest, fastestSwayRadPerS(*actuator));
   return fastest > 0 ? 2 / fastest : std::numeric_limits<double>::infinity();
 }
 

@@ -11,7 +11,7 @@
 namespace musclesim {
 
 /// Number of internal steps per control step that keeps the muscles stable. For chains no internal step is longer than
-///     margin * 2 / w,   w the fastest sway of neighbouring links (Actuator::fastestSwayRadPerS).
+///     margin * 2 / w,   w the fastest sway of neighbouring links (fastestSwayRadPerS).
 /// 2 / w is the stability limit of an explicit force on beads without additional inertia; that inertia is a further safety. For line
 /// muscles the bound is 0.6 h with h^2 K / 4 + h D / 2 = 1, where K and D are the largest rates of their stiffness and friction on the
 /// bones. No internal step is longer than `physics.longest_internal_step_s`; without that bound the control step is the internal step.

@@ -271,7 +271,7 @@ void Simulation::requireWhole() {
 TornJoint Simulation::tornMost() const {
   TornJoint largest;
   for (const auto& joint : world_->joints()) {
-    const double gap_mm = joint->gapMm();
+    const double gap_mm = joint->constraintErrorMm();
     if (!(gap_mm <= largest.gap_mm)) largest = {gap_mm, joint.get()};
   }
   return largest;

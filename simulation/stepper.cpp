@@ -4,7 +4,7 @@
 
 #include <mutex>
 
-#include "musclesim/robot/actuator.h"
+#include "../robot/actuator_step.h"
 
 namespace musclesim {
 
@@ -16,8 +16,8 @@ void BodyBounds::refuse(dBodyID body, const Vector& position_mm, const Vector& v
 
 void Stepper::applyForces(const Actuators& actuators, double h_s) {
   for (const auto& actuator : actuators) {
-    actuator->applyForces();
-    actuator->applyBeadInertia(h_s);
+    musclesim::applyForces(*actuator);
+    applyBeadInertia(*actuator, h_s);
   }
 }
 

@@ -13,9 +13,9 @@ class KinkedHose : public MuscleRatioEffect {
   explicit KinkedHose(const EffectValues& values) : tau_s_(values["time_constant_s"]), kink_mm_(values["kink_length_mm"]) {}
 
  private:
-  double output(double u, const Moment& moment) override {
+  double output(double u, const StepTime& time) override {
     const bool kinked = actuator().lengthMm() < kink_mm_ && tau_s_ > 0;
-    return p_ = kinked ? u + (p_ - u) * std::exp(-moment.h_s / tau_s_) : u;
+    return p_ = kinked ? u + (p_ - u) * std::exp(-time.h_s / tau_s_) : u;
   }
   double settled(double u) override { return p_ = u; }
 

@@ -21,7 +21,7 @@ struct Wall {
 class JointContact final : public JointEffect {
  public:
   explicit JointContact(const Wall& wall) : wall_(wall) {}
-  void apply(const Moment&) override { addTorqueNm(wall_.push(angleDeg())); }
+  void apply(const StepTime&) override { addTorqueNm(wall_.push(angleDeg())); }
 
  private:
   Wall wall_;
@@ -30,7 +30,7 @@ class JointContact final : public JointEffect {
 class HandContact final : public HandEffect {
  public:
   HandContact(const Wall& wall, const Vector& axis) : wall_(wall), axis_(axis) {}
-  void apply(const Moment&) override { addForceN(wall_.push(pointMm().dot(axis_)) * axis_); }
+  void apply(const StepTime&) override { addForceN(wall_.push(pointMm().dot(axis_)) * axis_); }
 
  private:
   Wall wall_;
@@ -44,7 +44,7 @@ class Contact final : public BodyEffect {
   static EffectInfo info();
 
   void attach(const EffectPlace& place) override;
-  void apply(const Moment& moment) override { contact_->apply(moment); }
+  void apply(const StepTime& time) override { contact_->apply(time); }
 
  private:
   Wall wallAt(const std::string& plane, const std::string& stiffness) const;

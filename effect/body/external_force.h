@@ -12,7 +12,7 @@ class ExternalForce final : public HandEffect {
   explicit ExternalForce(const Vector& force_N) : force_N_(force_N) {}
   static EffectInfo info();
 
-  void apply(const Moment&) override { addForceN(force_N_); }
+  void apply(const StepTime&) override { addForceN(force_N_); }
 
  private:
   Vector force_N_;

@@ -38,9 +38,9 @@ void JointCoulombFriction::attach(const EffectPlace& place) {
   dJointSetHingeParam(joint().id(), dParamCFM, creep_rad_per_s / largest);
 }
 
-void JointCoulombFriction::apply(const Moment& moment) {
-  if (presliding_rad_ == 0 || !(moment.h_s > 0)) return;  // friction does not shift an equilibrium
-  stretch_rad_ = std::clamp(stretch_rad_ + moment.h_s * rateRadPerS(), -presliding_rad_, presliding_rad_);
+void JointCoulombFriction::apply(const StepTime& time) {
+  if (presliding_rad_ == 0 || !(time.h_s > 0)) return;  // friction does not shift an equilibrium
+  stretch_rad_ = std::clamp(stretch_rad_ + time.h_s * rateRadPerS(), -presliding_rad_, presliding_rad_);
   addTorqueNm(-torque_Nm_ * stretch_rad_ / presliding_rad_);
 }
 

@@ -18,7 +18,7 @@ class JointCoulombFriction final : public JointEffect {
 
   void attach(const EffectPlace& place) override;
   void reset() override { stretch_rad_ = 0; }
-  void apply(const Moment& moment) override;
+  void apply(const StepTime& time) override;
 
  private:
   double torque_Nm_, presliding_rad_;

@@ -19,7 +19,7 @@ EffectInfo JointStiffness::info() {
           }};
 }
 
-void JointStiffness::apply(const Moment&) {
+void JointStiffness::apply(const StepTime&) {
   addTorqueNm(-stiffness_ * (angleDeg() - rest_deg_) * rad_per_deg);
 }
 

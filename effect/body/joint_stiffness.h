@@ -13,7 +13,7 @@ class JointStiffness final : public JointEffect {
   JointStiffness(double stiffness_Nm_per_rad, double rest_deg) : stiffness_(stiffness_Nm_per_rad), rest_deg_(rest_deg) {}
   static EffectInfo info();
 
-  void apply(const Moment&) override;
+  void apply(const StepTime&) override;
 
  private:
   double stiffness_, rest_deg_;

@@ -15,7 +15,7 @@ class JointViscousFriction final : public JointEffect {
   explicit JointViscousFriction(double damping_Nms_per_rad) : damping_(damping_Nms_per_rad) {}
   static EffectInfo info();
 
-  void apply(const Moment&) override { addTorqueNm(-damping_ * rateRadPerS()); }
+  void apply(const StepTime&) override { addTorqueNm(-damping_ * rateRadPerS()); }
 
  private:
   double damping_;

@@ -13,7 +13,7 @@ class ChannelSwap final : public RatioEffect {
   static EffectInfo info();
 
   void attach(const EffectPlace& place) override;
-  void apply(std::vector<double>& ratios, const Moment&) override { settle(ratios); }
+  void apply(std::vector<double>& ratios, const StepTime&) override { settle(ratios); }
   void settle(std::vector<double>& ratios) override { std::swap(ratios[first_], ratios[second_]); }
 
  private:

@@ -14,7 +14,7 @@ class CommandDeadBand final : public MuscleRatioEffect {
   static EffectInfo info();
 
  private:
-  double output(double input, const Moment&) override { return settled(input); }
+  double output(double input, const StepTime&) override { return settled(input); }
   double settled(double input) override { return input < threshold_ ? 0 : input; }
 
   double threshold_;

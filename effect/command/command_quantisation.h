@@ -16,7 +16,7 @@ class CommandQuantisation final : public MuscleRatioEffect {
   static EffectInfo info();
 
  private:
-  double output(double input, const Moment&) override { return settled(input); }
+  double output(double input, const StepTime&) override { return settled(input); }
   double settled(double input) override;
 
   double intervals_;       ///< m

@@ -14,10 +14,10 @@ EffectInfo TransportDelay::info() {
           .make = [](const EffectValues& values) { return std::make_unique<TransportDelay>(values["delay_s"]); }};
 }
 
-double TransportDelay::output(double input, const Moment& moment) {
-  history_.hold(moment.clock_s, input);
-  const double from_s = moment.clock_s - delay_s_;
-  const double result = moment.h_s > 0 ? history_.mean(from_s, from_s + moment.h_s) : history_.at(from_s);
+double TransportDelay::output(double input, const StepTime& time) {
+  history_.hold(time.clock_s, input);
+  const double from_s = time.clock_s - delay_s_;
+  const double result = time.h_s > 0 ? history_.mean(from_s, from_s + time.h_s) : history_.at(from_s);
   history_.forgetBefore(from_s);
   return result;
 }

@@ -19,7 +19,7 @@ class TransportDelay final : public MuscleRatioEffect {
   void reset() override { history_.clear(); }
 
  private:
-  double output(double input, const Moment& moment) override;
+  double output(double input, const StepTime& time) override;
   double settled(double input) override;
 
   double delay_s_;

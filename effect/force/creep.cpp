@@ -32,7 +32,7 @@ double Creep::tensionN(const MuscleInput& input, const ForceBelow& below) const 
 
 void Creep::advance(const MuscleInput& input) {
   const double end_mm = finalMm(input.length_mm);
-  creep_mm_ = end_mm + (creep_mm_ - end_mm) * std::exp(-input.moment.h_s * (1 + amount_) / tau_s_);
+  creep_mm_ = end_mm + (creep_mm_ - end_mm) * std::exp(-input.time.h_s * (1 + amount_) / tau_s_);
 }
 
 }  // namespace musclesim

@@ -19,7 +19,7 @@ EffectInfo ForceDrift::info() {
 }
 
 double ForceDrift::tensionN(const MuscleInput& input, const ForceBelow& below) const {
-  const double time_min = std::max(0.0, input.moment.clock_s) / s_per_min;
+  const double time_min = std::max(0.0, input.time.clock_s) / s_per_min;
   return below(input) * std::max(0.0, 1 + rate_per_min_ * time_min);
 }
 

@@ -52,7 +52,7 @@ double SeriesElasticity::tensionN(const MuscleInput& input, const ForceBelow& be
 
 void SeriesElasticity::advance(const MuscleInput& input) {
   stretch_before_mm_ = stretch_mm_;
-  step_s_ = input.moment.h_s;
+  step_s_ = input.time.h_s;
 }
 
 }  // namespace musclesim

@@ -43,12 +43,12 @@ double ViscousLoss::lossAfter(double rate_mm_per_s, double h_s) const {
 
 double ViscousLoss::tensionN(const MuscleInput& input, const ForceBelow& below) const {
   // A query without a step (h_s = 0) returns the tension of the next step.
-  return below(input) + lossAfter(input.rate_mm_per_s, input.moment.h_s > 0 ? input.moment.h_s : step_s_);
+  return below(input) + lossAfter(input.rate_mm_per_s, input.time.h_s > 0 ? input.time.h_s : step_s_);
 }
 
 void ViscousLoss::advance(const MuscleInput& input) {
-  loss_N_ = lossAfter(input.rate_mm_per_s, input.moment.h_s);
-  step_s_ = input.moment.h_s;
+  loss_N_ = lossAfter(input.rate_mm_per_s, input.time.h_s);
+  step_s_ = input.time.h_s;
 }
 
 }  // namespace musclesim

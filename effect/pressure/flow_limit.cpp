@@ -24,14 +24,14 @@ EffectInfo FlowLimit::info() {
           }};
 }
 
-double FlowLimit::output(double input, const Moment& moment) {
+double FlowLimit::output(double input, const StepTime& time) {
   const double rate_per_s = input > pressure_ ? fill_per_s_ : vent_per_s_;
   if (std::isinf(rate_per_s)) return pressure_ = input;  // also for a query with h_s = 0, where infinity times 0 would be NaN
   const double distance = std::abs(input - pressure_), sign = input > pressure_ ? 1 : -1;
   const double full_flow_s = std::max(0.0, distance - band_) / rate_per_s;  // time until p reaches the band
-  if (full_flow_s >= moment.h_s) return pressure_ += sign * rate_per_s * moment.h_s;
+  if (full_flow_s >= time.h_s) return pressure_ += sign * rate_per_s * time.h_s;
   if (band_ == 0) return pressure_ = input;
-  const double left = std::min(distance, band_) * std::exp(-(moment.h_s - full_flow_s) * rate_per_s / band_);
+  const double left = std::min(distance, band_) * std::exp(-(time.h_s - full_flow_s) * rate_per_s / band_);
   return pressure_ = input - sign * left;
 }
 

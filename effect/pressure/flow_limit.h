@@ -18,7 +18,7 @@ class FlowLimit final : public MuscleRatioEffect {
   static EffectInfo info();
 
  private:
-  double output(double input, const Moment& moment) override;
+  double output(double input, const StepTime& time) override;
   double settled(double input) override { return pressure_ = input; }
 
   double fill_per_s_, vent_per_s_, band_;

@@ -29,10 +29,10 @@ double Leak::lossPerS(double pressure) const {
   return exponent_ == 1 ? leak_per_s_ : leak_per_s_ * std::pow(std::max(pressure, least_pressure), exponent_ - 1);
 }
 
-double Leak::output(double input, const Moment& moment) {
+double Leak::output(double input, const StepTime& time) {
   const double loss_per_s = lossPerS(pressure_);
   const double held = input / (1 + loss_per_s * regulator_s_);
-  return pressure_ = held + (pressure_ - held) * std::exp(-moment.h_s * (1 / regulator_s_ + loss_per_s));
+  return pressure_ = held + (pressure_ - held) * std::exp(-time.h_s * (1 / regulator_s_ + loss_per_s));
 }
 
 /// Solves p + tau_r k p^n = u by bisection; the left side grows with p.

@@ -21,7 +21,7 @@ class Leak final : public MuscleRatioEffect {
   static EffectInfo info();
 
  private:
-  double output(double input, const Moment& moment) override;
+  double output(double input, const StepTime& time) override;
   double settled(double input) override;
   /// k p^(n-1)
   double lossPerS(double pressure) const;

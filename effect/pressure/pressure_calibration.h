@@ -16,7 +16,7 @@ class PressureCalibration final : public MuscleRatioEffect {
   static EffectInfo info();
 
  private:
-  double output(double input, const Moment&) override { return settled(input); }
+  double output(double input, const StepTime&) override { return settled(input); }
   double settled(double input) override { return std::max(0.0, gain_ * input + offset_); }
 
   double gain_, offset_;

@@ -30,8 +30,8 @@ void SupplyDroop::settle(std::vector<double>& ratios) {
   limit(ratios);
 }
 
-void SupplyDroop::apply(std::vector<double>& ratios, const Moment& moment) {
-  const double kept = std::exp(-moment.h_s / filter_s);
+void SupplyDroop::apply(std::vector<double>& ratios, const StepTime& time) {
+  const double kept = std::exp(-time.h_s / filter_s);
   for (std::size_t i = 0; i < ratios.size(); ++i) filtered_[i] = ratios[i] + (filtered_[i] - ratios[i]) * kept;
   limit(ratios);
 }

@@ -15,7 +15,7 @@ class SupplyDroop final : public RatioEffect {
   explicit SupplyDroop(double droop) : droop_(droop) {}
   static EffectInfo info();
 
-  void apply(std::vector<double>& ratios, const Moment& moment) override;
+  void apply(std::vector<double>& ratios, const StepTime& time) override;
   void settle(std::vector<double>& ratios) override;
 
  private:

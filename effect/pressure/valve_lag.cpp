@@ -23,15 +23,15 @@ EffectInfo ValveLag::info() {
           }};
 }
 
-double ValveLag::output(double input, const Moment& moment) {
+double ValveLag::output(double input, const StepTime& time) {
   constexpr double equal = 1e-6;
   const double first_s = (1 - share_) * (input > valve_ ? fill_s_ : vent_s_);
-  const double first_left = first_s > 0 ? std::exp(-moment.h_s / first_s) : 0, valve_off = valve_ - input;
+  const double first_left = first_s > 0 ? std::exp(-time.h_s / first_s) : 0, valve_off = valve_ - input;
   valve_ = input + valve_off * first_left;
   const double second_s = share_ * (valve_ > pressure_ ? fill_s_ : vent_s_);
   if (second_s <= 0) return pressure_ = valve_;
-  const double second_left = std::exp(-moment.h_s / second_s), off = pressure_ - input;
-  if (std::abs(first_s - second_s) < equal * second_s) return pressure_ = input + (off + valve_off * moment.h_s / second_s) * second_left;
+  const double second_left = std::exp(-time.h_s / second_s), off = pressure_ - input;
+  if (std::abs(first_s - second_s) < equal * second_s) return pressure_ = input + (off + valve_off * time.h_s / second_s) * second_left;
   const double shared = valve_off * first_s / (first_s - second_s);
   return pressure_ = input + shared * first_left + (off - shared) * second_left;
 }

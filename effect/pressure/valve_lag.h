@@ -18,7 +18,7 @@ class ValveLag final : public MuscleRatioEffect {
   static EffectInfo info();
 
  private:
-  double output(double input, const Moment& moment) override;
+  double output(double input, const StepTime& time) override;
   double settled(double input) override { return valve_ = pressure_ = input; }
 
   double fill_s_, vent_s_, share_;

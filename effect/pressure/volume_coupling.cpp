@@ -37,14 +37,14 @@ double VolumeCoupling::relativeVolumeRatePerS() const {
   return -2 * r * lengthRateMmPerS() / range_mm / (1 + rest_volume_ratio_ - r * r);
 }
 
-double VolumeCoupling::output(double input, const Moment& moment) {
+double VolumeCoupling::output(double input, const StepTime& time) {
   const double squeeze_per_s = exponent_ * relativeVolumeRatePerS();
   const double rate_per_s = 1 / regulator_s_ + squeeze_per_s;
   const double drive_per_s = input / regulator_s_ - squeeze_per_s * atmosphere_ratio;
-  const double x = rate_per_s * moment.h_s;
+  const double x = rate_per_s * time.h_s;
   // p(h) = p e^-x + drive h (1 - e^-x)/x. x may be negative: the muscle may shrink faster than the valve lets air out.
   const double share = std::abs(x) > 1e-12 ? -std::expm1(-x) / x : 1;
-  pressure_ = std::max(0.0, pressure_ * std::exp(-x) + drive_per_s * moment.h_s * share);
+  pressure_ = std::max(0.0, pressure_ * std::exp(-x) + drive_per_s * time.h_s * share);
   return pressure_;
 }
 

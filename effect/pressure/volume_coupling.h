@@ -20,7 +20,7 @@ class VolumeCoupling final : public MuscleRatioEffect {
   static EffectInfo info();
 
  private:
-  double output(double input, const Moment& moment) override;
+  double output(double input, const StepTime& time) override;
   double settled(double input) override { return pressure_ = input; }
   double relativeVolumeRatePerS() const;
 

@@ -28,12 +28,12 @@ void SensorBacklash::attach(const EffectPlace& place) {
     throw BadParameter("sensor_backlash on " + place.component + ": it needs width_deg for an angle, width_mm for a length or position");
 }
 
-double SensorBacklash::reading(double value, const Moment&, long) {
+double SensorBacklash::reading(double value, const StepTime&, long) {
   return at_start_ ? value : std::clamp(followed_, value - width_ / 2, value + width_ / 2);
 }
 
-void SensorBacklash::track(double value, const Moment& moment) {
-  followed_ = reading(value, moment, 0);
+void SensorBacklash::track(double value, const StepTime& time) {
+  followed_ = reading(value, time, 0);
   at_start_ = false;
 }
 

@@ -16,8 +16,8 @@ class SensorBacklash final : public SensorEffect {
   /// Throws BadParameter if the effect is placed on a single signal and the width for that signal's unit is 0.
   void attach(const EffectPlace& place) override;
   void reset() override { at_start_ = true; }
-  double reading(double value, const Moment&, long) override;
-  void track(double value, const Moment& moment) override;
+  double reading(double value, const StepTime&, long) override;
+  void track(double value, const StepTime& time) override;
   bool tracks() const override { return true; }
 
  private:

@@ -13,7 +13,7 @@ class SensorBias final : public SensorEffect {
   explicit SensorBias(double offset) : offset_(offset) {}
   static EffectInfo info();
 
-  double reading(double value, const Moment&, long) override { return value + offset_; }
+  double reading(double value, const StepTime&, long) override { return value + offset_; }
 
  private:
   double offset_;

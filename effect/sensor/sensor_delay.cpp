@@ -17,15 +17,15 @@ EffectInfo SensorDelay::info() {
           .make = [](const EffectValues& values) { return std::make_unique<SensorDelay>(values["delay_s"], values["filter_share"]); }};
 }
 
-double SensorDelay::reading(double value, const Moment& moment, long) {
-  return history_.empty() ? value : history_.at(moment.clock_s - dead_time_s_);
+double SensorDelay::reading(double value, const StepTime& time, long) {
+  return history_.empty() ? value : history_.at(time.clock_s - dead_time_s_);
 }
 
-void SensorDelay::track(double value, const Moment& moment) {
+void SensorDelay::track(double value, const StepTime& time) {
   const bool passes = history_.empty() || !(filter_s_ > 0);
-  filtered_ = passes ? value : value + (filtered_ - value) * std::exp(-moment.h_s / filter_s_);
-  history_.add(moment.clock_s, filtered_);
-  history_.forgetBefore(moment.clock_s - dead_time_s_);
+  filtered_ = passes ? value : value + (filtered_ - value) * std::exp(-time.h_s / filter_s_);
+  history_.add(time.clock_s, filtered_);
+  history_.forgetBefore(time.clock_s - dead_time_s_);
 }
 
 }  // namespace musclesim

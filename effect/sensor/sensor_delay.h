@@ -16,8 +16,8 @@ class SensorDelay final : public SensorEffect {
   static EffectInfo info();
 
   void reset() override { history_.clear(); }
-  double reading(double value, const Moment& moment, long sample) override;
-  void track(double value, const Moment& moment) override;
+  double reading(double value, const StepTime& time, long sample) override;
+  void track(double value, const StepTime& time) override;
   bool tracks() const override { return true; }
 
  private:

@@ -38,7 +38,7 @@ bool SensorDropout::drawGap() {
   return random_->uniform() < (in_gap_ ? 1 - 1 / mean_gap_samples_ : begin);
 }
 
-double SensorDropout::reading(double value, const Moment&, long sample) {
+double SensorDropout::reading(double value, const StepTime&, long sample) {
   if (sample != sample_) {
     held_ = last_;
     in_gap_ = sample_ >= 0 && drawGap();

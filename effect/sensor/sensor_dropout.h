@@ -19,7 +19,7 @@ class SensorDropout final : public SensorEffect {
 
   void attach(const EffectPlace& place) override;
   void reset() override;
-  double reading(double value, const Moment&, long sample) override;
+  double reading(double value, const StepTime&, long sample) override;
   bool perSample() const override { return true; }
 
  private:

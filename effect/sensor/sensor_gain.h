@@ -13,7 +13,7 @@ class SensorGain final : public SensorEffect {
   explicit SensorGain(double gain) : gain_(gain) {}
   static EffectInfo info();
 
-  double reading(double value, const Moment&, long) override { return gain_ * value; }
+  double reading(double value, const StepTime&, long) override { return gain_ * value; }
 
  private:
   double gain_;

@@ -21,7 +21,7 @@ class SensorNoise final : public SensorEffect {
     random_.emplace(seed_, "sensor_noise." + signal_);
     sample_ = -1;
   }
-  double reading(double value, const Moment&, long sample) override {
+  double reading(double value, const StepTime&, long sample) override {
     if (sample != sample_) noise_ = deviation_ * random_->normal();
     sample_ = sample;
     return value + noise_;

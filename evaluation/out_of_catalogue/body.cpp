@@ -21,14 +21,14 @@ class LuGre final : public JointEffect {
  public:
   explicit LuGre(const EffectValues& v) : torque_Nm_(v["torque_Nm"]) {}
   void reset() override { bristle_rad_ = 0; }
-  void apply(const Moment& moment) override {
-    if (!(moment.h_s > 0)) return;  // friction does not shift an equilibrium
+  void apply(const StepTime& time) override {
+    if (!(time.h_s > 0)) return;  // friction does not shift an equilibrium
     constexpr double stribeck_rad_per_s = 0.3, excess = 0.3, presliding_rad = 0.004, damping_s = 5e-3;
     const double w = rateRadPerS(), x = w / stribeck_rad_per_s;
     const double largest_Nm = torque_Nm_ * (1 + excess * std::exp(-x * x)), stiffness = torque_Nm_ / presliding_rad;
     const double decay = stiffness * std::abs(w) / largest_Nm;
-    const double next = (bristle_rad_ + moment.h_s * w) / (1 + moment.h_s * decay);
-    const double rate = (next - bristle_rad_) / moment.h_s;
+    const double next = (bristle_rad_ + time.h_s * w) / (1 + time.h_s * decay);
+    const double rate = (next - bristle_rad_) / time.h_s;
     bristle_rad_ = next;
     addTorqueNm(-stiffness * (bristle_rad_ + damping_s * rate));
   }
@@ -41,7 +41,7 @@ class LuGre final : public JointEffect {
 class GrowingDamping final : public JointEffect {
  public:
   explicit GrowingDamping(const EffectValues& v) : damping_(v["damping_Nms_per_rad"]) {}
-  void apply(const Moment&) override {
+  void apply(const StepTime&) override {
     constexpr double doubling_rad_per_s = 3;
     const double w = rateRadPerS();
     addTorqueNm(-damping_ * w * (1 + std::abs(w) / doubling_rad_per_s));
@@ -55,7 +55,7 @@ class GrowingDamping final : public JointEffect {
 class HardeningSpring final : public JointEffect {
  public:
   explicit HardeningSpring(const EffectValues& v) : stiffness_(v["stiffness_Nm_per_rad"]), rest_deg_(v["rest_deg"]) {}
-  void apply(const Moment&) override {
+  void apply(const StepTime&) override {
     constexpr double doubling_rad = 1;
     const double x = (angleDeg() - rest_deg_) * rad_per_deg;
     addTorqueNm(-stiffness_ * x * (1 + x * x / (doubling_rad * doubling_rad)));
@@ -73,7 +73,7 @@ class DraggedPayload final : public HandEffect {
     HandEffect::attach(place);
     place.robot.loadHand(mass_kg_ * g_per_kg);
   }
-  void apply(const Moment&) override {
+  void apply(const StepTime&) override {
     dVector3 velocity;
     const Vector point = pointMm();
     dBodyGetPointVel(robot().hand()->body().id, point.x(), point.y(), point.z(), velocity);
@@ -95,7 +95,7 @@ class SwayingBase final : public BodyEffect {
     upright_ = place.world.gravityMmPerS2();
     turn(0);
   }
-  void apply(const Moment& moment) override { turn(std::max(0.0, moment.clock_s)); }
+  void apply(const StepTime& time) override { turn(std::max(0.0, time.clock_s)); }
 
  private:
   void turn(double t) const {
@@ -118,7 +118,7 @@ class RubberStops final : public JointEffect {
     low_deg_ = dJointGetHingeParam(joint().id(), dParamLoStop) * deg_per_rad + offset_deg_;
     high_deg_ = dJointGetHingeParam(joint().id(), dParamHiStop) * deg_per_rad + offset_deg_;
   }
-  void apply(const Moment&) override {
+  void apply(const StepTime&) override {
     constexpr double torque_Nm = 1.5, depth_deg = 2, furthest = 4;
     auto push = [&](double beyond_deg) { return torque_Nm * std::exp(std::min(beyond_deg / depth_deg, furthest)); };
     addTorqueNm(push(low_deg_ - angleDeg()) - push(angleDeg() - high_deg_));
@@ -136,7 +136,7 @@ class WeakSpring final : public HandEffect {
     HandEffect::attach(place);
     built_mm_ = pointMm();
   }
-  void apply(const Moment&) override { addForceN(force_N_ * (1 - force_N_.normalized().dot(pointMm() - built_mm_) / stretch_mm_)); }
+  void apply(const StepTime&) override { addForceN(force_N_ * (1 - force_N_.normalized().dot(pointMm() - built_mm_) / stretch_mm_)); }
 
  private:
   Vector force_N_, built_mm_;
@@ -147,7 +147,7 @@ class WeakSpring final : public HandEffect {
 class HuntCrossley final : public JointEffect {
  public:
   explicit HuntCrossley(const EffectValues& v) : stiffness_(v["stiffness_Nm_per_deg15"]), plane_deg_(v["plane_deg"]) {}
-  void apply(const Moment&) override {
+  void apply(const StepTime&) override {
     constexpr double loss_s_per_deg = 1e-3;
     const double side = plane_deg_ >= 0 ? 1 : -1;
     const double depth = side * (angleDeg() - plane_deg_);

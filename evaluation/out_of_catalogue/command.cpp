@@ -25,11 +25,11 @@ class WanderingDelay final : public MuscleRatioEffect {
   void reset() override { history_.clear(); }
 
  private:
-  double output(double input, const Moment& moment) override {
+  double output(double input, const StepTime& time) override {
     constexpr double interval_s = 0.05;
-    history_.hold(moment.clock_s, input);
-    const double result = history_.at(moment.clock_s - std::max(0.0, delay_s_ + jitter_s_ * wander(seed_, moment.clock_s, interval_s)));
-    history_.forgetBefore(moment.clock_s - delay_s_ - jitter_s_);
+    history_.hold(time.clock_s, input);
+    const double result = history_.at(time.clock_s - std::max(0.0, delay_s_ + jitter_s_ * wander(seed_, time.clock_s, interval_s)));
+    history_.forgetBefore(time.clock_s - delay_s_ - jitter_s_);
     return result;
   }
   double settled(double input) override {
@@ -48,7 +48,7 @@ class UnequalSteps final : public MuscleRatioEffect {
   explicit UnequalSteps(const EffectValues& v) : levels_(std::exp2(v["bits"])), bow_(v["bow_levels"]) {}
 
  private:
-  double output(double input, const Moment&) override { return settled(input); }
+  double output(double input, const StepTime&) override { return settled(input); }
   double settled(double input) override {
     const double level = std::floor(input * levels_);
     return std::clamp((level + bow_ * std::sin(2 * std::numbers::pi * level / levels_)) / levels_, 0.0, 1.0);
@@ -63,7 +63,7 @@ class StickingDeadBand final : public MuscleRatioEffect {
   explicit StickingDeadBand(const EffectValues& v) : threshold_(v["threshold"]) {}
 
  private:
-  double output(double input, const Moment&) override {
+  double output(double input, const StepTime&) override {
     constexpr double closing_ratio = 0.75;
     open_ = input >= (open_ ? closing_ratio : 1) * threshold_;
     return open_ ? input : 0;
@@ -85,7 +85,7 @@ class MostlySwapped final : public RatioEffect {
     first_ = static_cast<std::size_t>(place.muscle);
     second_ = static_cast<std::size_t>(place.other_muscle);
   }
-  void apply(std::vector<double>& ratios, const Moment&) override { settle(ratios); }
+  void apply(std::vector<double>& ratios, const StepTime&) override { settle(ratios); }
   void settle(std::vector<double>& ratios) override {
     const double u = ratios[first_], w = ratios[second_];
     ratios[first_] = (1 - share_) * u + share_ * w;

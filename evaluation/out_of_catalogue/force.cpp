@@ -50,7 +50,7 @@ class PowerLoss final : public ForceEffect {
     constexpr double exponent = 0.7, reference_mm_per_s = 100, rise_s = 2e-3;
     const double v = input.rate_mm_per_s / reference_mm_per_s;
     const double target = loss_N_ * std::copysign(std::pow(std::abs(v), exponent), v);
-    now_N_ = target + (now_N_ - target) * std::exp(-input.moment.h_s / rise_s);
+    now_N_ = target + (now_N_ - target) * std::exp(-input.time.h_s / rise_s);
   }
 
  private:
@@ -68,8 +68,8 @@ class TwoKelvinElements final : public ForceEffect {
   }
   void advance(const MuscleInput& input) override {
     const double immediate_mm = input.length_mm - fast_mm_ - slow_mm_ - actuator().maximumLengthMm();
-    fast_mm_ += input.moment.h_s / tau_s_ * (fast_share * amount_ * immediate_mm - fast_mm_);
-    slow_mm_ += input.moment.h_s / (slow_factor * tau_s_) * ((1 - fast_share) * amount_ * immediate_mm - slow_mm_);
+    fast_mm_ += input.time.h_s / tau_s_ * (fast_share * amount_ * immediate_mm - fast_mm_);
+    slow_mm_ += input.time.h_s / (slow_factor * tau_s_) * ((1 - fast_share) * amount_ * immediate_mm - slow_mm_);
   }
   void settle(const MuscleInput& input) override {
     const double total_mm = amount_ / (1 + amount_) * (input.length_mm - actuator().maximumLengthMm());
@@ -159,7 +159,7 @@ class WarmUp final : public ForceEffect {
  public:
   explicit WarmUp(const EffectValues& v) : rate_per_s_(v["rate_per_min"] / s_per_min), duration_s_(v["duration_s"]) {}
   double tensionN(const MuscleInput& input, const ForceBelow& below) const override {
-    const double t = std::max(0.0, input.moment.clock_s);
+    const double t = std::max(0.0, input.time.clock_s);
     return below(input) * (1 - rate_per_s_ * duration_s_ * std::expm1(-t / duration_s_));
   }
 

@@ -21,8 +21,8 @@ double wave(double frequency_Hz, double t) {
 class Shaker final : public HandEffect {
  public:
   explicit Shaker(const EffectValues& v) : amplitude_N_(v["amplitude_N"]), frequency_Hz_(v["frequency_Hz"]) {}
-  void apply(const Moment& moment) override {
-    if (moment.clock_s > 0) addForceN(amplitude_N_ * wave(frequency_Hz_, moment.clock_s) * Vector(1, 0.5, 0));
+  void apply(const StepTime& time) override {
+    if (time.clock_s > 0) addForceN(amplitude_N_ * wave(frequency_Hz_, time.clock_s) * Vector(1, 0.5, 0));
   }
 
  private:
@@ -33,7 +33,7 @@ class Shaker final : public HandEffect {
 class Cogging final : public JointEffect {
  public:
   explicit Cogging(const EffectValues& v) : torque_Nm_(v["torque_Nm"]), periods_(v["periods_per_turn"]) {}
-  void apply(const Moment&) override { addTorqueNm(torque_Nm_ * std::sin(periods_ * angleDeg() * rad_per_deg)); }
+  void apply(const StepTime&) override { addTorqueNm(torque_Nm_ * std::sin(periods_ * angleDeg() * rad_per_deg)); }
 
  private:
   double torque_Nm_, periods_;
@@ -45,8 +45,8 @@ class PumpRipple final : public MuscleRatioEffect {
   explicit PumpRipple(const EffectValues& v) : ripple_(v["ripple"]), frequency_Hz_(v["frequency_Hz"]) {}
 
  private:
-  double output(double input, const Moment& moment) override {
-    return input * (1 + ripple_ * wave(frequency_Hz_, std::max(0.0, moment.clock_s)));
+  double output(double input, const StepTime& time) override {
+    return input * (1 + ripple_ * wave(frequency_Hz_, std::max(0.0, time.clock_s)));
   }
   double settled(double input) override { return input; }
 
@@ -57,7 +57,7 @@ class PumpRipple final : public MuscleRatioEffect {
 class Magnet final : public JointEffect {
  public:
   explicit Magnet(const EffectValues& v) : torque_Nm_(v["torque_Nm"]), at_deg_(v["at_deg"]) {}
-  void apply(const Moment&) override {
+  void apply(const StepTime&) override {
     constexpr double reach_deg = 2;
     const double x = (angleDeg() - at_deg_) / reach_deg;
     addTorqueNm(-torque_Nm_ * x * std::exp(0.5 - x * x / 2));
@@ -75,10 +75,10 @@ class Gusts final : public HandEffect {
     HandEffect::attach(place);
     seed_ = place.world.seed();
   }
-  void apply(const Moment& moment) override {
+  void apply(const StepTime& time) override {
     constexpr double interval_s = 0.3;
-    if (moment.clock_s > 0)
-      addForceN({force_N_ * wander(seed_, moment.clock_s, interval_s), force_N_ * wander(seed_ + 1, moment.clock_s, interval_s), 0});
+    if (time.clock_s > 0)
+      addForceN({force_N_ * wander(seed_, time.clock_s, interval_s), force_N_ * wander(seed_ + 1, time.clock_s, interval_s), 0});
   }
 
  private:
@@ -110,7 +110,7 @@ class Fatigue final : public ForceEffect {
 class Interference final : public SensorEffect {
  public:
   explicit Interference(const EffectValues& v) : amplitude_(v["amplitude"]), frequency_Hz_(v["frequency_Hz"]) {}
-  double reading(double value, const Moment& moment, long) override { return value + amplitude_ * wave(frequency_Hz_, moment.clock_s); }
+  double reading(double value, const StepTime& time, long) override { return value + amplitude_ * wave(frequency_Hz_, time.clock_s); }
 
  private:
   double amplitude_, frequency_Hz_;
@@ -124,11 +124,11 @@ class Bypass final : public RatioEffect {
     muscle_[0] = static_cast<std::size_t>(place.muscle);
     muscle_[1] = static_cast<std::size_t>(place.other_muscle);
   }
-  void apply(std::vector<double>& ratios, const Moment& moment) override {
+  void apply(std::vector<double>& ratios, const StepTime& time) override {
     const double exchange = flow_per_s_ * (pressure_[1] - pressure_[0]);
     for (int i = 0; i < 2; ++i) {
       const double rate = (ratios[muscle_[i]] - pressure_[i]) / regulator_s + (i == 0 ? exchange : -exchange);
-      pressure_[i] += moment.h_s * rate;
+      pressure_[i] += time.h_s * rate;
     }
     for (int i = 0; i < 2; ++i) ratios[muscle_[i]] = pressure_[i];
   }

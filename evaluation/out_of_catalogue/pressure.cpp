@@ -19,11 +19,11 @@ class ThreeLags final : public MuscleRatioEffect {
   explicit ThreeLags(const EffectValues& v) : fill_s_(v["fill_time_constant_s"]), vent_s_(v["vent_time_constant_s"]) {}
 
  private:
-  double output(double input, const Moment& moment) override {
+  double output(double input, const StepTime& time) override {
     constexpr std::array<double, 3> shares = {1.0 / 2, 1.0 / 3, 1.0 / 6};
     for (std::size_t i = 0; i < shares.size(); ++i) {
       const double tau_s = shares[i] * (input > lags_[i] ? fill_s_ : vent_s_);
-      lags_[i] = tau_s > 0 ? input + (lags_[i] - input) * std::exp(-moment.h_s / tau_s) : input;
+      lags_[i] = tau_s > 0 ? input + (lags_[i] - input) * std::exp(-time.h_s / tau_s) : input;
       input = lags_[i];
     }
     return input;
@@ -51,14 +51,14 @@ class Orifice final : public MuscleRatioEffect {
   explicit Orifice(const EffectValues& v) : fill_per_s_(v["fill_rate_per_s"]), vent_per_s_(v["vent_rate_per_s"]) {}
 
  private:
-  double output(double input, const Moment& moment) override {
+  double output(double input, const StepTime& time) override {
     constexpr double opening_range = 0.03;
     const double opening = std::clamp((input - pressure_) / opening_range, -1.0, 1.0);
     const double absolute = pressure_ + atmosphere_ratio;
     const double rate = opening > 0 ? fill_per_s_ * flowShare(absolute / (1.2 + atmosphere_ratio))
                                     : vent_per_s_ * flowShare(atmosphere_ratio / absolute) * absolute / (0.5 + atmosphere_ratio);
     if (std::isinf(rate)) return pressure_ = input;
-    const double next = pressure_ + moment.h_s * rate * opening;
+    const double next = pressure_ + time.h_s * rate * opening;
     return pressure_ = opening > 0 ? std::min(next, input) : std::max(next, input);
   }
   double settled(double input) override { return pressure_ = input; }
@@ -73,8 +73,8 @@ class ChokedLeak final : public MuscleRatioEffect {
 
  private:
   double lossPerS(double pressure) const { return leak_per_s_ * std::pow(pressure + atmosphere_ratio, exponent_); }
-  double output(double input, const Moment& moment) override {
-    return pressure_ = std::max(0.0, pressure_ + moment.h_s * ((input - pressure_) / regulator_s_ - lossPerS(pressure_)));
+  double output(double input, const StepTime& time) override {
+    return pressure_ = std::max(0.0, pressure_ + time.h_s * ((input - pressure_) / regulator_s_ - lossPerS(pressure_)));
   }
   /// Solves p + tau k (p + p_atm)^n = u by bisection.
   double settled(double input) override {
@@ -94,10 +94,10 @@ class ChokedLeak final : public MuscleRatioEffect {
 class Tank final : public RatioEffect {
  public:
   explicit Tank(const EffectValues& v) : capacity_(v["loss_per_fill"]), recovery_s_(v["recovery_s"]) {}
-  void apply(std::vector<double>& ratios, const Moment& moment) override {
+  void apply(std::vector<double>& ratios, const StepTime& time) override {
     for (std::size_t i = 0; i < ratios.size(); ++i) supply_ -= capacity_ * std::max(0.0, ratios[i] - before_[i]);
     before_ = ratios;
-    supply_ = std::max(0.0, 1 + (supply_ - 1) * std::exp(-moment.h_s / recovery_s_));
+    supply_ = std::max(0.0, 1 + (supply_ - 1) * std::exp(-time.h_s / recovery_s_));
     for (double& ratio : ratios) ratio = std::min(ratio, supply_);
   }
   void settle(std::vector<double>& ratios) override {
@@ -116,12 +116,12 @@ class BraidVolume final : public MuscleRatioEffect {
   explicit BraidVolume(const EffectValues& v) : coupling_(v["coupling"]), regulator_s_(v["regulator_time_constant_s"]) {}
 
  private:
-  double output(double input, const Moment& moment) override {
+  double output(double input, const StepTime& time) override {
     constexpr double strand_ratio = 1.1;
     const double l = actuator().lengthMm(), b = strand_ratio * actuator().maximumLengthMm();
     const double volume_rate = lengthRateMmPerS() * (b * b - 3 * l * l) / (l * (b * b - l * l));
     const double rate = (input - pressure_) / regulator_s_ - coupling_ * (pressure_ + atmosphere_ratio) * volume_rate;
-    return pressure_ = std::max(0.0, pressure_ + moment.h_s * rate);
+    return pressure_ = std::max(0.0, pressure_ + time.h_s * rate);
   }
   double settled(double input) override { return pressure_ = input; }
 
@@ -134,7 +134,7 @@ class BowedCalibration final : public MuscleRatioEffect {
   explicit BowedCalibration(const EffectValues& v) : gain_(v["gain"]), offset_(v["offset"]), bow_(v["bow"]) {}
 
  private:
-  double output(double input, const Moment&) override { return settled(input); }
+  double output(double input, const StepTime&) override { return settled(input); }
   double settled(double p) override { return std::max(0.0, gain_ * p + offset_ + bow_ * p * (1 - p)); }
 
   double gain_, offset_, bow_;

@@ -17,9 +17,9 @@ class WanderingBias final : public SensorEffect {
  public:
   explicit WanderingBias(const EffectValues& v) : offset_(v["offset"]) {}
   void attach(const EffectPlace& place) override { seed_ = place.world.seed() + static_cast<std::uint64_t>(place.signal); }
-  double reading(double value, const Moment& moment, long) override {
+  double reading(double value, const StepTime& time, long) override {
     constexpr double share = 0.15, interval_s = 2;
-    return value + offset_ * (1 + share * wander(seed_, moment.clock_s, interval_s));
+    return value + offset_ * (1 + share * wander(seed_, time.clock_s, interval_s));
   }
 
  private:
@@ -31,7 +31,7 @@ class WanderingBias final : public SensorEffect {
 class WavyScale final : public SensorEffect {
  public:
   explicit WavyScale(const EffectValues& v) : gain_(v["gain"]), period_(v["period"]) {}
-  double reading(double y, const Moment&, long) override {
+  double reading(double y, const StepTime&, long) override {
     constexpr double wave = 0.25;
     return y + (gain_ - 1) * y * (1 + wave * std::sin(2 * std::numbers::pi * y / period_));
   }
@@ -45,11 +45,11 @@ class Filter final : public SensorEffect {
  public:
   explicit Filter(const EffectValues& v) : tau_s_(v["delay_s"] / 2) {}
   void reset() override { begun_ = false; }
-  double reading(double value, const Moment&, long) override { return begun_ ? second_ : value; }
-  void track(double value, const Moment& moment) override {
+  double reading(double value, const StepTime&, long) override { return begun_ ? second_ : value; }
+  void track(double value, const StepTime& time) override {
     if (!begun_) first_ = second_ = value;
     begun_ = true;
-    const double kept = std::exp(-moment.h_s / tau_s_);
+    const double kept = std::exp(-time.h_s / tau_s_);
     first_ = value + (first_ - value) * kept;
     second_ = first_ + (second_ - first_) * kept;
   }
@@ -65,12 +65,12 @@ class CentredPlay final : public SensorEffect {
  public:
   explicit CentredPlay(const EffectValues& v) : width_(v["width"]), centring_s_(v["centring_s"]) {}
   void reset() override { begun_ = false; }
-  double reading(double value, const Moment&, long) override {
+  double reading(double value, const StepTime&, long) override {
     return begun_ ? std::clamp(followed_, value - width_ / 2, value + width_ / 2) : value;
   }
-  void track(double value, const Moment& moment) override {
-    followed_ = reading(value, moment, 0);
-    followed_ = value + (followed_ - value) * std::exp(-moment.h_s / centring_s_);
+  void track(double value, const StepTime& time) override {
+    followed_ = reading(value, time, 0);
+    followed_ = value + (followed_ - value) * std::exp(-time.h_s / centring_s_);
     begun_ = true;
   }
   bool tracks() const override { return true; }
@@ -84,7 +84,7 @@ class CentredPlay final : public SensorEffect {
 class SlowClock final : public SensorEffect {
  public:
   explicit SlowClock(const EffectValues& v) : every_(static_cast<long>(1 + std::lround(v["skipped_samples"]))) {}
-  double reading(double value, const Moment&, long sample) override {
+  double reading(double value, const StepTime&, long sample) override {
     if (sample % every_ == 0) held_ = value;
     return held_;
   }

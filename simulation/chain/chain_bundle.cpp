@@ -397,7 +397,7 @@ double ChainBundle<lane_count>::largestVelocity() const {
 }
 
 template <int lane_count>
-MUSCLESIM_WIDE void ChainBundle<lane_count>::eliminateNodes() {
+MUSCLESIM_SIMD void ChainBundle<lane_count>::eliminateNodes() {
   moveBeads();
   Carry carry;
   for (int k = 0; k < nodeCount(); ++k) {
@@ -410,7 +410,7 @@ MUSCLESIM_WIDE void ChainBundle<lane_count>::eliminateNodes() {
 }
 
 template <int lane_count>
-MUSCLESIM_WIDE void ChainBundle<lane_count>::substituteAll() {
+MUSCLESIM_SIMD void ChainBundle<lane_count>::substituteAll() {
   substituteForces();
   substituteVelocities();
   makeSlacks();

@@ -18,7 +18,7 @@
 #include "body_state.h"
 #include "joint_rows.h"
 #include "pack.h"
-#include "wide.h"
+#include "simd_kernels.h"
 
 namespace musclesim::chain {
 
@@ -162,9 +162,9 @@ class ChainBundle {
   Column* borderOf(int node) { return border_.data() + static_cast<std::size_t>(node) * border_capacity_; }
   const Column* borderOf(int node) const { return border_.data() + static_cast<std::size_t>(node) * border_capacity_; }
   // These are separate functions because other files cannot call a function that is compiled several times.
-  MUSCLESIM_WIDE void makeAllBlocks();
-  MUSCLESIM_WIDE void eliminateNodes();
-  MUSCLESIM_WIDE void substituteAll();
+  MUSCLESIM_SIMD void makeAllBlocks();
+  MUSCLESIM_SIMD void eliminateNodes();
+  MUSCLESIM_SIMD void substituteAll();
   void growBorder(int count);
   void fillBorder();
   MUSCLESIM_INLINE void moveBeads();

@@ -73,7 +73,7 @@ MUSCLESIM_INLINE void ChainBundle<lane_count>::makeBallBlocks(std::size_t k) {
 }
 
 template <int lane_count>
-MUSCLESIM_WIDE void ChainBundle<lane_count>::makeAllBlocks() {
+MUSCLESIM_SIMD void ChainBundle<lane_count>::makeAllBlocks() {
   const std::size_t last = nodes_.size() - 1;
   for (std::size_t k = 0; k < last; k += 2) {
     makeSliderBlocks(k);

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "../../robot/actuator_step.h"
 #include "../../robot/ode_vector.h"
 #include "../contacts.h"
-#include "musclesim/robot/actuator.h"
 #include "musclesim/robot/world.h"
 
 namespace musclesim {
@@ -40,7 +40,7 @@ std::string ChainStepper::message() const {
 void ChainStepper::applyForces(const Actuators& actuators, double) {
   if (!upToDate()) prepare();
   for (const auto& actuator : actuators)
-    if (actuator->line()) actuator->applyForces();
+    if (actuator->line()) musclesim::applyForces(*actuator);
 }
 
 void ChainStepper::step(double h_s) {
@@ -88,10 +88,10 @@ bool ChainStepper::solve(double h_s) {
 
 void ChainStepper::leaveToOde(double h_s) {
   for (const auto& actuator : world_.actuators())
-    if (!actuator->line()) actuator->applyForces();
-  for (const auto& actuator : world_.actuators()) actuator->applyBeadInertia(h_s);
+    if (!actuator->line()) musclesim::applyForces(*actuator);
+  for (const auto& actuator : world_.actuators()) applyBeadInertia(*actuator, h_s);
   if (!dWorldStep(world_, h_s)) throw OdeFault("dWorldStep ran out of memory");
-  for (const auto& actuator : world_.actuators()) actuator->applyBeadInertia(0);
+  for (const auto& actuator : world_.actuators()) applyBeadInertia(*actuator, 0);
 }
 
 std::optional<TornJoint> ChainStepper::largestGap() const {

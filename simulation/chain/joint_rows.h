@@ -73,7 +73,7 @@ struct JointRows {
 /// Makes the joint's rows for the present state. `rows` must be new or come from an earlier call for a joint of the same kind.
 void makeRows(const JointModel& joint, const BodyState& bodies, double h_s, const ErrorReduction& reduction, JointRows& rows);
 
-/// Constraint error of the joint in mm: like Joint::gapMm(), but from the stepper's own state.
+/// Constraint error of the joint in mm: like Joint::constraintErrorMm(), but from the stepper's own state.
 double gapOf(const JointModel& joint, const BodyState& bodies);
 
 }  // namespace musclesim::chain

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "wide.h"
+#include "simd_kernels.h"
 
 namespace musclesim::chain {
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "../../robot/actuator_step.h"
+
 namespace musclesim::chain {
 
 namespace {
@@ -167,9 +169,9 @@ void StepProblem::makeJointRows() {
   };
   for (std::size_t c = 0; c < chains_.size(); ++c) {
     Chain& chain = model_.chains[c];
-    const double stop_rad = chain.actuator->hingeStopRad();
+    const double stop_rad = hingeStopRad(*chain.actuator);
     const MuscleSettings& settings = chain.actuator->settings();
-    chain.bead_inertia = chain.sphere_inertia + chain.actuator->beadInertiaIncrease(conditions_.h_s);
+    chain.bead_inertia = chain.sphere_inertia + beadInertiaIncrease(*chain.actuator, conditions_.h_s);
     const double tension = chain.actuator->tensionN() * conditions_.force_per_N;
     for (std::size_t k = 0; k < chain.joints.size(); ++k) {
       JointModel& joint = chain.joints[k];

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "wide.h"
+#include "simd_kernels.h"
 
 namespace musclesim::chain {
 

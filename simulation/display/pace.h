@@ -32,7 +32,7 @@ class Pace {
 
  private:
   using Clock = std::chrono::steady_clock;
-  using Moment = std::pair<Clock::time_point, double>;  ///< wall time and simulated time, s
+  using Instant = std::pair<Clock::time_point, double>;  ///< wall time and simulated time, s
   Clock::time_point dueAt(double simulated_s) const;
   void arrive(double simulated_s);
 
@@ -41,8 +41,8 @@ class Pace {
   double speed_ratio_;
   bool paused_ = false, closed_ = false, restart_ = true;
   int steps_allowed_ = 0;
-  Moment reference_;
-  std::deque<Moment> recent_;
+  Instant reference_;
+  std::deque<Instant> recent_;
 };
 
 }  // namespace musclesim

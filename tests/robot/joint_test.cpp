@@ -139,7 +139,7 @@ TEST_P(JointAxis, MovesOrHoldsUnderATorqueInBothDirections) {
         EXPECT_TRUE(std::isinf(low_deg) && std::isinf(high_deg)) << low_deg << " .. " << high_deg;
       }
     }
-    EXPECT_LT(joint->gapMm(), 0.01);
+    EXPECT_LT(joint->constraintErrorMm(), 0.01);
     EXPECT_LT((pair.body->getPosition()).norm(), 0.01);
   }
 }
@@ -179,7 +179,7 @@ TEST(Joint, SliderMovesAlongItsAxisOnlyAndKeepsTheBodyFromTurning) {
     EXPECT_GT(moved.dot(axis.normalized()), 20);
     EXPECT_LT((moved - axis.normalized() * moved.dot(axis.normalized())).norm(), 0.01);
     EXPECT_TRUE(pair.body->getRotation().isApprox(Eigen::Matrix3d::Identity(), 1e-3));
-    EXPECT_LT(slider->gapMm(), 0.01);
+    EXPECT_LT(slider->constraintErrorMm(), 0.01);
     EXPECT_THROW(slider->angleDeg(), BadParameter);
   }
 }
@@ -189,9 +189,9 @@ TEST(Joint, GapIsTheDistanceOfTheTornAnchors) {
   auto anchored = [&](const std::function<Joint*(Primitive*)>& attach) {
     auto* body = new Sphere(pair.simulation.world(), nullptr, {0, 0, 0}, 10, 0, 5);
     const Joint* joint = attach(body);
-    EXPECT_NEAR(joint->gapMm(), 0, 1e-12);
+    EXPECT_NEAR(joint->constraintErrorMm(), 0, 1e-12);
     body->place({3, 0, 4}, Eigen::Matrix3d::Identity());
-    return joint->gapMm();
+    return joint->constraintErrorMm();
   };
   const Vector o = Vector::Zero(), x = Vector::UnitX(), z = Vector::UnitZ();
   EXPECT_NEAR(anchored([&](Primitive* b) { return b->attachBall(nullptr, o); }), 5, 1e-12);

@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "../../robot/actuator_step.h"
 #include "musclesim/robot/muscle.h"
 #include "musclesim/simulation/simulation.h"
 #include "support/support.h"
@@ -53,7 +54,7 @@ TEST(LineMuscle, PullsAtItsViaPointsAlongBothPieces) {
   EXPECT_NEAR(muscle->lengthMm(), 2 * std::sqrt(2e4), 1e-9);
   muscle->setPressure(1);
   simulation.effects().update();
-  muscle->applyForces();
+  applyForces(*muscle);
   const dReal* force = dBodyGetForce(ring->body().id);
   const double expected = -std::sqrt(2.0) * muscle->tensionN() * simulation.physics().force_per_N;
   EXPECT_NEAR(force[0], expected, 1e-9 * std::abs(expected)) << "two pieces at 45 degrees pull to the side";

@@ -53,7 +53,7 @@ class EffectValues {
 };
 
 /// When an effect is asked.
-struct Moment {
+struct StepTime {
   double clock_s = 0;  ///< since the start of the run; negative while it settles
   double h_s = 0;      ///< length of the step that begins now; 0: a look at the present, nothing moves on
 };
@@ -87,8 +87,8 @@ class Effect {
 /// Command and pressure stage: changes fractions of full scale, one per muscle in the robot's order.
 class RatioEffect : public Effect {
  public:
-  /// From what comes in at moment.clock_s and is held for moment.h_s to what goes out at the end of that time.
-  virtual void apply(std::vector<double>& ratios, const Moment& moment) = 0;
+  /// From what comes in at time.clock_s and is held for time.h_s to what goes out at the end of that time.
+  virtual void apply(std::vector<double>& ratios, const StepTime& time) = 0;
   /// The same as if what comes in had been there for ever. Called after reset().
   virtual void settle(std::vector<double>& ratios) = 0;
 };
@@ -97,11 +97,11 @@ class RatioEffect : public Effect {
 class MuscleRatioEffect : public RatioEffect {
  public:
   void attach(const EffectPlace& place) override;
-  void apply(std::vector<double>& ratios, const Moment& moment) final;
+  void apply(std::vector<double>& ratios, const StepTime& time) final;
   void settle(std::vector<double>& ratios) final;
 
  protected:
-  virtual double output(double input, const Moment& moment) = 0;
+  virtual double output(double input, const StepTime& time) = 0;
   virtual double settled(double input) = 0;
   const Actuator& actuator() const { return *actuator_; }
   /// Rate of the muscle's length at present, mm/s.
@@ -118,7 +118,7 @@ struct MuscleInput {
   double pressure_ratio = 0;
   double length_mm = 0;
   double rate_mm_per_s = 0;  ///< of the length; positive: it gets longer
-  Moment moment;
+  StepTime time;
 };
 
 class ForceStack;
@@ -141,7 +141,7 @@ class ForceEffect : public Effect {
   /// Tension in N, pulling positive. May be asked several times for the same moment and must not move the state on. The last call of
   /// `below` must be the one whose answer is used.
   virtual double tensionN(const MuscleInput& input, const ForceBelow& below) const = 0;
-  /// Moves the state on by input.moment.h_s; `input` is that of the last tensionN.
+  /// Moves the state on by input.time.h_s; `input` is that of the last tensionN.
   virtual void advance(const MuscleInput&) {}
   /// The state when everything has been as in `input` for ever.
   virtual void settle(const MuscleInput&) { reset(); }
@@ -159,7 +159,7 @@ class ForceEffect : public Effect {
 class BodyEffect : public Effect {
  public:
   /// Adds forces and torques to the bodies as they are now. Friction aside, it is also asked for robots at rest to find their equilibrium.
-  virtual void apply(const Moment&) {}
+  virtual void apply(const StepTime&) {}
 };
 
 /// A BodyEffect on one hinge.
@@ -198,11 +198,11 @@ class HandEffect : public BodyEffect {
 /// Sensor stage of one signal: the motion is right, the reading is not.
 class SensorEffect : public Effect {
  public:
-  /// The reading for what comes in at moment.clock_s. `sample` counts the times at which the robot has been read. May be asked several
+  /// The reading for what comes in at time.clock_s. `sample` counts the times at which the robot has been read. May be asked several
   /// times for one sample, with what comes in changed.
-  virtual double reading(double value, const Moment& moment, long sample) = 0;
+  virtual double reading(double value, const StepTime& time, long sample) = 0;
   /// What comes in, told at every internal step if tracks().
-  virtual void track(double, const Moment&) {}
+  virtual void track(double, const StepTime&) {}
   virtual bool tracks() const { return false; }
   /// Whether the reading depends on the sample; such effects act after all others.
   virtual bool perSample() const { return false; }

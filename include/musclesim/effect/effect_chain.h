@@ -68,7 +68,7 @@ class EffectChain final : public RobotEffects {
   void requireMuscles();
   void addObject(const Planned& planned, EffectPlace place);
   MuscleInput inputOf(std::size_t muscle, double pressure_ratio, double h_s) const;
-  Moment at(double h_s) const { return {world_.clock().now_s(), h_s}; }
+  StepTime at(double h_s) const { return {world_.clock().now_s(), h_s}; }
 
   World& world_;
   Robot* robot_ = nullptr;  ///< null until attach()

@@ -77,6 +77,7 @@ class Actuator : public WorldPart {
   /// The line of a line muscle, null for a chain.
   const LineOfPull* line() const { return line_.get(); }
   const MuscleSettings& settings() const { return settings_; }
+  const World& world() const { return world_; }
   const ForceLaw& forceLaw() const { return *law_; }
   const Joint* startJoint() const { return start_joint_; }
   const Joint* endJoint() const { return end_joint_; }
@@ -93,19 +94,6 @@ class Actuator : public WorldPart {
 
   /// Tension at the present length without effects, N: calculateForce, but a line muscle never pushes.
   double cleanTensionN(double pressure_ratio) const;
-  /// Hands the tension to the sliders and sets the hinges' stops, for ODE's steppers; a line pulls at its ends.
-  void applyForces();
-  /// Geometric stiffness as inertia: what every bead's moment of inertia gains in a step h under the present tension F, in g mm^2,
-  ///     a h^2 F l / (2 n),   n links of length l / n.
-  /// With a = 1/4 the swaying of neighbouring links, driven by F, never gets faster than a step can follow.
-  double beadInertiaIncrease(double h_s) const;
-  /// Gives it to ODE's bodies.
-  void applyBeadInertia(double h_s);
-  /// Largest rate in rad/s at which neighbouring links can sway against each other, over all pressures and lengths:
-  ///     w^2 = F (d + 2 r) / (m d^2 / 2 + 2 I),   d distance of a link's beads, r, m, I radius, mass and moment of inertia of a bead.
-  double fastestSwayRadPerS() const;
-  /// The hinges' stops at present, at minus and plus this angle.
-  double hingeStopRad() const;
 
  protected:
   /// `points` are the chain's link ends, link count + 1 of them. `given_minimum_length_mm` is what the user asked for.
@@ -116,8 +104,6 @@ class Actuator : public WorldPart {
 
  private:
   void takeCleanTension();
-  double beadInertia() const;
-  void setViscousMotors();
   void setFriction(dJointID joint, double force, double speed) const;
   void buildLinks(dSpaceID beads, const std::vector<Vector>& points);
   void requireSameWorld(const Primitive* primitive, const std::string& which) const;

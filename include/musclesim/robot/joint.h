@@ -24,7 +24,7 @@ class Joint {
  public:
   enum class Kind { ball, hinge, hinge2, universal, slider, fixed };
 
-  /// Wraps a joint that is already attached and has its anchor and axes. The present pose becomes the reference for gapMm().
+  /// Wraps a joint that is already attached and has its anchor and axes. The present pose becomes the reference for constraintErrorMm().
   Joint(Kind kind, dJointID id, std::string name);
 
   Kind kind() const { return kind_; }
@@ -40,7 +40,7 @@ class Joint {
   std::pair<double, double> stopsDeg(int axis = 0) const;
   /// Constraint error in mm: the distance between the anchor on one body and the anchor on the other; for sliders the part perpendicular to
   /// the axis.
-  double gapMm() const;
+  double constraintErrorMm() const;
   /// Makes the present pose the reference. Call it after a body's centre of mass has moved.
   void takeReference();
   /// Relative pose of the two bodies at construction; for joints of kind ball, hinge, slider and fixed.

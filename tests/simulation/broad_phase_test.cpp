@@ -1,5 +1,5 @@
 /// The broad phase finds the same touching pairs as dSpaceCollide, in the same order.
-#include "../../simulation/near_pairs.h"
+#include "../../simulation/broad_phase.h"
 
 #include <gtest/gtest.h>
 
@@ -59,9 +59,9 @@ class NearPairsTest : public testing::Test {
   Simulation ode_is_running;
   dWorldID world = dWorldCreate();
   dSpaceID space = dSimpleSpaceCreate(nullptr);
-  RandomStream random{7, "near_pairs"};
+  RandomStream random{7, "broad_phase"};
   std::vector<dBodyID> bodies;
-  NearPairs near{space};
+  BroadPhase near{space};
 };
 
 TEST_F(NearPairsTest, AreThoseOfAllPairsInTheSameOrder) {
@@ -97,17 +97,17 @@ TEST_F(NearPairsTest, ForgetBodiesThatWerePutTogether) {
   EXPECT_EQ(listed, all);
 }
 
-TEST(NearPairs, LeaveSpacesOfOtherKindsToOde) {
+TEST(BroadPhase, LeaveSpacesOfOtherKindsToOde) {
   const Simulation ode_is_running;
   const dWorldID world = dWorldCreate();
   const dSpaceID space = dHashSpaceCreate(nullptr);
-  RandomStream random{8, "near_pairs"};
+  RandomStream random{8, "broad_phase"};
   for (int i = 0; i < 40; ++i) {
     const dBodyID body = dBodyCreate(world);
     dGeomSetBody(dCreateBox(space, 30, 200, 50), body);
     dBodySetPosition(body, random.uniform(-200, 200), random.uniform(-200, 200), random.uniform(-200, 200));
   }
-  NearPairs near{space};
+  BroadPhase near{space};
   Pairs all, listed;
   dSpaceCollide(space, &all, &collect);
   near.collide(0, &listed, &collect);

@@ -1,4 +1,4 @@
-#include "wide.h"
+#include "simd_kernels.h"
 
 #include <algorithm>
 
@@ -32,7 +32,7 @@ void clear(double* numbers, int count) {
   std::fill_n(numbers, count, 0.0);
 }
 
-MUSCLESIM_WIDE void factoriseTile(double* a, double* per_pivots) {
+MUSCLESIM_SIMD void factoriseTile(double* a, double* per_pivots) {
   Wide* const columns = reinterpret_cast<Wide*>(a);
   for (int k = 0; k < tile_width; ++k) {
     const double per_pivot = per_pivots[k] = 1 / columns[k][k];
@@ -42,7 +42,7 @@ MUSCLESIM_WIDE void factoriseTile(double* a, double* per_pivots) {
   }
 }
 
-MUSCLESIM_WIDE void solveTile(double* a, double* scaled, const double* l, const double* per_pivots) {
+MUSCLESIM_SIMD void solveTile(double* a, double* scaled, const double* l, const double* per_pivots) {
   Wide columns[tile_width];
   for (int k = 0; k < tile_width; ++k) {
     Wide column = reinterpret_cast<const Wide*>(a)[k];
@@ -55,7 +55,7 @@ MUSCLESIM_WIDE void solveTile(double* a, double* scaled, const double* l, const 
   }
 }
 
-MUSCLESIM_WIDE void subtractTileProducts(double* const* targets, const double* left, const double* right, int count) {
+MUSCLESIM_SIMD void subtractTileProducts(double* const* targets, const double* left, const double* right, int count) {
   for (int i = 0; i < count; ++i) {
     Wide* const target = reinterpret_cast<Wide*>(targets[i]);
     const Wide* const columns = reinterpret_cast<const Wide*>(left + i * tile_size);
@@ -89,13 +89,13 @@ void solveUpper(const double* l, double* x) {
   std::copy_n(y, width, x);
 }
 
-MUSCLESIM_WIDE void subtractProduct(double* y, const double* a, const double* x) {
+MUSCLESIM_SIMD void subtractProduct(double* y, const double* a, const double* x) {
   Wide sum = *reinterpret_cast<const Wide*>(y);
   for (int k = 0; k < tile_width; ++k) sum -= x[k] * reinterpret_cast<const Wide*>(a)[k];
   *reinterpret_cast<Wide*>(y) = sum;
 }
 
-MUSCLESIM_WIDE void subtractTransposed(double* y, const double* a, const double* x) {
+MUSCLESIM_SIMD void subtractTransposed(double* y, const double* a, const double* x) {
   const Wide factors = *reinterpret_cast<const Wide*>(x);
   for (int k = 0; k < tile_width; ++k) {
     const Wide p = factors * reinterpret_cast<const Wide*>(a)[k];
@@ -103,7 +103,7 @@ MUSCLESIM_WIDE void subtractTransposed(double* y, const double* a, const double*
   }
 }
 
-MUSCLESIM_WIDE void solveSixRows(double y[6][width], const double* l, const double per_pivot[6], int first_coupled) {
+MUSCLESIM_SIMD void solveSixRows(double y[6][width], const double* l, const double per_pivot[6], int first_coupled) {
   Wide* const rows = reinterpret_cast<Wide*>(y);
   if (first_coupled > 0)
     solveRowsFrom<3>(rows, l, per_pivot);
@@ -111,7 +111,7 @@ MUSCLESIM_WIDE void solveSixRows(double y[6][width], const double* l, const doub
     solveRowsFrom<0>(rows, l, per_pivot);
 }
 
-MUSCLESIM_WIDE void addTileProducts(double* tile, const double left[6][width], const double right[6][width], unsigned columns) {
+MUSCLESIM_SIMD void addTileProducts(double* tile, const double left[6][width], const double right[6][width], unsigned columns) {
   const Wide* const rows = reinterpret_cast<const Wide*>(left);
   for (; columns; columns &= columns - 1) {
     const int c = __builtin_ctz(columns);
@@ -121,13 +121,13 @@ MUSCLESIM_WIDE void addTileProducts(double* tile, const double left[6][width], c
   }
 }
 
-MUSCLESIM_WIDE void subtractCombination(double* x, const double y[6][width], const double factors[6]) {
+MUSCLESIM_SIMD void subtractCombination(double* x, const double y[6][width], const double factors[6]) {
   Wide sum = {};
   for (int i = 0; i < 6; ++i) sum += factors[i] * reinterpret_cast<const Wide*>(y)[i];
   *reinterpret_cast<Wide*>(x) -= sum;
 }
 
-MUSCLESIM_WIDE void addProduct(double sums[6], const double y[6][width], const double* x) {
+MUSCLESIM_SIMD void addProduct(double sums[6], const double y[6][width], const double* x) {
   const Wide factors = *reinterpret_cast<const Wide*>(x);
   for (int i = 0; i < 6; ++i) {
     const Wide p = factors * reinterpret_cast<const Wide*>(y)[i];

@@ -14,9 +14,9 @@ namespace musclesim {
 /// are summed over all calls. A pair at distance d is tested again when the sums of its two bodies have grown by d. d is a lower bound of
 /// the distance: between the spheres around all geoms of each body, or between the bounding boxes of the two geoms along the world axis
 /// that separates them most, or between the two geoms along the one of their own axes that separates them most.
-class NearPairs {
+class BroadPhase {
  public:
-  explicit NearPairs(dSpaceID space) : space_(space) {}
+  explicit BroadPhase(dSpaceID space) : space_(space) {}
   /// Calls `near` for the pairs that may touch, in the order of dSpaceCollide. Pairs on the same body or on two joined bodies are left out.
   /// `revision` must change whenever bodies, joints or geoms are added, removed or combined. For a space that is not a simple space, or
   /// that contains other spaces, this calls dSpaceCollide. All geoms must be enabled, and each must be allowed to collide with every other.

@@ -1,4 +1,4 @@
-#include "near_pairs.h"
+#include "broad_phase.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ double difference(const dReal* a, const dReal* b, int count) {
 
 }  // namespace
 
-void NearPairs::collide(long revision, void* data, dNearCallback* near) {
+void BroadPhase::collide(long revision, void* data, dNearCallback* near) {
   const bool known = revision == revision_ && holdsTheGeoms();
   if (known) moveBodies();
   if (!known || haveMovedFar()) makeList();
@@ -35,7 +35,7 @@ void NearPairs::collide(long revision, void* data, dNearCallback* near) {
   for (const auto& [first, second] : found_) near(data, geoms_[first].id, geoms_[second].id);
 }
 
-void NearPairs::look(BodyPair& bodies, double moved_mm) {
+void BroadPhase::look(BodyPair& bodies, double moved_mm) {
   const Body &first = bodies_[bodies.body[0]], &second = bodies_[bodies.body[1]];
   const double apart_mm = difference(first.position, second.position, 3) - first.reach_mm - second.reach_mm;
   if (apart_mm > 0) {
@@ -56,7 +56,7 @@ void NearPairs::look(BodyPair& bodies, double moved_mm) {
 }
 
 /// Adds the bounds on the bodies' motion since the last call.
-void NearPairs::moveBodies() {
+void BroadPhase::moveBodies() {
   // |q - q_0| = 2 sin(angle / 4), so angle <= pi / sqrt(2) |q - q_0| up to half a turn.
   constexpr double most_angle_per_difference = 2.23;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
@@ -72,17 +72,17 @@ void NearPairs::moveBodies() {
 
 /// Whether the list still matches the space. The space puts new or moved geoms in front, so comparing the count and the first geom is
 /// enough.
-bool NearPairs::holdsTheGeoms() const {
+bool BroadPhase::holdsTheGeoms() const {
   const std::size_t count = geoms_.size();
   if (count != static_cast<std::size_t>(dSpaceGetNumGeoms(space_))) return false;
   return left_to_space_ || count == 0 || dSpaceGetGeom(space_, 0) == geoms_.front().id;
 }
 
-bool NearPairs::haveMovedFar() const {
+bool BroadPhase::haveMovedFar() const {
   return std::ranges::any_of(moved_mm_, [](double mm) { return mm > most_moved_mm; });
 }
 
-void NearPairs::makeList() {
+void BroadPhase::makeList() {
   geoms_.clear();
   bodies_.clear();
   moved_mm_.clear();
@@ -101,7 +101,7 @@ void NearPairs::makeList() {
 }
 
 /// Lists all pairs of geoms on two different bodies that no joint connects.
-void NearPairs::listPairs() {
+void BroadPhase::listPairs() {
   pairs_.clear();
   body_pairs_.clear();
   for (std::size_t first = 0; first < bodies_.size(); ++first)
@@ -119,7 +119,7 @@ void NearPairs::listPairs() {
 }
 
 /// Index of a body in bodies_. Adds a new body together with its pose.
-std::size_t NearPairs::placeOf(dBodyID body) {
+std::size_t BroadPhase::placeOf(dBodyID body) {
   const auto found = std::ranges::find(bodies_, body, &Body::id);
   if (found != bodies_.end()) return static_cast<std::size_t>(found - bodies_.begin());
   Body& added = bodies_.emplace_back(Body{body, 0, {}, {}});
@@ -131,7 +131,7 @@ std::size_t NearPairs::placeOf(dBodyID body) {
 }
 
 /// Extends the body's reach by a geom with this bounding box.
-void NearPairs::extend(Body& body, const Box& box) {
+void BroadPhase::extend(Body& body, const Box& box) {
   double square = 0;  // infinite for a plane
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double farthest = std::max(std::abs(box[2 * axis] - body.position[axis]), std::abs(box[2 * axis + 1] - body.position[axis]));
@@ -140,7 +140,7 @@ void NearPairs::extend(Body& body, const Box& box) {
   body.reach_mm = std::max(body.reach_mm, std::sqrt(square));
 }
 
-const NearPairs::Box& NearPairs::boxOf(std::size_t number) {
+const BroadPhase::Box& BroadPhase::boxOf(std::size_t number) {
   Geom& geom = geoms_[number];
   if (geom.box_time != time_) dGeomGetAABB(geom.id, geom.box.data());
   geom.box_time = time_;
@@ -148,7 +148,7 @@ const NearPairs::Box& NearPairs::boxOf(std::size_t number) {
 }
 
 /// The geom as a rounded box; not known for other shapes.
-NearPairs::RoundedBox NearPairs::roundedBoxOf(dGeomID geom) {
+BroadPhase::RoundedBox BroadPhase::roundedBoxOf(dGeomID geom) {
   RoundedBox box = {true, {}, 0};
   switch (dGeomGetClass(geom)) {
     case dBoxClass: {
@@ -170,7 +170,7 @@ NearPairs::RoundedBox NearPairs::roundedBoxOf(dGeomID geom) {
 }
 
 /// Distance along the geoms' own axis that separates them most; 0 if they overlap on all axes or a shape is unknown.
-double NearPairs::ownDistanceMm(const Geom& a, const Geom& b) {
+double BroadPhase::ownDistanceMm(const Geom& a, const Geom& b) {
   if (!a.shape.known || !b.shape.known) return 0;
   const dReal *ra = dGeomGetRotation(a.id), *rb = dGeomGetRotation(b.id);
   const dReal *xa = dGeomGetPosition(a.id), *xb = dGeomGetPosition(b.id);
@@ -193,7 +193,7 @@ double NearPairs::ownDistanceMm(const Geom& a, const Geom& b) {
 }
 
 /// Distance along the axis that separates the boxes most; 0 if they overlap or touch.
-double NearPairs::distanceMm(const Box& a, const Box& b) {
+double BroadPhase::distanceMm(const Box& a, const Box& b) {
   double farthest = 0;
   for (std::size_t axis = 0; axis < 6; axis += 2) farthest = std::max({farthest, a[axis] - b[axis + 1], b[axis] - a[axis + 1]});
   return farthest;

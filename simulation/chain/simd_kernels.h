@@ -1,14 +1,14 @@
 /// SIMD kernels: loops over long rows of numbers in the widest registers of the processor.
 ///
-/// Functions marked MUSCLESIM_WIDE are compiled several times; the loader selects the version that fits the processor. All versions do the
+/// Functions marked MUSCLESIM_SIMD are compiled several times; the loader selects the version that fits the processor. All versions do the
 /// same operations on the same numbers in the same order (sums across a register have a fixed order, and products and sums are not
 /// contracted), so the result does not depend on the processor to the last bit.
 #pragma once
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
-#define MUSCLESIM_WIDE __attribute__((target_clones("avx512f", "avx2", "default")))
+#define MUSCLESIM_SIMD __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
-#define MUSCLESIM_WIDE
+#define MUSCLESIM_SIMD
 #endif
 
 namespace musclesim::chain {
