@@ -217,6 +217,7 @@ void Simulation::internalStep(double h_s) {
           fmt::format("its tension is {} N at {} mm and pressure {}", actuator->tensionN(), actuator->lengthMm(), actuator->pressure()));
   }
   stepper_->applyForces(world_->actuators(), h_s);
+  pushBodies();
   effects_->body(h_s);
   effects_->track(h_s);
   auto& messages = ode_runtime::messagesOfThread();
@@ -233,6 +234,16 @@ void Simulation::internalStep(double h_s) {
   }
   solver_message_count_ += messages.count - messages_before;
   world_->clock().countInternalStep(h_s);
+}
+
+void Simulation::pushBodies() const {
+  const double force_per_N = physics().force_per_N;
+  for (const auto& element : world_->forceElements())
+    element->load(false, [force_per_N](dBodyID body, const BodyLoad& load) {
+      const Vector force = load.force_N * force_per_N, torque = load.torque_Nmm * force_per_N;
+      dBodyAddForce(body, force.x(), force.y(), force.z());
+      dBodyAddTorque(body, torque.x(), torque.y(), torque.z());
+    });
 }
 
 void Simulation::collide(double h_s) {

@@ -15,6 +15,7 @@
 #include "musclesim/base/parameters.h"
 #include "musclesim/robot/body.h"
 #include "musclesim/robot/clock.h"
+#include "musclesim/robot/force_element.h"
 #include "musclesim/robot/joint.h"
 #include "musclesim/robot/muscle_values.h"
 #include "musclesim/robot/physics.h"
@@ -76,6 +77,7 @@ class World {
   const std::vector<Actuator*>& actuators() const { return actuators_.parts(); }
   const std::vector<std::unique_ptr<Joint>>& joints() const { return joints_; }
   const std::vector<std::unique_ptr<Body>>& bodies() const { return bodies_; }
+  const std::vector<std::unique_ptr<ForceElement>>& forceElements() const { return force_elements_; }
   /// Goes up whenever a body, a joint, a shape or a muscle is added or removed.
   long revision() const { return revision_; }
 
@@ -118,6 +120,7 @@ class World {
   Body& addBody(dBodyID id, Primitive& part);
   void removeBody(Body& body);
   Joint& addJoint(Joint::Kind kind, dJointID id, const std::string& name);
+  void addForceElement(std::unique_ptr<ForceElement> element) { force_elements_.push_back(std::move(element)); }
   /// Puts these actuators first, in this order. Throws BadParameter for one that does not belong to this world.
   void putFirst(const std::vector<Actuator*>& first);
 
@@ -188,6 +191,7 @@ class World {
   dSpaceID space_ = nullptr;
   std::vector<std::unique_ptr<Body>> bodies_;
   std::vector<std::unique_ptr<Joint>> joints_;
+  std::vector<std::unique_ptr<ForceElement>> force_elements_;
   PartList<Primitive> primitives_;
   PartList<Actuator> actuators_;
   MuscleValues values_;

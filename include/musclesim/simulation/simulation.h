@@ -122,6 +122,7 @@ class Simulation {
   template <class Function>
   void untilDiverged(const Function& move);
   void internalStep(double h_s);
+  void pushBodies() const;
   void collide(double h_s);
   void requireFinite() const;
   BodyBounds bodyBounds() const;
