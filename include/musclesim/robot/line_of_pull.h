@@ -27,6 +27,8 @@ class LineOfPull {
   /// Fixes an end to a primitive's body (null: the environment). Throws BadParameter if it is already connected.
   void connect(End end, Primitive* primitive, const std::string& muscle_name);
   void addViaPoint(Primitive* primitive, const Vector& point_mm);
+  /// Whether both ends are connected; if not, the thread carries no force.
+  bool isConnected() const { return points_.front().connected && points_.back().connected; }
 
   double lengthMm() const;
   /// Start, via points and end in the world frame.
@@ -46,6 +48,8 @@ class LineOfPull {
   };
   /// One entry per point that is fixed to a body.
   std::vector<Push> pushes() const;
+  /// k max(0, l - l_max), the force of the stop in N.
+  static double stopN(double length_mm, double maximum_length_mm);
   /// stiffnessNPerMm: d(force)/dl at the longest length in N/mm, including the stop's spring. dampingNsPerMm: d(force)/d(speed) at rest, in
   /// N s/mm of true time.
   static double stiffnessNPerMm(double of_tension_N_per_mm);
