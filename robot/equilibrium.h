@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 namespace musclesim {
 
@@ -19,17 +20,22 @@ double rootBetween(const Function& f, double low, double high) {
 }
 
 /// Rest position of something that starts between low and high and is pushed up while f < 0 and down while f > 0. It is the first root on
-/// the way, searched in 64 equal steps, or the end of the range if there is no root.
+/// the way, searched in 64 equal steps, or the end of the range if there is no root. Where the range has no end on that side, 175 steps
+/// grow by 5 % each from 1, which leads to 1e5, and the result is infinite if there is no root.
 template <class Function>
 double restFrom(const Function& f, double start, double low, double high) {
-  constexpr int step_count = 64;
+  constexpr double growth = 1.05;
   start = std::clamp(start, low, high);
-  if (f(start) == 0) return start;
-  const bool up = f(start) < 0;
+  const double push_back = f(start);
+  if (push_back == 0) return start;
+  const bool up = push_back < 0;
   const double end = up ? high : low;
-  double last = start;
+  const bool is_open = std::isinf(end);
+  const int step_count = is_open ? 175 : 64;
+  double last = start, way = 0;
   for (int i = 1; i <= step_count; ++i) {
-    const double next = i == step_count ? end : start + (end - start) * i / step_count;
+    way = 1 + growth * way;
+    const double next = is_open ? start + (up ? way : -way) : i == step_count ? end : start + (end - start) * i / step_count;
     if ((f(next) < 0) != up) return rootBetween(f, std::min(last, next), std::max(last, next));
     last = next;
   }
