@@ -169,6 +169,10 @@ void Actuator::addViaPoint(Primitive* primitive, const Vector& point_mm) {
   takeCleanTension();
 }
 
+void Actuator::recentre(dBodyID body, const Vector& by_mm) {
+  if (line_ && body) line_->recentre(body, by_mm);
+}
+
 double Actuator::calculateForce(double pressure_ratio, double length_mm) const {
   return law_->tensionN(pressure_ratio, length_mm);
 }

@@ -44,6 +44,11 @@ void LineOfPull::addViaPoint(Primitive* primitive, const Vector& point_mm) {
   points_.insert(points_.end() - 1, pointOn(primitive, point_mm));
 }
 
+void LineOfPull::recentre(dBodyID body, const Vector& by_mm) {
+  for (Point& point : points_)
+    if (point.body == body) point.place -= by_mm;
+}
+
 void LineOfPull::locate() const {
   located_.resize(points_.size());
   length_mm_ = 0;

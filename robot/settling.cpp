@@ -142,12 +142,27 @@ class Settling {
     std::vector<Eigen::Index> free = freeAt(q);
     const MatrixXd stiffness = stiffnessAt(q, free);
     while (true) {
-      VectorXd step = VectorXd::Zero(q.size());
-      const VectorXd free_scale = scale_(free);
-      const VectorXd scaled_step = definiteSolution(stiffness(free, free), force_(free).cwiseProduct(free_scale));
-      step(free) = scaled_step.cwiseProduct(free_scale);
+      const VectorXd step = stepOf(free, stiffness);
       if (std::erase_if(free, [&](Eigen::Index i) { return pressesIntoStop(i, q[i], step[i]); }) == 0) return step;
     }
+  }
+
+  /// (K + mu) d = Q of the free coordinates; the others stay.
+  VectorXd stepOf(const std::vector<Eigen::Index>& free, const MatrixXd& stiffness) const {
+    const auto count = static_cast<Eigen::Index>(free.size());
+    VectorXd step = VectorXd::Zero(force_.size()), push(count);
+    MatrixXd own(count, count);
+    for (Eigen::Index row = 0; row < count; ++row) {
+      const Eigen::Index i = free[static_cast<std::size_t>(row)];
+      push[row] = force_[i] * scale_[i];
+      for (Eigen::Index column = 0; column < count; ++column) own(row, column) = stiffness(i, free[static_cast<std::size_t>(column)]);
+    }
+    const VectorXd solution = definiteSolution(own, push);
+    for (Eigen::Index row = 0; row < count; ++row) {
+      const Eigen::Index i = free[static_cast<std::size_t>(row)];
+      step[i] = solution[row] * scale_[i];
+    }
+    return step;
   }
 
   /// The symmetric part of -dQ/dq in N/mm, with the rows and columns of the free coordinates.

@@ -27,6 +27,8 @@ class LineOfPull {
   /// Fixes an end to a primitive's body (null: the environment). Throws BadParameter if it is already connected.
   void connect(End end, Primitive* primitive, const std::string& muscle_name);
   void addViaPoint(Primitive* primitive, const Vector& point_mm);
+  /// Keeps the points on a body in place when its centre of mass has been moved by a vector in its frame, mm.
+  void recentre(dBodyID body, const Vector& by_mm);
   /// Whether both ends are connected; if not, the thread carries no force.
   bool isConnected() const { return points_.front().connected && points_.back().connected; }
 
