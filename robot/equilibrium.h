@@ -9,7 +9,7 @@ namespace musclesim {
 /// Root of an increasing function on low..high, to the last bit. Without a change of sign it returns the end nearer to the root.
 ///
 /// Two secants between the ends, then a bisection, and so on; an end that stays twice counts half (the Illinois algorithm: Dowell & Jarratt
-/// 1971, BIT 11). Some twelve values of a smooth function are needed, where bisection alone needs fifty.
+/// 1971, BIT 11). Some twenty values of a smooth function are needed, where bisection alone needs fifty.
 template <class Function>
 double rootBetween(const Function& f, double low, double high) {
   double at_low = f(low);

@@ -11,7 +11,7 @@
 #include "equilibrium.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/units.h"
-#include "musclesim/robot/primitive.h"
+#include "ode_vector.h"
 #include "resting_forces.h"
 #include "skeleton.h"
 
@@ -209,6 +209,28 @@ class Settling {
   VectorXd force_, force_there_;       ///< on the coordinates: in the present pose, and at the end of a step
 };
 
+/// Where the bodies are before they settle.
+class Poses {
+ public:
+  explicit Poses(const World& world) {
+    for (const auto& body : world.bodies()) poses_.push_back({body->id, positionOf(body->id), rotationOf(body->id)});
+  }
+  void restore() const {
+    for (const Pose& pose : poses_) {
+      dBodySetPosition(pose.body, pose.position.x(), pose.position.y(), pose.position.z());
+      setRotation(pose.body, pose.rotation);
+    }
+  }
+
+ private:
+  struct Pose {
+    dBodyID body;
+    Vector position;
+    Eigen::Matrix3d rotation;
+  };
+  std::vector<Pose> poses_;
+};
+
 /// Bodies that settle do not move; effects may depend on their speed.
 void stopBodies(const World& world) {
   for (const auto& body : world.bodies()) {
@@ -220,10 +242,12 @@ void stopBodies(const World& world) {
 }  // namespace
 
 void placeAtRest(World& world) {
+  const Poses before(world);
   stopBodies(world);
   try {
     Settling(world).place();
   } catch (const BadParameter& why) {
+    before.restore();
     throw BadParameter(fmt::format("initial_state = settled: {}; use built (--initial-state built)", why.what()));
   }
 }
