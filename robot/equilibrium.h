@@ -6,16 +6,35 @@
 
 namespace musclesim {
 
-/// Root of an increasing function on low..high, by bisection to the last bit. Without a change of sign it returns the end nearer to the
-/// root.
+/// Root of an increasing function on low..high, to the last bit. Without a change of sign it returns the end nearer to the root.
+///
+/// Two secants between the ends, then a bisection, and so on; an end that stays twice counts half (the Illinois algorithm: Dowell & Jarratt
+/// 1971, BIT 11). Some twenty values of a smooth function are needed, where bisection alone needs fifty.
 template <class Function>
 double rootBetween(const Function& f, double low, double high) {
-  if (f(low) >= 0) return low;
-  if (f(high) <= 0) return high;
-  while (true) {
+  double at_low = f(low);
+  if (at_low >= 0) return low;
+  double at_high = f(high);
+  if (at_high <= 0) return high;
+  bool low_moved = false, high_moved = false;
+  for (int i = 1;; ++i) {
     const double middle = low + (high - low) / 2;
     if (middle <= low || middle >= high) return middle;
-    (f(middle) < 0 ? low : high) = middle;
+    const double secant = low - at_low * (high - low) / (at_high - at_low);
+    const double next = i % 3 != 0 && secant > low && secant < high ? secant : middle;
+    const double at_next = f(next);
+    if (at_next == 0) return next;
+    if (at_next < 0) {
+      if (low_moved) at_high /= 2;
+      low = next;
+      at_low = at_next;
+    } else {
+      if (high_moved) at_low /= 2;
+      high = next;
+      at_high = at_next;
+    }
+    low_moved = at_next < 0;
+    high_moved = !low_moved;
   }
 }
 

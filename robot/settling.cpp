@@ -11,7 +11,7 @@
 #include "equilibrium.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/units.h"
-#include "musclesim/robot/primitive.h"
+#include "ode_vector.h"
 #include "resting_forces.h"
 #include "skeleton.h"
 
@@ -142,12 +142,27 @@ class Settling {
     std::vector<Eigen::Index> free = freeAt(q);
     const MatrixXd stiffness = stiffnessAt(q, free);
     while (true) {
-      VectorXd step = VectorXd::Zero(q.size());
-      const VectorXd free_scale = scale_(free);
-      const VectorXd scaled_step = definiteSolution(stiffness(free, free), force_(free).cwiseProduct(free_scale));
-      step(free) = scaled_step.cwiseProduct(free_scale);
+      const VectorXd step = stepOf(free, stiffness);
       if (std::erase_if(free, [&](Eigen::Index i) { return pressesIntoStop(i, q[i], step[i]); }) == 0) return step;
     }
+  }
+
+  /// (K + mu) d = Q of the free coordinates; the others stay.
+  VectorXd stepOf(const std::vector<Eigen::Index>& free, const MatrixXd& stiffness) const {
+    const auto count = static_cast<Eigen::Index>(free.size());
+    VectorXd step = VectorXd::Zero(force_.size()), push(count);
+    MatrixXd own(count, count);
+    for (Eigen::Index row = 0; row < count; ++row) {
+      const Eigen::Index i = free[static_cast<std::size_t>(row)];
+      push[row] = force_[i] * scale_[i];
+      for (Eigen::Index column = 0; column < count; ++column) own(row, column) = stiffness(i, free[static_cast<std::size_t>(column)]);
+    }
+    const VectorXd solution = definiteSolution(own, push);
+    for (Eigen::Index row = 0; row < count; ++row) {
+      const Eigen::Index i = free[static_cast<std::size_t>(row)];
+      step[i] = solution[row] * scale_[i];
+    }
+    return step;
   }
 
   /// The symmetric part of -dQ/dq in N/mm, with the rows and columns of the free coordinates.
@@ -194,6 +209,28 @@ class Settling {
   VectorXd force_, force_there_;       ///< on the coordinates: in the present pose, and at the end of a step
 };
 
+/// Where the bodies are before they settle.
+class Poses {
+ public:
+  explicit Poses(const World& world) {
+    for (const auto& body : world.bodies()) poses_.push_back({body->id, positionOf(body->id), rotationOf(body->id)});
+  }
+  void restore() const {
+    for (const Pose& pose : poses_) {
+      dBodySetPosition(pose.body, pose.position.x(), pose.position.y(), pose.position.z());
+      setRotation(pose.body, pose.rotation);
+    }
+  }
+
+ private:
+  struct Pose {
+    dBodyID body;
+    Vector position;
+    Eigen::Matrix3d rotation;
+  };
+  std::vector<Pose> poses_;
+};
+
 /// Bodies that settle do not move; effects may depend on their speed.
 void stopBodies(const World& world) {
   for (const auto& body : world.bodies()) {
@@ -205,10 +242,12 @@ void stopBodies(const World& world) {
 }  // namespace
 
 void placeAtRest(World& world) {
+  const Poses before(world);
   stopBodies(world);
   try {
     Settling(world).place();
   } catch (const BadParameter& why) {
+    before.restore();
     throw BadParameter(fmt::format("initial_state = settled: {}; use built (--initial-state built)", why.what()));
   }
 }

@@ -19,7 +19,7 @@ namespace musclesim {
 /// Sources: Nocedal & Wright, Numerical Optimization, Ch. 3 and 16; Bertsekas 1982, SIAM J. Control Optim. 20.
 ///
 /// Throws BadParameter as Skeleton and RestingForces do and where it finds no equilibrium; the message names the joint that is out of
-/// balance most, and by how much.
+/// balance most, and by how much. The bodies are then where they were, at rest.
 void placeAtRest(World& world);
 
 }  // namespace musclesim
