@@ -183,7 +183,6 @@ void Actuator::addViaPoint(Primitive* primitive, const Vector& point_mm) {
   takeCleanTension();
 }
 
-<<<<<<< HEAD
 void Actuator::addPulley(Primitive* primitive, const Vector& center_mm, const Vector& axis, double radius_mm,
                          const std::optional<Vector>& side_mm) {
   LineOfPull& path = openPath("pulley");
@@ -203,10 +202,10 @@ void Actuator::finishPath() {
   const std::string tendon = line_->tendonMm() > 0 ? fmt::format(", without its tendon of {} mm,", line_->tendonMm()) : "";
   requireStartLength(lengthMm(), "start length of " + name_ + tendon + " along its path");
   path_finished_ = true;
-=======
+}
+
 void Actuator::recentre(dBodyID body, const Vector& by_mm) {
   if (line_ && body) line_->recentre(body, by_mm);
->>>>>>> settle
 }
 
 double Actuator::calculateForce(double pressure_ratio, double length_mm) const {

@@ -51,7 +51,6 @@ void LineOfPull::addViaPoint(Primitive* primitive, const Vector& point_mm) {
   pulleys_.emplace_back();
 }
 
-<<<<<<< HEAD
 void LineOfPull::addPulley(Primitive* primitive, Pulley pulley, const std::string& muscle_name) {
   const std::string name = "pulley of " + muscle_name;
   requireFinite(name + ": center", pulley.center_mm);
@@ -65,32 +64,6 @@ void LineOfPull::addPulley(Primitive* primitive, Pulley pulley, const std::strin
     if (distance_mm < pulley.radius_mm)
       throw BadParameter(name + ": distance of its side point", fmt::format("{:.4g} mm", distance_mm),
                          fmt::format("be at least its radius, {} mm", pulley.radius_mm));
-=======
-void LineOfPull::recentre(dBodyID body, const Vector& by_mm) {
-  for (Point& point : points_)
-    if (point.body == body) point.place -= by_mm;
-}
-
-void LineOfPull::locate() const {
-  located_.resize(points_.size());
-  length_mm_ = 0;
-  Located* before = nullptr;
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const Point& point = points_[i];
-    Located& here = located_[i];
-    here.arm = point.body ? turned(point.place, dBodyGetRotation(point.body)) : point.place;
-    here.position = point.body ? Vector(musclesim::positionOf(point.body) + here.arm) : point.place;
-    here.gradient.setZero();
-    if (before) {
-      Vector direction = here.position - before->position;
-      const double segment_mm = direction.norm();
-      if (segment_mm > 0) direction /= segment_mm;
-      before->gradient -= direction;
-      here.gradient = direction;
-      length_mm_ += segment_mm;
-    }
-    before = &here;
->>>>>>> settle
   }
   if (pulleys_.back()) throw BadParameter("two pulleys of " + muscle_name + " in a row: there must be a via point between them");
   const Point center = pointOn(primitive, pulley.center_mm);
@@ -135,6 +108,16 @@ void LineOfPull::requirePointsOutside(const std::string& muscle_name) const {
                            fmt::format("{:.4g} mm", pulley.distanceMm(point)),
                            fmt::format("be at least the radius, {} mm", pulley.radius_mm));
     }
+  }
+}
+
+void LineOfPull::recentre(dBodyID body, const Vector& by_mm) {
+  for (Point& point : points_)
+    if (point.body == body) point.place -= by_mm;
+  for (auto& mounted : pulleys_) {
+    if (!mounted || mounted->body != body) continue;
+    mounted->pulley.center_mm -= by_mm;
+    if (mounted->pulley.side_mm) *mounted->pulley.side_mm -= by_mm;
   }
 }
 

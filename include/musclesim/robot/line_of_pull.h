@@ -33,7 +33,6 @@ class LineOfPull {
   /// Fixes an end to a primitive's body (null: the environment). Throws BadParameter if it is already connected.
   void connect(End end, Primitive* primitive, const std::string& muscle_name);
   void addViaPoint(Primitive* primitive, const Vector& point_mm);
-<<<<<<< HEAD
   /// Between the point added last and the next one. The axis need not have unit length. Throws BadParameter unless all numbers are finite,
   /// the radius is positive, the side point lies outside, and there is no pulley since the point added last.
   void addPulley(Primitive* primitive, Pulley pulley, const std::string& muscle_name);
@@ -42,10 +41,8 @@ class LineOfPull {
   double tendonMm() const { return tendon_mm_; }
   /// Throws BadParameter for a point inside of the pulley next to it.
   void requirePointsOutside(const std::string& muscle_name) const;
-=======
-  /// Keeps the points on a body in place when its centre of mass has been moved by a vector in its frame, mm.
+  /// Keeps the points and pulleys on a body in place when its centre of mass has been moved by a vector in its frame, mm.
   void recentre(dBodyID body, const Vector& by_mm);
->>>>>>> settle
   /// Whether both ends are connected; if not, the thread carries no force.
   bool isConnected() const { return points_.front().connected && points_.back().connected; }
 
