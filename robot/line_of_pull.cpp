@@ -122,9 +122,9 @@ void LineOfPull::locate() const {
     const Way way = mounted ? wayPast(inWorld(*mounted), here, next) : straightWay(here, next);
     length_mm_ += way.length_mm;
     addPush(points_[i].body, here, gradient - way.start_direction);
-    if (way.wound) {
-      addPush(mounted->body, here, way.start_direction);
-      addPush(mounted->body, next, -way.end_direction);
+    if (way.wound && mounted->body) {
+      const Vector center = positionOf(mounted->body), &d = way.start_direction, &e = way.end_direction;
+      pushes_.push_back({mounted->body, d - e, (here - center).cross(d) - (next - center).cross(e)});
     }
     here = next;
     gradient = way.end_direction;

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 namespace musclesim {
@@ -72,14 +73,17 @@ Winding windingOf(const Pulley& pulley, const Vector& from_mm, const Vector& to_
   w.height_mm = w.n.dot(end) - w.start_height_mm;
   w.k_a_mm = std::sqrt(std::max(0.0, a_squared - r * r));
   w.k_b_mm = std::sqrt(std::max(0.0, b_squared - r * r));
-  const double sine = w.n.dot(w.a.cross(w.b)), angle_rad = std::atan2(std::abs(sine), w.a.dot(w.b));
+  // The arguments of the factors are delta, -phi_a and -phi_b.
+  const double cosine = w.a.dot(w.b), sine = w.n.dot(w.a.cross(w.b));
+  const std::complex<double> tangents = std::complex(r, -w.k_a_mm) * std::complex(r, -w.k_b_mm);
   w.sense = sine >= 0 ? 1 : -1;
-  w.arc_rad = angle_rad - std::atan2(w.k_a_mm, r) - std::atan2(w.k_b_mm, r);
+  w.arc_rad = std::arg(std::complex(cosine, std::abs(sine)) * tangents);
   w.exists = w.arc_rad > 0;
   if (side && !passesWithSegment(w, *side)) {
     w.exists = true;
     w.sense = -w.sense;
-    w.arc_rad += 2 * (std::numbers::pi - angle_rad);
+    w.arc_rad = std::arg(std::complex(cosine, -std::abs(sine)) * tangents);
+    if (w.arc_rad <= 0) w.arc_rad += 2 * std::numbers::pi;
   }
   return w;
 }

@@ -59,7 +59,7 @@ class LineOfPull {
     dBodyID body;
     Vector force, torque;
   };
-  /// One entry per point that is fixed to a body, and two per pulley that is fixed to a body and carries the thread.
+  /// One entry per point that is fixed to a body, and one per pulley that is fixed to a body and carries the thread.
   std::vector<Push> pushes() const;
   /// stiffnessNPerMm: d(force)/dl at the longest length in N/mm, including the stop's spring. dampingNsPerMm: d(force)/d(speed) at rest, in
   /// N s/mm of true time.
