@@ -202,6 +202,10 @@ void Actuator::finishPath() {
   path_finished_ = true;
 }
 
+void Actuator::moveCenter(dBodyID body, const Vector& shift_mm) {
+  if (line_) line_->moveCenter(body, shift_mm);
+}
+
 double Actuator::calculateForce(double pressure_ratio, double length_mm) const {
   return law_->tensionN(pressure_ratio, length_mm);
 }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "musclesim/base/error.h"
+#include "musclesim/robot/actuator.h"
 #include "musclesim/robot/primitive.h"
 #include "ode_vector.h"
 #include "vector_checks.h"
@@ -81,6 +82,7 @@ void Primitive::addPointMass(double mass_g, const Vector& point_mm) {
       total_g > 0 && std::isfinite(total_g) && Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia).eigenvalues()[0] > 0;
   if (!physical)
     throw BadParameter("point mass on " + name_, fmt::format("{} g", mass_g), "leave mass and moments of inertia of its body positive");
+  const Vector shift_in_body_mm = to_body * (center - getPosition());
   std::vector<std::pair<Joint*, Vector>> joints;
   for (const auto& joint : world_.joints())
     if (dJointGetBody(joint->id(), 0) == body_->id || dJointGetBody(joint->id(), 1) == body_->id)
@@ -93,6 +95,7 @@ void Primitive::addPointMass(double mass_g, const Vector& point_mm) {
   for (std::size_t i = 0; i < drawn.size(); ++i)
     dGeomSetOffsetWorldPosition(body_->parts[i]->geom_, drawn[i].x(), drawn[i].y(), drawn[i].z());
   for (const auto& [joint, anchor] : joints) reattach(*joint, anchor);
+  for (Actuator* muscle : world_.actuators()) muscle->moveCenter(body_->id, shift_in_body_mm);
 }
 
 void Primitive::requireComposable() const {

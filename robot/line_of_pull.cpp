@@ -81,6 +81,16 @@ void LineOfPull::setTendonMm(double tendon_mm, const std::string& muscle_name) {
   tendon_mm_ = tendon_mm;
 }
 
+void LineOfPull::moveCenter(dBodyID body, const Vector& shift_mm) {
+  for (Point& point : points_)
+    if (point.body == body) point.place -= shift_mm;
+  for (auto& mounted : pulleys_) {
+    if (!mounted || mounted->body != body) continue;
+    mounted->pulley.center_mm -= shift_mm;
+    if (mounted->pulley.side_mm) *mounted->pulley.side_mm -= shift_mm;
+  }
+}
+
 Vector LineOfPull::worldPosition(const Point& point) {
   if (!point.body) return point.place;
   return positionOf(point.body) + turned(point.place, dBodyGetRotation(point.body));

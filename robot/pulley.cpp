@@ -33,11 +33,11 @@ Vector planeNormal(const Vector& a, const Vector& b, const std::optional<Vector>
 struct Winding {
   bool exists = false;  ///< otherwise the way is straight
   Vector n, a, b;
-  double height_mm, start_height_mm;  ///< from a to b, and of a over the centre
-  double sense;                       ///< s
-  double k_a_mm, k_b_mm;
-  double arc_rad;  ///< theta
-  double radius_mm;
+  double height_mm = 0, start_height_mm = 0;  ///< from a to b, and of a over the centre
+  double sense = 0;                           ///< s
+  double k_a_mm = 0, k_b_mm = 0;
+  double arc_rad = 0;  ///< theta
+  double radius_mm = 0;
 
   double acrossMm() const { return k_a_mm + radius_mm * arc_rad + k_b_mm; }
   /// Directions of the thread across the axis, at a and b.
@@ -109,7 +109,6 @@ Way wayPast(const Pulley& pulley, const Vector& from_mm, const Vector& to_mm) {
   const Winding w = windingOf(pulley, from_mm, to_mm);
   if (!w.exists) return straightWay(from_mm, to_mm);
   const double across_mm = w.acrossMm(), length_mm = std::hypot(across_mm, w.height_mm);
-  if (length_mm == 0) return straightWay(from_mm, to_mm);
   const double share = across_mm / length_mm;
   const Vector climb = w.height_mm / length_mm * w.n;
   return {length_mm, share * w.startAcross() + climb, share * w.endAcross() + climb, true};

@@ -378,6 +378,15 @@ TEST(MuscleOverPulley, ChoosesAStepInWhichItsRobotIsStable) {
   EXPECT_LT(simulation.worstGap().gap_mm, 1);
 }
 
+TEST(LineMuscle, KeepsItsPlacesOnABodyThatCarriesAPointMass) {
+  FreeBodies free({0.2, -0.1, 1}, Vector(0, -60, 0));
+  const std::vector<Vector> before = free.thread->line()->pointsMm();
+  for (Primitive* body : free.bodies) body->addPointMass(200, body->getPosition() + Vector(10, 20, -5));
+  const std::vector<Vector> after = free.thread->line()->pointsMm();
+  ASSERT_EQ(after.size(), before.size());
+  for (std::size_t i = 0; i < before.size(); ++i) EXPECT_LT((after[i] - before[i]).norm(), 1e-10) << i;
+}
+
 TEST(LineMuscle, IsShorterThanItsPathByItsTendon) {
   Simulation simulation(lineOptions("muscle.slider_friction_N=0"));
   auto* load = new Sphere(simulation.world(), nullptr, {0, -350, 0}, 1000, 0, 5);

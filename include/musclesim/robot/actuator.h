@@ -76,6 +76,9 @@ class Actuator : public WorldPart {
   void setColor(double red, double green, double blue, const std::string& name = "");
   void setName(const std::string& name);
 
+  /// For Primitive::addPointMass: LineOfPull::moveCenter of a line muscle.
+  void moveCenter(dBodyID body, const Vector& shift_mm);
+
   // The muscle's entry in World::values().
   double command() const { return world_.values().command_ratio[worldIndex()]; }
   double pressure() const { return world_.values().pressure_ratio[worldIndex()]; }

@@ -42,6 +42,9 @@ class LineOfPull {
   /// Throws BadParameter for a point inside of the pulley next to it.
   void requirePointsOutside(const std::string& muscle_name) const;
 
+  /// Says that a body's centre of mass has moved to another point of the body, given from the old one in the body's frame.
+  void moveCenter(dBodyID body, const Vector& shift_mm);
+
   /// Length of the muscle: that of the path without the tendon.
   double lengthMm() const;
   /// Start, via points and end in the world frame, with points on each pulley where the thread lies on it.

@@ -57,8 +57,9 @@ class Primitive : public WorldPart {
   void fix();
   /// Replaces the moments of inertia about the body's own axes, g mm^2. Throws BadParameter unless all are positive.
   void setInertia(const Vector& moments_g_mm2);
-  /// Adds a point mass to the body at a point of the world; negative: takes one away. Mass, centre of mass and inertia follow, joints and
-  /// drawing stay. Only while the robot stands as built. Throws BadParameter unless mass and moments of inertia stay positive.
+  /// Adds a point mass to the body at a point of the world; negative: takes one away. Mass, centre of mass and inertia follow; joints,
+  /// line muscles and drawing stay. Only while the robot stands as built. Throws BadParameter unless mass and moments of inertia stay
+  /// positive.
   void addPointMass(double mass_g, const Vector& point_mm);
   /// Moves the body (with all its parts) to a position of its centre of mass and an orientation, at rest. Joints keep their reference.
   void place(const Vector& position_mm, const Eigen::Matrix3d& rotation);
