@@ -6,11 +6,15 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "../../robot/actuator_step.h"
 #include "../../robot/ode_vector.h"
+#include "../../simulation/snapshot.h"
 #include "musclesim/base/units.h"
 #include "musclesim/robot/linear_actuator.h"
 #include "musclesim/robot/muscle.h"
@@ -362,6 +366,14 @@ TEST(MuscleOverPulley, MovesAlikeUnderBothSteppers) {
     EXPECT_GT(std::abs(angles.back()[0]), 5);
   }
   for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(angles[0][i], angles[1][i], 1e-4);
+}
+
+TEST(MuscleOverPulley, IsDrawnOnItsPulley) {
+  Simulation simulation(lineOptions());
+  Robot& robot = simulation.build<ArmWithPulleys>();
+  const Snapshot snapshot = SnapshotTaker(simulation).take(robot.getState());
+  ASSERT_EQ(snapshot.hoses.size(), 4u);
+  for (const DrawnHose& hose : snapshot.hoses) EXPECT_GT(hose.points_mm.size(), 3u) << "both ends and points on the pulley";
 }
 
 TEST(MuscleOverPulley, ChoosesAStepInWhichItsRobotIsStable) {
