@@ -10,6 +10,7 @@
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
 #include "musclesim/robot/robot_file.h"
+#include "musclesim/simulation/replay.h"
 #include "pictures.h"
 #include "robot_template.h"
 
@@ -21,7 +22,10 @@ namespace fs = std::filesystem;
 
 /// A simulation with the robot as built, to look at.
 std::unique_ptr<Simulation> built(const ModelOptions& model, const std::string& robot) {
-  auto simulation = std::make_unique<Simulation>(simulationOptions(model));
+  const ReplayOptions options = replayOptionsFrom(model);
+  RecordingInfo plant;
+  plant.robot = robot;
+  auto simulation = std::make_unique<Simulation>(simulationOptionsFor(plant, robot, options));
   simulation->build(robot);
   simulation->parameters().requireAllKnown();
   return simulation;
@@ -36,7 +40,7 @@ int check(const ModelOptions& model, const std::string& robot) {
   const Robot& made = simulation->robot();
   fmt::print("{}: {} bodies, {} joints with a reported angle, {} muscles; starts {}\n", robot, simulation->world().bodies().size(),
              made.angles().size(), made.actuatorCount(), made.initialState());
-  if (made.initialState() == "settled") simulation->settle(Action(static_cast<std::size_t>(made.actuatorCount()), 0.0));
+  if (made.initialState() == "settled") simulation->settle(musclesim::Action(static_cast<std::size_t>(made.actuatorCount()), 0.0));
   const auto found = oddities(simulation->world(), made);
   printOddities(found);
   if (found.empty()) fmt::print("nothing odd found\n");

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "musclesim/base/error.h"
+#include "musclesim/robot/line_of_pull.h"
 #include "musclesim/robot/robot_registry.h"
 #include "musclesim/simulation/simulation.h"
 #include "support/support.h"
