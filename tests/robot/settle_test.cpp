@@ -62,7 +62,7 @@ class TorsionPendulum : public Robot {
  public:
   explicit TorsionPendulum(World& world) : Robot(world) {
     Box& bar = addBox({.mass_g = 1000, .center_mm = {100, 0, 0}, .size_mm = {200, 20, 20}});
-    const Joint& hinge = bar.hingeToWorld({.anchor_mm = Vector(0, 0, 0)});
+    Joint& hinge = bar.hingeToWorld({.anchor_mm = Vector(0, 0, 0)});
     reportAngle("bar", hinge);
     const double rest_rad = rests_at_rad + g_N_per_kg * 0.1 * std::cos(rests_at_rad) / 2;
     world.addForceElement(std::make_unique<TorsionSpring>(hinge, 2.0, rest_rad));
