@@ -41,7 +41,7 @@ int check(const ModelOptions& model, const std::string& robot) {
   fmt::print("{}: {} bodies, {} joints with a reported angle, {} muscles; starts {}\n", robot, simulation->world().bodies().size(),
              made.angles().size(), made.actuatorCount(), made.initialState());
   if (made.initialState() == "settled") simulation->settle(musclesim::Action(static_cast<std::size_t>(made.actuatorCount()), 0.0));
-  const auto found = oddities(simulation->world(), made);
+  const auto found = oddities(simulation->world(), made);  // moves the bodies: the last thing to do
   printOddities(found);
   if (found.empty()) fmt::print("nothing odd found\n");
   return done;
@@ -62,7 +62,12 @@ int show(const ModelOptions& model, const ShowArguments& arguments) {
   const auto painter = makePictures(pictures, *simulation);
   painter->see(simulation->robot().getState());
   painter->finish();
-  const auto arms = momentArms(simulation->world(), simulation->robot());
+  std::vector<MomentArms> arms;
+  try {
+    arms = momentArms(simulation->world(), simulation->robot());
+  } catch (const BadParameter& problem) {
+    fmt::print("no moment arms: {}\n", problem.what());
+  }
   if (arms.empty()) return done;
   const std::string figure = stem.string() + "-moment-arms.svg";
   replaceFile(figure, momentArmFigure(arms, simulation->robot()));
