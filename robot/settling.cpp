@@ -26,23 +26,17 @@ using Eigen::VectorXd;
 
 constexpr double lever_mm = 100;  ///< turns angles into millimetres: about the size of the robots here
 constexpr double full_turn_rad = 2 * std::numbers::pi;
-constexpr double difference_mm = 1e-4;               ///< of central differences: their errors of order 2 and those of
-                                                     ///< rounding are about equal
-constexpr double rest_energy_ratio = 1e-22;          ///< of typical force times lever: (1e-11)^2, as the energy is
-                                                     ///< quadratic about its minimum
-constexpr double longest_step_mm = 25;               ///< a quarter of the lever: less than the way over which muscles turn
-                                                     ///< their lines around
-constexpr double push_back_ratio = 0.5;              ///< at 1 the energy along a step of constant stiffness would stay the
-                                                     ///< same
-constexpr double still_pushing_ratio = 0.5;          ///< of the push along a step: Newton's step would leave none
-constexpr double soft_ratio = 1e-9;                  ///< stiffness added where there is none, above the rounding of
-                                                     ///< central differences
+constexpr double difference_mm = 1e-6;       ///< of central differences: less than a chain yields in its stop; leaves K seven digits
+constexpr double rest_energy_ratio = 1e-22;  ///< of typical force times lever: (1e-11)^2, as the energy is quadratic about its minimum
+constexpr double longest_step_mm = 25;       ///< a quarter of the lever: less than the way over which muscles turn their lines around
+constexpr double push_back_ratio = 0.5;      ///< at 1 the energy along a step of constant stiffness would stay the same
+constexpr double still_pushing_ratio = 0.5;  ///< of the push along a step: Newton's step would leave none
+constexpr double soft_ratio = 1e-9;          ///< stiffness added where there is none, above the rounding of central differences
 constexpr double least_stiffness_N_per_mm = 1e-100;  ///< not 0 where nothing acts
 constexpr double first_levenberg_ratio = 1e-3;       ///< of the stiffness; then four times more until it suffices
 constexpr int step_limit = 500;                      ///< some ten suffice; ways of metres take a hundred
 constexpr int halving_limit = 40;
-constexpr double stop_accuracy_mm = 1e-9;  ///< of the length of a chain at its stop: its beads' positions have
-                                           ///< about that many digits
+constexpr double stop_accuracy_mm = 1e-9;  ///< of the length of a chain at its stop: its beads' positions have about that many digits
 constexpr int correction_limit = 40;       ///< some five suffice
 
 class Settling {
@@ -90,8 +84,7 @@ class Settling {
     step *= share;
   }
 
-  /// Coordinates after a step that ends at stops; rounding does not lead beyond
-  /// them.
+  /// Coordinates after a step that ends at stops; rounding does not lead beyond them.
   VectorXd moved(const VectorXd& q, const VectorXd& step) const {
     VectorXd there = skeleton_.displaced(q, step);
     for (const Eigen::Index i : movable_) there[i] = std::clamp(there[i], at(i).low, at(i).high);
@@ -116,8 +109,7 @@ class Settling {
   }
 
   VectorXd restOfSeveral(VectorXd q) {
-    double stretch = 1;  // steps that added stiffness has made too short grow
-                         // until they have an effect
+    double stretch = 1;  // steps that added stiffness has made too short grow until they have an effect
     forces_.at(q, force_);
     for (int i = 0; i < step_limit; ++i) {
       VectorXd step = newtonStep(q);
@@ -126,14 +118,15 @@ class Settling {
       const double length_mm = step.cwiseQuotient(scale_).norm();
       if (length_mm > longest_step_mm) step *= longest_step_mm / length_mm;
       endAtStops(q, step);
-      if (!goDownhill(q, step)) break;
+      const std::optional<double> left = goDownhill(q, step);
+      if (!left) break;
+      stretch = *left > still_pushing_ratio ? 2 * stretch : 1;
     }
     throwUnbalanced(q);
   }
 
-  /// Goes the step, or a half, a quarter, ... of it. Returns which share of the
-  /// push along it is left at its end; nothing where the forces push back even
-  /// after the shortest.
+  /// Goes the step, or a half, a quarter, ... of it. Returns which share of the push along it is left at its end; nothing where the forces
+  /// push back even after the shortest.
   std::optional<double> goDownhill(VectorXd& q, VectorXd step) {
     for (int i = 0; i < halving_limit; ++i, step /= 2) {
       const VectorXd there = moved(q, step);
@@ -186,8 +179,7 @@ class Settling {
     return step;
   }
 
-  /// The symmetric part of -dQ/dq in N/mm, with the rows and columns of the
-  /// free coordinates.
+  /// The symmetric part of -dQ/dq in N/mm, with the rows and columns of the free coordinates.
   MatrixXd stiffnessAt(const VectorXd& q, const std::vector<Eigen::Index>& free) {
     MatrixXd stiffness = MatrixXd::Zero(q.size(), q.size());
     VectorXd behind = force_, ahead = force_, step = VectorXd::Zero(q.size());
@@ -228,8 +220,7 @@ class Settling {
   std::vector<Eigen::Index> movable_;  ///< coordinates without those that are locked
   VectorXd built_;                     ///< the pose as built, within the stops
   VectorXd scale_;                     ///< displacement of a coordinate that counts as 1 mm
-  VectorXd force_, force_there_;       ///< on the coordinates: in the present pose,
-                                       ///< and at the end of a step
+  VectorXd force_, force_there_;       ///< on the coordinates: in the present pose, and at the end of a step
 };
 
 /// Where the bodies are before they settle.
