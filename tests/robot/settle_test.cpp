@@ -224,11 +224,8 @@ class Row : public Robot {
     Box& inner = addBox({.mass_g = 300, .center_mm = {50, 0, 0}, .size_mm = {100, 10, 10}});
     Box& outer = addBox({.mass_g = 300, .center_mm = {150, 0, 0}, .size_mm = {100, 10, 10}});
     reportAngle("inner", inner.hingeToWorld({.anchor_mm = Vector(0, 0, 0), .limits_deg = Limits{-25, 10}}));
-    reportAngle("outer", outer.hingeTo(inner, {.anchor_mm = Vector(100, 0, 0), .limits_deg = limits(world)}));
-  }
-  Limits limits(World& world) {
-    return {-parameter("row.outer_deg", 40, "deg", 0, 170, "lower stop of the outer hinge"),
-            world.physics().gravity_mm_per_s2 > 0 ? 30 : 1.0};
+    const double low_deg = -parameter("row.outer_deg", 40, "deg", 0, 170, "lower stop of the outer hinge");
+    reportAngle("outer", outer.hingeTo(inner, {.anchor_mm = Vector(100, 0, 0), .limits_deg = Limits{low_deg, 30}}));
   }
 };
 
