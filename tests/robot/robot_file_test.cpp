@@ -324,13 +324,13 @@ TEST(RobotFile, MusclesHaveLawsPathsAndTendonsOfTheirOwn) {
 }
 
 TEST(RobotFile, LinearActuatorsPullByAnExpression) {
-  Built built(replaced("[hand]", R"([[actuator]]
+  Built built(replaced("[hand]", R"toml([[actuator]]
 from = { body = "world", at_mm = [0, 250, 0] }
 to = { body = "bar", at_mm = [50, 10, 0] }
 length_mm = [0, 500]
 force_N = "10 * p + 0.5 * max(0, l_mm - lever_mm)"
 
-[hand])"));
+[hand])toml"));
   const Actuator& actuator = *built.robot->actuators()[2];
   EXPECT_NEAR(actuator.calculateForce(0.5, 180), 5 + 50, 1e-12);
 }

@@ -29,8 +29,8 @@ class Machine : public Robot {
   static constexpr double bar_kgm2 = 0.4 * (0.2 * 0.2 + 0.02 * 0.02) / 12 + 0.4 * 0.1 * 0.1;
 };
 
-struct Setup {
-  explicit Setup(PhysicsKind physics = PhysicsKind::si, StepperKind stepper = StepperKind::automatic)
+struct Bench {
+  explicit Bench(PhysicsKind physics = PhysicsKind::si, StepperKind stepper = StepperKind::automatic)
       : simulation(optionsWith(physics, stepper)), machine(simulation.build<Machine>()) {}
   static SimulationOptions optionsWith(PhysicsKind physics, StepperKind stepper) {
     SimulationOptions options;
@@ -53,102 +53,102 @@ struct Setup {
 
 class JointMechanicsTest : public testing::TestWithParam<StepperKind> {
  protected:
-  Setup setup{PhysicsKind::si, GetParam()};
+  Bench bench{PhysicsKind::si, GetParam()};
 };
 
 TEST_P(JointMechanicsTest, DryFrictionBrakesEvenlyAndHolds) {
-  addJointMechanics(setup.simulation.world(), *setup.machine.hinge, {.friction = 0.01});
-  setup.turnBar(2);
-  setup.run(0.5);
-  EXPECT_NEAR(setup.barRadPerS(), 2 - 0.01 / Machine::bar_kgm2 * 0.5, 2e-3);
-  setup.run(1);
-  const double rested_deg = setup.machine.hinge->angleDeg();
+  addJointMechanics(bench.simulation.world(), *bench.machine.hinge, {.friction = 0.01});
+  bench.turnBar(2);
+  bench.run(0.5);
+  EXPECT_NEAR(bench.barRadPerS(), 2 - 0.01 / Machine::bar_kgm2 * 0.5, 2e-3);
+  bench.run(1);
+  const double rested_deg = bench.machine.hinge->angleDeg();
   EXPECT_NEAR(rested_deg, 4 / (2 * 0.01 / Machine::bar_kgm2) * deg_per_rad, 0.1);
-  setup.run(0.5);
-  EXPECT_NEAR(setup.machine.hinge->angleDeg(), rested_deg, 1e-4);
+  bench.run(0.5);
+  EXPECT_NEAR(bench.machine.hinge->angleDeg(), rested_deg, 1e-4);
 }
 
 TEST_P(JointMechanicsTest, DampingSlowsExponentially) {
-  addJointMechanics(setup.simulation.world(), *setup.machine.hinge, {.damping = 0.01});
-  setup.turnBar(2);
-  setup.run(0.5);
-  EXPECT_NEAR(setup.barRadPerS(), 2 * std::exp(-0.01 / Machine::bar_kgm2 * 0.5), 2e-3);
+  addJointMechanics(bench.simulation.world(), *bench.machine.hinge, {.damping = 0.01});
+  bench.turnBar(2);
+  bench.run(0.5);
+  EXPECT_NEAR(bench.barRadPerS(), 2 * std::exp(-0.01 / Machine::bar_kgm2 * 0.5), 2e-3);
 }
 
 TEST_P(JointMechanicsTest, StrongDampingDoesNotMakeAStepUnstable) {
-  addJointMechanics(setup.simulation.world(), *setup.machine.hinge, {.damping = 1e3});
-  setup.turnBar(2);
-  setup.run(0.1);
-  EXPECT_LT(std::abs(setup.barRadPerS()), 1e-3);
+  addJointMechanics(bench.simulation.world(), *bench.machine.hinge, {.damping = 1e3});
+  bench.turnBar(2);
+  bench.run(0.1);
+  EXPECT_LT(std::abs(bench.barRadPerS()), 1e-3);
 }
 
 TEST_P(JointMechanicsTest, SliderHasFrictionDampingAndSpring) {
-  addJointMechanics(setup.simulation.world(), *setup.machine.rail, {.friction = 2});
-  dBodySetLinearVel(setup.machine.carriage->body().id, 1000, 0, 0);
-  setup.run(0.25);
-  EXPECT_NEAR(setup.carriageMmPerS(), 500, 3);
-  setup.run(0.5);
-  EXPECT_NEAR(setup.carriageMmPerS(), 0, 1e-3);
+  addJointMechanics(bench.simulation.world(), *bench.machine.rail, {.friction = 2});
+  dBodySetLinearVel(bench.machine.carriage->body().id, 1000, 0, 0);
+  bench.run(0.25);
+  EXPECT_NEAR(bench.carriageMmPerS(), 500, 3);
+  bench.run(0.5);
+  EXPECT_NEAR(bench.carriageMmPerS(), 0, 1e-3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Steppers, JointMechanicsTest, testing::Values(StepperKind::chain, StepperKind::ode));
 
 TEST(JointSpring, SwingsWithItsPeriodAboutItsRest) {
-  Setup setup;
-  addJointMechanics(setup.simulation.world(), *setup.machine.hinge, {.stiffness = 0.5, .rest = 20});
+  Bench bench;
+  addJointMechanics(bench.simulation.world(), *bench.machine.hinge, {.stiffness = 0.5, .rest = 20});
   const double half_period_s = std::numbers::pi * std::sqrt(Machine::bar_kgm2 / 0.5);
-  setup.run(half_period_s);
-  EXPECT_NEAR(setup.machine.hinge->angleDeg(), 40, 0.1);
-  setup.run(half_period_s);
-  EXPECT_NEAR(setup.machine.hinge->angleDeg(), 0, 0.1);
+  bench.run(half_period_s);
+  EXPECT_NEAR(bench.machine.hinge->angleDeg(), 40, 0.1);
+  bench.run(half_period_s);
+  EXPECT_NEAR(bench.machine.hinge->angleDeg(), 0, 0.1);
 }
 
 TEST(JointSpring, IsTheSameInOriginalUnitsButSlower) {
-  Setup setup(PhysicsKind::original);
-  addJointMechanics(setup.simulation.world(), *setup.machine.hinge, {.stiffness = 0.5, .rest = 20});
-  setup.run(std::numbers::pi * std::sqrt(Machine::bar_kgm2 / 0.5) * std::sqrt(1000.0));
-  EXPECT_NEAR(setup.machine.hinge->angleDeg(), 40, 0.1);
+  Bench bench(PhysicsKind::original);
+  addJointMechanics(bench.simulation.world(), *bench.machine.hinge, {.stiffness = 0.5, .rest = 20});
+  bench.run(std::numbers::pi * std::sqrt(Machine::bar_kgm2 / 0.5) * std::sqrt(1000.0));
+  EXPECT_NEAR(bench.machine.hinge->angleDeg(), 40, 0.1);
 }
 
 TEST(JointMechanics, RefusesNegativeValues) {
-  Setup setup;
-  EXPECT_THROW(addJointMechanics(setup.simulation.world(), *setup.machine.hinge, {.friction = -1}), BadParameter);
-  EXPECT_THROW(addJointMechanics(setup.simulation.world(), *setup.machine.hinge, {.damping = -1}), BadParameter);
-  EXPECT_THROW(addJointMechanics(setup.simulation.world(), *setup.machine.hinge, {.stiffness = std::nan("")}), BadParameter);
+  Bench bench;
+  EXPECT_THROW(addJointMechanics(bench.simulation.world(), *bench.machine.hinge, {.friction = -1}), BadParameter);
+  EXPECT_THROW(addJointMechanics(bench.simulation.world(), *bench.machine.hinge, {.damping = -1}), BadParameter);
+  EXPECT_THROW(addJointMechanics(bench.simulation.world(), *bench.machine.hinge, {.stiffness = std::nan("")}), BadParameter);
 }
 
-std::unique_ptr<PointSpring> springTo(Setup& setup, const PointSpringSettings& settings) {
-  return std::make_unique<PointSpring>(setup.simulation.world(), Attachment{nullptr, {300, 500, 0}},
-                                       Attachment{setup.machine.carriage, {0, 500, 0}}, settings);
+std::unique_ptr<PointSpring> springTo(Bench& bench, const PointSpringSettings& settings) {
+  return std::make_unique<PointSpring>(bench.simulation.world(), Attachment{nullptr, {300, 500, 0}},
+                                       Attachment{bench.machine.carriage, {0, 500, 0}}, settings);
 }
 
 TEST(PointSpring, PullsTheCarriageToItsRestLengthAndBack) {
-  Setup setup;
-  setup.simulation.world().addForceElement(springTo(setup, {.stiffness_N_per_mm = 0.5, .rest_mm = 250}));
-  setup.run(std::numbers::pi * std::sqrt(1 / 500.0));
-  EXPECT_NEAR(setup.machine.carriage->getPosition().x(), 100, 0.1);
+  Bench bench;
+  bench.simulation.world().addForceElement(springTo(bench, {.stiffness_N_per_mm = 0.5, .rest_mm = 250}));
+  bench.run(std::numbers::pi * std::sqrt(1 / 500.0));
+  EXPECT_NEAR(bench.machine.carriage->getPosition().x(), 100, 0.1);
 }
 
 TEST(PointSpring, DampingTakesEnergyAway) {
-  Setup setup;
-  setup.simulation.world().addForceElement(springTo(setup, {.stiffness_N_per_mm = 0.5, .rest_mm = 250, .damping_Ns_per_m = 2}));
+  Bench bench;
+  bench.simulation.world().addForceElement(springTo(bench, {.stiffness_N_per_mm = 0.5, .rest_mm = 250, .damping_Ns_per_m = 2}));
   const double decay_per_s = 2 / 2.0, rate = std::sqrt(500 - decay_per_s * decay_per_s), half_period_s = std::numbers::pi / rate;
-  setup.run(half_period_s);
-  EXPECT_NEAR(setup.machine.carriage->getPosition().x(), 50 * (1 + std::exp(-decay_per_s * half_period_s)), 0.2);
+  bench.run(half_period_s);
+  EXPECT_NEAR(bench.machine.carriage->getPosition().x(), 50 * (1 + std::exp(-decay_per_s * half_period_s)), 0.2);
 }
 
 TEST(PointSpring, ARopeDoesNotPush) {
-  Setup setup;
-  setup.simulation.world().addForceElement(springTo(setup, {.stiffness_N_per_mm = 0.5, .rest_mm = 350, .pulls_only = true}));
-  setup.run(0.2);
-  EXPECT_NEAR(setup.machine.carriage->getPosition().x(), 0, 1e-9);
+  Bench bench;
+  bench.simulation.world().addForceElement(springTo(bench, {.stiffness_N_per_mm = 0.5, .rest_mm = 350, .pulls_only = true}));
+  bench.run(0.2);
+  EXPECT_NEAR(bench.machine.carriage->getPosition().x(), 0, 1e-9);
 }
 
 TEST(PointSpring, StaysInPlaceWhenTheCentreOfMassMoves) {
-  Setup setup;
-  auto spring = springTo(setup, {.stiffness_N_per_mm = 0.5, .rest_mm = 250});
+  Bench bench;
+  auto spring = springTo(bench, {.stiffness_N_per_mm = 0.5, .rest_mm = 250});
   const PointSpring& kept = *spring;
-  setup.simulation.world().addForceElement(std::move(spring));
+  bench.simulation.world().addForceElement(std::move(spring));
   const auto forceOn = [&] {
     Vector sum = Vector::Zero();
     kept.load(true, [&](dBodyID, const BodyLoad& load) { sum += load.force_N; });
@@ -156,27 +156,27 @@ TEST(PointSpring, StaysInPlaceWhenTheCentreOfMassMoves) {
   };
   const Vector before = forceOn();
   EXPECT_NEAR(before.x(), 25, 1e-9);
-  setup.machine.carriage->addPointMass(1000, {8, 505, 0});
+  bench.machine.carriage->addPointMass(1000, {8, 505, 0});
   EXPECT_LT((forceOn() - before).norm(), 1e-9);
 }
 
 TEST(Wall, ThrowsTheCarriageBack) {
-  Setup setup;
-  setup.simulation.world().addForceElement(std::make_unique<Wall>(setup.simulation.world(), Attachment{setup.machine.carriage, {0, 500, 0}},
+  Bench bench;
+  bench.simulation.world().addForceElement(std::make_unique<Wall>(bench.simulation.world(), Attachment{bench.machine.carriage, {0, 500, 0}},
                                                                   Vector(50, 0, 0), Vector(-1, 0, 0), 10.0));
-  dBodySetLinearVel(setup.machine.carriage->body().id, 1000, 0, 0);
+  dBodySetLinearVel(bench.machine.carriage->body().id, 1000, 0, 0);
   const double deepest_mm = 1000 * std::sqrt(1 / 10000.0);
-  setup.run(0.05 + std::numbers::pi / 2 * std::sqrt(1 / 10000.0));
-  EXPECT_NEAR(setup.machine.carriage->getPosition().x(), 50 + deepest_mm, 0.5);
-  setup.run(0.2);
-  EXPECT_NEAR(setup.carriageMmPerS(), -1000, 10);
+  bench.run(0.05 + std::numbers::pi / 2 * std::sqrt(1 / 10000.0));
+  EXPECT_NEAR(bench.machine.carriage->getPosition().x(), 50 + deepest_mm, 0.5);
+  bench.run(0.2);
+  EXPECT_NEAR(bench.carriageMmPerS(), -1000, 10);
 }
 
 TEST(Wall, RefusesANormalWithoutDirectionAndASoftWall) {
-  Setup setup;
-  const Attachment point{setup.machine.carriage, {0, 500, 0}};
-  EXPECT_THROW(Wall(setup.simulation.world(), point, {50, 0, 0}, {0, 0, 0}, 1), BadParameter);
-  EXPECT_THROW(Wall(setup.simulation.world(), point, {50, 0, 0}, {1, 0, 0}, 0), BadParameter);
+  Bench bench;
+  const Attachment point{bench.machine.carriage, {0, 500, 0}};
+  EXPECT_THROW(Wall(bench.simulation.world(), point, {50, 0, 0}, {0, 0, 0}, 1), BadParameter);
+  EXPECT_THROW(Wall(bench.simulation.world(), point, {50, 0, 0}, {1, 0, 0}, 0), BadParameter);
 }
 
 }  // namespace
