@@ -54,14 +54,15 @@ void registerBodies(const World& world, Model& model) {
     model.places.push_back({-1, 0});
   }
   model.bones.resize(model.places.size());
-  for (std::size_t i = 0; i < world.actuators().size(); ++i) {
-    const Actuator& actuator = *world.actuators()[i];
-    for (std::size_t link = 0; link < actuator.links().size(); ++link)
+  int chain = -1;  // lines have no beads and do not count
+  for (const Actuator* actuator : world.actuators()) {
+    if (!actuator->line()) ++chain;
+    for (std::size_t link = 0; link < actuator->links().size(); ++link)
       for (int end = 0; end < 2; ++end) {
-        const dBodyID bead = actuator.links()[link].bead[end];
-        requirePlainBody(bead, "a bead of " + actuator.name());
+        const dBodyID bead = actuator->links()[link].bead[end];
+        requirePlainBody(bead, "a bead of " + actuator->name());
         model.bodies.add(bead);
-        model.places.push_back({static_cast<int>(i), static_cast<int>(2 * link) + end});
+        model.places.push_back({chain, static_cast<int>(2 * link) + end});
       }
   }
   model.bodies.sort();

@@ -335,5 +335,24 @@ force_N = "10 * p + 0.5 * max(0, l_mm - lever_mm)"
   EXPECT_NEAR(actuator.calculateForce(0.5, 180), 5 + 50, 1e-12);
 }
 
+/// Lines before chains in one robot: the steppers must not take a bead of one muscle for that of another.
+TEST(RobotFile, LinesAndChainsMoveAlikeUnderBothSteppers) {
+  std::vector<std::vector<double>> ends;
+  for (const StepperKind stepper : {StepperKind::chain, StepperKind::ode}) {
+    SimulationOptions options;
+    options.stepper = stepper;
+    options.parameters.setFromText("muscle.slider_friction_N=0", "test");
+    options.parameters.setFromText("muscle.hinge_friction_Nm=0", "test");
+    std::string text = lever;
+    const auto second = text.find("name = \"left\"");
+    text.replace(text.find("model = \"line\"", second), 14, "model = \"chain\"");
+    Built built(text, std::move(options));
+    built.simulation.start("built", {0.2, 0.4});
+    for (int i = 0; i < 20; ++i) built.simulation.step();
+    ends.push_back(built.robot->signalValues(built.robot->getState()));
+  }
+  for (std::size_t i = 0; i < ends[0].size(); ++i) EXPECT_NEAR(ends[0][i], ends[1][i], 1e-6 * (1 + std::abs(ends[1][i])));
+}
+
 }  // namespace
 }  // namespace musclesim
