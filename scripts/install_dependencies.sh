@@ -24,6 +24,8 @@ build_packages=(
   "libcli11-dev           command line"
   "libceres-dev           fits of force laws"
   "nettle-dev             fingerprints of sealed files"
+  "libtinyxml2-dev        import of URDF and MuJoCo files"
+  "libsdformat-dev        import of SDF files"
   "libgl-dev              drawing"
   "libosmesa6-dev         pictures without a display"
   "libpng-dev             pictures as files"
@@ -33,6 +35,7 @@ build_packages=(
 )
 test_packages=(
   "libgtest-dev           test framework"
+  "libmujoco-dev          what imported robots are compared with"
   "python3                the test of scripts/check_layers.py"
   "gnuplot-nox            draws figures from recordings"
   "librsvg2-bin           checks that figures can be rendered"
