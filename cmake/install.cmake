@@ -66,7 +66,7 @@ set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "simulator of robots driven by pneumatic
  Simulates robots, replays recordings through them, and says where and why recordings of a real machine differ from the model.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libmusclesim-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libode-dev, libeigen3-dev, libfmt-dev, nlohmann-json3-dev, libtomlplusplus-dev, pkg-config")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libode-dev, libeigen3-dev, libfmt-dev, nlohmann-json3-dev, libtomlplusplus-dev, libmuparser-dev, pkg-config")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "library, headers and examples of musclesim
  For robots, controllers, effects and force laws of one's own.")
 include(CPack)

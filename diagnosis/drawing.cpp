@@ -14,7 +14,7 @@ namespace {
 RobotDrawing::Line lineOf(const DrawnPart& part) {
   Eigen::Vector3f half = Eigen::Vector3f::Zero();
   float width = 2 * part.size_mm.x();
-  if (part.kind == Shape::Kind::capped_cylinder) half.z() = part.size_mm.y() / 2;
+  if (part.kind == Shape::Kind::capped_cylinder || part.kind == Shape::Kind::cylinder) half.z() = part.size_mm.y() / 2;
   if (part.kind == Shape::Kind::box) {
     Eigen::Index longest = 0;
     part.size_mm.maxCoeff(&longest);

@@ -96,6 +96,7 @@ Plant::Plant(std::vector<Recording> recordings, const DiagnosisOptions& options)
   reference_ = std::make_unique<Simulation>(simulationOptionsFor(info, sidecarPath(recordings_.front().file), options_.model));
   reference_->build(info.robot);
   reference_->parameters().requireAllKnown();
+  if (std::string note = otherDescriptionNote(info, reference_->robot()); !note.empty()) notes_.push_back(std::move(note));
   for (const std::string& name : options.tune) tuned_.push_back(numberNamed(name));
   const bool has_hinges =
       std::ranges::any_of(reference_->world().actuators(), [](const auto& actuator) { return !actuator->hinges().empty(); });

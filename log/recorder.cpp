@@ -31,7 +31,7 @@ struct Recorder::Implementation {
       : csv_file(file), info(std::move(sidecar)), rows(std::move(columns)) {
     if (std::filesystem::path(file).extension() != ".csv") throw BadParameter("recording file", file, "end in .csv");
     info.complete = false;
-    replaceFile(sidecarPath(csv_file), sidecarText(info));
+    replaceFile(sidecarPath(csv_file), sidecarText(info, sidecarPath(csv_file)));
     descriptor = open(csv_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (descriptor < 0) fail("opened for writing");
     unwritten = rows.header();
@@ -116,7 +116,7 @@ void Recorder::close(bool complete) {
   if (implementation_->descriptor < 0) return;
   implementation_->closeFile();
   implementation_->info.complete = complete;
-  replaceFile(sidecarPath(csv_file_), sidecarText(implementation_->info));
+  replaceFile(sidecarPath(csv_file_), sidecarText(implementation_->info, sidecarPath(csv_file_)));
 }
 
 }  // namespace musclesim

@@ -252,7 +252,7 @@ Recording readRecording(const std::string& csv_file, const ReadOptions& options)
 void writeRecording(const Recording& recording, const std::string& csv_file) {
   const std::string json_file = sidecarPath(csv_file);
   if (json_file == csv_file) throw BadParameter("recording file", csv_file, "end in .csv (the sidecar gets the .json)");
-  const std::string json_text = sidecarText(recording.info);
+  const std::string json_text = sidecarText(recording.info, json_file);
   const std::string csv_text = csvText(recording);
   FileReplacement csv(csv_file, csv_text);
   FileReplacement json(json_file, json_text);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include "columns.h"
@@ -21,6 +22,7 @@ using nlohmann::json;
 const std::vector<std::string>& knownMembers() {
   static const std::vector<std::string> names = {"format",
                                                  "robot",
+                                                 "robot_hash",
                                                  "physics",
                                                  "initial_state",
                                                  "robot_parameters",
@@ -45,6 +47,11 @@ bool isOfARun(const std::string& member) {
   return std::find(names.begin(), names.end(), member) != names.end();
 }
 
+/// A path that is relative to a file's folder, as seen from the working directory.
+std::string fromFolderOf(const std::string& file, const std::string& path) {
+  return (std::filesystem::path(file).parent_path() / path).lexically_normal().string();
+}
+
 bool isKnown(const std::string& member) {
   return std::find(knownMembers().begin(), knownMembers().end(), member) != knownMembers().end();
 }
@@ -53,7 +60,7 @@ bool isKnown(const std::string& member) {
 class SidecarReader {
  public:
   SidecarReader(const std::string& text, const std::string& file, const std::vector<std::string>& ignore_columns)
-      : document_(text, file), ignore_columns_(ignore_columns) {}
+      : document_(text, file), file_(file), ignore_columns_(ignore_columns) {}
 
   RecordingInfo read(std::vector<std::string>& notes);
 
@@ -73,6 +80,7 @@ class SidecarReader {
   void keepFurtherMembers(RecordingInfo& info, std::vector<std::string>& notes) const;
 
   JsonDocument document_;
+  std::string file_;
   const std::vector<std::string>& ignore_columns_;
 };
 
@@ -80,6 +88,8 @@ RecordingInfo SidecarReader::read(std::vector<std::string>& notes) {
   requireFormat();
   RecordingInfo info;
   info.robot = text("robot", true);
+  if (info.robot.ends_with(".toml")) info.robot = fromFolderOf(file_, info.robot);
+  info.robot_hash = text("robot_hash");
   info.physics = choice("physics", {"si", "original", "scaled"});
   info.initial_state = choice("initial_state", {"settled", "built"});
   if (const json* values = document_.find("robot_parameters")) readRobotParameters(*values, "", info.robot_parameters);

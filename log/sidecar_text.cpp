@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "effect_json.h"
 #include "musclesim/base/error.h"
@@ -36,6 +37,7 @@ void addText(OrderedJson& object, const std::string& name, const std::string& va
 
 OrderedJson sidecarJson(const RecordingInfo& info) {
   OrderedJson object = {{"format", recording_format}, {"robot", info.robot}};
+  addText(object, "robot_hash", info.robot_hash);
   addText(object, "physics", info.physics.value_or(""));
   addText(object, "initial_state", info.initial_state.value_or(""));
   for (const auto& [name, value] : info.robot_parameters)
@@ -55,6 +57,12 @@ OrderedJson sidecarJson(const RecordingInfo& info) {
   const JsonDocument further(info.extra_json, "extra_json");
   for (const auto& [member, value] : further.root().items()) object[member] = value;
   return object;
+}
+
+/// The way from a file's folder to another file, so that both can be moved together.
+std::string pathFromFolderOf(const std::string& file, const std::string& path) {
+  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+  return std::filesystem::absolute(path).lexically_normal().lexically_proximate(folder.lexically_normal()).string();
 }
 
 /// Runs `action` and rethrows BadFile as BadParameter, since the text comes from the caller and not from a file.
@@ -81,10 +89,12 @@ RecordingInfo withMember(const RecordingInfo& info, const std::string& member, c
       [&] { return parseSidecar(object.dump(-1, ' ', false, OrderedJson::error_handler_t::replace), "sidecar", {}, notes); });
 }
 
-std::string sidecarText(const RecordingInfo& info) {
+std::string sidecarText(const RecordingInfo& info, const std::string& file) {
   constexpr int indent = 2;
   return asBadParameter([&] {
-    const std::string text = sidecarJson(info).dump(indent, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
+    OrderedJson object = sidecarJson(info);
+    if (!file.empty() && info.robot.ends_with(".toml")) object["robot"] = pathFromFolderOf(file, info.robot);
+    const std::string text = object.dump(indent, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
     std::vector<std::string> notes;
     parseSidecar(text, "sidecar", {}, notes);
     return text;

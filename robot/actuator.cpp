@@ -49,9 +49,9 @@ dBodyID makeBead(dWorldID world, const Vector& position, const MuscleSettings& s
 }  // namespace
 
 Actuator::Actuator(dWorldID world, dSpaceID space, const std::vector<Vector>& points, double given_minimum_length_mm,
-                   double minimum_length_mm, double maximum_length_mm)
+                   double minimum_length_mm, double maximum_length_mm, MuscleModel model)
     : world_(World::of(world)),
-      settings_(world_.parameters()),
+      settings_(world_.parameters(), model),
       minimum_length_mm_(minimum_length_mm),
       maximum_length_mm_(maximum_length_mm),
       start_mm_(points.front()),

@@ -81,14 +81,36 @@ void Primitive::addPointMass(double mass_g, const Vector& point_mm) {
       total_g > 0 && std::isfinite(total_g) && Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia).eigenvalues()[0] > 0;
   if (!physical)
     throw BadParameter("point mass on " + name_, fmt::format("{} g", mass_g), "leave mass and moments of inertia of its body positive");
+  takeMassProperties(total_g, center, inertia);
+}
+
+void Primitive::setMassProperties(double mass_g, const Vector& center_mm, const Eigen::Matrix3d& inertia) {
+  requireFinite("centre of mass of " + name_, center_mm);
+  if (!(mass_g > 0) || !std::isfinite(mass_g))
+    throw BadParameter("mass of " + name_, fmt::format("{} g", mass_g), "be positive and finite");
+  if (!inertia.allFinite()) throw BadParameter("moments of inertia of " + name_ + " must be finite");
+  const Vector principal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia).eigenvalues();  // in ascending order
+  // Files give four digits or so: a flat body may miss the limit by their rounding.
+  constexpr double rounding_ratio = 1e-3;
+  if (!(principal[0] > 0) || principal[2] > (principal[0] + principal[1]) * (1 + rounding_ratio))
+    throw BadParameter("principal moments of inertia of " + name_,
+                       fmt::format("{:.4g}, {:.4g}, {:.4g} g mm^2", principal[0], principal[1], principal[2]),
+                       "be positive, and the largest at most the sum of the two others: no body has others");
+  takeMassProperties(mass_g, center_mm, inertia);
+}
+
+/// Moves the centre of mass to another point of the body: joints and shapes stay where they are in the world.
+void Primitive::takeMassProperties(double mass_g, const Vector& center, const Eigen::Matrix3d& inertia) {
+  dMass mass;
+  dMassSetParameters(&mass, mass_g, 0, 0, 0, inertia(0, 0), inertia(1, 1), inertia(2, 2), inertia(0, 1), inertia(0, 2), inertia(1, 2));
+  dBodySetMass(body_->id, &mass);
+  if (center == getPosition()) return;
   std::vector<std::pair<Joint*, Vector>> joints;
   for (const auto& joint : world_.joints())
     if (dJointGetBody(joint->id(), 0) == body_->id || dJointGetBody(joint->id(), 1) == body_->id)
       joints.emplace_back(joint.get(), anchorOf(*joint));
   std::vector<Vector> drawn;
   for (const Primitive* part : body_->parts) drawn.push_back(fromOde(dGeomGetPosition(part->geom_)));
-  dMassSetParameters(&mass, total_g, 0, 0, 0, inertia(0, 0), inertia(1, 1), inertia(2, 2), inertia(0, 1), inertia(0, 2), inertia(1, 2));
-  dBodySetMass(body_->id, &mass);
   dBodySetPosition(body_->id, center.x(), center.y(), center.z());
   for (std::size_t i = 0; i < drawn.size(); ++i)
     dGeomSetOffsetWorldPosition(body_->parts[i]->geom_, drawn[i].x(), drawn[i].y(), drawn[i].z());

@@ -1,5 +1,9 @@
 #include "musclesim/robot/joint.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
 #include "musclesim/base/error.h"
 #include "musclesim/base/units.h"
 #include "ode_vector.h"
@@ -50,7 +54,25 @@ void Joint::takeReference() {
   if (kind_ == Kind::slider || kind_ == Kind::fixed) reference_ = separation();
 }
 
+int Joint::angleCount() const {
+  if (kind_ == Kind::hinge) return 1;
+  return kind_ == Kind::hinge2 || kind_ == Kind::universal ? 2 : 0;
+}
+
 double Joint::angleDeg(int axis) const {
+  const double wrapped = wrappedAngleDeg(axis), since_deg = counted_deg_[axis] - (wrapped + 360 * turns_[axis]);
+  return wrapped + 360 * (turns_[axis] + std::round(since_deg / 360));
+}
+
+void Joint::countTurns(bool from_zero) {
+  for (int axis = 0; axis < angleCount(); ++axis) {
+    const double wrapped = wrappedAngleDeg(axis);
+    turns_[axis] = from_zero ? 0 : static_cast<int>(std::lround((angleDeg(axis) - wrapped) / 360));
+    counted_deg_[axis] = wrapped + 360 * turns_[axis];
+  }
+}
+
+double Joint::wrappedAngleDeg(int axis) const {
   if (kind_ == Kind::hinge && axis == 0) return dJointGetHingeAngle(id_) * deg_per_rad;
   if (kind_ == Kind::hinge2 && axis == 0) return dJointGetHinge2Angle1(id_) * deg_per_rad;
   if (kind_ == Kind::hinge2 && axis == 1)
@@ -70,6 +92,15 @@ std::pair<double, double> Joint::stopsDeg(int axis) const {
   if (kind_ == Kind::universal && axis == 1) return inDegrees(dJointGetUniversalParam, dParamLoStop2, dParamHiStop2);
   angleDeg(axis);  // throws if there is no such axis
   return {-dInfinity, dInfinity};
+}
+
+void Joint::setSliderStopsMm(double low_mm, double high_mm) {
+  if (kind_ != Kind::slider) throw BadParameter("stops in mm of joint " + name_ + ": it is not a slider");
+  if (!(std::isfinite(low_mm) && std::isfinite(high_mm) && low_mm <= 0 && high_mm >= 0))
+    throw BadParameter("limits of joint " + name_, fmt::format("{} .. {} mm", low_mm, high_mm),
+                       "be finite, in order and contain 0 mm, the pose as built");
+  dJointSetSliderParam(id_, dParamLoStop, low_mm);
+  dJointSetSliderParam(id_, dParamHiStop, high_mm);
 }
 
 Vector Joint::separation() const {

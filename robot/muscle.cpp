@@ -32,8 +32,8 @@ std::vector<Vector> pointsAlong(const Vector& start, const Vector& start_control
 }  // namespace
 
 Muscle::Muscle(dWorldID world, dSpaceID space, const Vector& start, const Vector& start_control, const Vector& end_control,
-               const Vector& end, double minimum_length, double maximum_length)
+               const Vector& end, double minimum_length, double maximum_length, MuscleModel model)
     : Actuator(world, space, pointsAlong(start, start_control, end_control, end, linkCount(world, minimum_length)), minimum_length,
-               linkCount(world, minimum_length) * shortestLinkMm(world), maximum_length) {}
+               linkCount(world, minimum_length) * shortestLinkMm(world), maximum_length, model) {}
 
 }  // namespace musclesim

@@ -2,7 +2,7 @@
 
 namespace musclesim {
 
-MuscleSettings::MuscleSettings(Parameters& p)
+MuscleSettings::MuscleSettings(Parameters& p, MuscleModel model)
     : bead_radius_mm(p.number("muscle.bead_radius_mm", 7.5, "mm", 0.1, 100, "radius of a bead; a link holds two")),
       bead_mass_g(p.number("muscle.bead_mass_g", 10, "g", 1e-3, 1e5, "mass of one bead")),
       slider_friction_N(p.number("muscle.slider_friction_N", 1, "N", 0, 1e3, "dry friction of each link's slider")),
@@ -15,6 +15,8 @@ MuscleSettings::MuscleSettings(Parameters& p)
                                              "speed at which viscous friction of a slider equals its dry friction")),
       hinge_viscous_speed_rad_per_s(p.number("muscle.hinge_viscous_speed_rad_per_s", 8, "rad/s", 0.01, 1e5,
                                              "speed at which viscous friction of a hinge equals its dry friction")),
-      line(p.choice("muscle.model", "chain", {"chain", "line"}, "chains of beads, or massless straight lines") == "line") {}
+      line(p.choice("muscle.model", "chain", {"chain", "line"}, "chains of beads, or massless straight lines") == "line") {
+  if (model != MuscleModel::by_parameter) line = model == MuscleModel::line;
+}
 
 }  // namespace musclesim

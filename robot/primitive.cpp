@@ -31,6 +31,8 @@ double volumeMm3(const Shape& shape) {
       return s.x() * s.y() * s.z();
     case Shape::Kind::sphere:
       return 4.0 / 3.0 * pi * s.x() * s.x() * s.x();
+    case Shape::Kind::cylinder:
+      return pi * s.x() * s.x() * s.y();
     case Shape::Kind::capped_cylinder:
       return pi * s.x() * s.x() * s.y() + 4.0 / 3.0 * pi * s.x() * s.x() * s.x();
   }
@@ -48,6 +50,9 @@ dMass solid(const Shape& shape, double mass_g) {
     case Shape::Kind::sphere:
       dMassSetSphereTotal(&mass, mass_g, s.x());
       break;
+    case Shape::Kind::cylinder:
+      dMassSetCylinderTotal(&mass, mass_g, 3, s.x(), s.y());
+      break;
     case Shape::Kind::capped_cylinder:
       dMassSetCapsuleTotal(&mass, mass_g, 3, s.x(), s.y());
       break;
@@ -62,6 +67,8 @@ dGeomID makeGeom(dSpaceID space, const Shape& shape) {
       return dCreateBox(space, s.x(), s.y(), s.z());
     case Shape::Kind::sphere:
       return dCreateSphere(space, s.x());
+    case Shape::Kind::cylinder:
+      return dCreateCylinder(space, s.x(), s.y());
     case Shape::Kind::capped_cylinder:
       return dCreateCapsule(space, s.x(), s.y());
   }
@@ -138,5 +145,9 @@ CappedCylinder::CappedCylinder(dWorldID world, dSpaceID space, const Vector& pos
     : Primitive(world, space, position, mass, density,
                 {Shape::Kind::capped_cylinder,
                  {positive("radius of a capped cylinder", radius), positive("length of a capped cylinder", length), 0}}) {}
+
+Cylinder::Cylinder(dWorldID world, dSpaceID space, const Vector& position, double mass, double density, double radius, double length)
+    : Primitive(world, space, position, mass, density,
+                {Shape::Kind::cylinder, {positive("radius of a cylinder", radius), positive("length of a cylinder", length), 0}}) {}
 
 }  // namespace musclesim

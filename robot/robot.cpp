@@ -66,8 +66,12 @@ void Robot::addActuator(Actuator* actuator) {
   actuators_.push_back(actuator);
 }
 
-void Robot::addAngle(const std::string& name, const Joint* joint, int axis) {
+void Robot::addAngle(const std::string& name, Joint* joint, int axis) {
   angles_.push_back({name, joint, axis});
+}
+
+void Robot::countTurns(bool from_zero) const {
+  for (const Angle& angle : angles_) angle.joint->countTurns(from_zero);
 }
 
 void Robot::setHand(Primitive* primitive, const Vector& offset_mm) {
@@ -76,8 +80,9 @@ void Robot::setHand(Primitive* primitive, const Vector& offset_mm) {
   hand_reported_ = true;
 }
 
-void Robot::setLoad(Primitive* primitive) {
+void Robot::setLoad(Primitive* primitive, const Vector& offset_mm) {
   hand_ = primitive;
+  hand_offset_mm_ = offset_mm;
 }
 
 std::vector<Color> Robot::namedMuscleColors() const {

@@ -8,6 +8,7 @@
 #include "musclesim/base/error.h"
 #include "musclesim/robot/elbow.h"
 #include "musclesim/robot/rig.h"
+#include "musclesim/robot/robot_file.h"
 #include "musclesim/robot/robotic_arm.h"
 #include "musclesim/robot/spring_bench.h"
 #include "musclesim/robot/wrist.h"
@@ -51,6 +52,7 @@ void registerRobot(const std::string& name, const std::string& description, Robo
 }
 
 std::unique_ptr<Robot> makeRobot(const std::string& name, World& world) {
+  if (isRobotFile(name)) return makeRobotFromFile(name, world);
   RobotFactory build;
   {
     const std::lock_guard lock(robotRegistryMutex());
@@ -60,7 +62,7 @@ std::unique_ptr<Robot> makeRobot(const std::string& name, World& world) {
     std::vector<std::string> names;
     for (const auto& [known, description] : registeredRobots()) names.push_back(known);
     const std::string nearest = nearestName(name, names);
-    throw BadParameter(fmt::format("there is no robot \"{}\"{}; registered: {}", name,
+    throw BadParameter(fmt::format("there is no robot \"{}\"{}; registered: {}; a robot of your own is a file, NAME.toml", name,
                                    nearest.empty() ? "" : ", did you mean \"" + nearest + "\"?", fmt::join(names, ", ")));
   }
   auto robot = build(world);

@@ -21,6 +21,7 @@ build_packages=(
   "libfmt-dev             text formatting"
   "nlohmann-json3-dev     JSON files"
   "libtomlplusplus-dev    configuration files"
+  "libmuparser-dev        expressions in robot files"
   "libcli11-dev           command line"
   "libceres-dev           fits of force laws"
   "nettle-dev             fingerprints of sealed files"

@@ -12,6 +12,7 @@
 #include "internal_step.h"
 #include "musclesim/base/error.h"
 #include "musclesim/controller/replay.h"
+#include "musclesim/robot/robot_file.h"
 #include "musclesim/robot/robot_registry.h"
 #include "musclesim/version.h"
 
@@ -62,6 +63,7 @@ std::map<std::string, Parameter::Value> robotParameters(Simulation& simulation) 
 }
 
 void requireRegistered(const std::string& robot, const std::string& source) {
+  if (isRobotFile(robot)) return;  // errors about it name the file itself
   std::vector<std::string> names;
   for (const auto& [name, description] : registeredRobots()) names.push_back(name);
   if (std::ranges::find(names, robot) == names.end())
@@ -94,7 +96,9 @@ std::vector<std::string> unknownSignals(const Recording& recording, const std::v
 
 RecordingInfo describeModel(Simulation& simulation, const std::string& initial_state) {
   RecordingInfo info;
-  info.robot = simulation.robot().name();
+  const Robot& robot = simulation.robot();
+  info.robot = robot.descriptionFile().empty() ? robot.name() : robot.descriptionFile();
+  info.robot_hash = robot.descriptionHash();
   info.physics = nameOf(simulation.physics().kind);
   info.initial_state = initial_state;
   info.robot_parameters = robotParameters(simulation);
@@ -114,10 +118,17 @@ RecordingInfo describeModel(Simulation& simulation, const std::string& initial_s
   return info;
 }
 
+std::string otherDescriptionNote(const RecordingInfo& info, const Robot& robot) {
+  if (info.robot_hash.empty() || info.robot_hash == robot.descriptionHash()) return "";
+  return fmt::format("the description of the robot ({}) is not the one with which the recording was made: its text has changed",
+                     info.robot);
+}
+
 void replaceRobot(RecordingInfo& info, const std::optional<std::string>& robot) {
   if (!robot || *robot == info.robot) return;
   std::erase_if(info.robot_parameters, [](const auto& entry) { return entry.first.find('.') == std::string::npos; });
   info.robot = *robot;
+  info.robot_hash.clear();
 }
 
 SimulationOptions simulationOptionsFor(const RecordingInfo& info, const std::string& source, const ReplayOptions& options) {
@@ -132,8 +143,9 @@ SimulationOptions simulationOptionsFor(const RecordingInfo& info, const std::str
   result.plane = options.plane || info.robot_parameters.contains(plane_height);
   result.seed = options.seed.value_or(info.seed.value_or(1));
   result.interrupted = options.interrupted;
+  const std::string group = isRobotFile(info.robot) ? nameOfRobotFile(info.robot) : info.robot;
   for (const auto& [name, value] : info.robot_parameters)
-    result.parameters.setFromFile(name.find('.') == std::string::npos ? info.robot + "." + name : name, value, source);
+    result.parameters.setFromFile(name.find('.') == std::string::npos ? group + "." + name : name, value, source);
   result.parameters.setAll(options.parameters);
   result.effects = info.active_effects;
   result.effects.insert(result.effects.end(), options.effects.begin(), options.effects.end());

@@ -136,6 +136,7 @@ Controller& Simulation::control(std::unique_ptr<Controller> controller) {
 void Simulation::settle(const Action& command) {
   effects_->settlePressures(command);
   robot().settle();
+  robot().countTurns(true);
   stop();
 }
 
@@ -179,6 +180,7 @@ void Simulation::step() {
   untilDiverged([&] {
     for (int i = 0; i < substeps_; ++i) internalStep(internalStepS());
     world_->clock().countStep();
+    if (robot_) robot_->countTurns();
     requireWhole();
   });
 }
@@ -198,6 +200,7 @@ void Simulation::advance(double duration_s) {
   untilDiverged([&] {
     for (long i = 0; i < count; ++i) internalStep(h_s);
     world_->clock().shift(duration_s);
+    if (robot_) robot_->countTurns();
     requireWhole();
   });
 }

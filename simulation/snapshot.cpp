@@ -121,7 +121,8 @@ Snapshot SnapshotTaker::take(const State& state) {
   Snapshot snapshot;
   snapshot.state = state;
   if (const Controller* controller = simulation_.controller()) snapshot.activity = controller->activity();
-  for (const auto& primitive : simulation_.world().primitives()) snapshot.parts.push_back(partOf(*primitive));
+  for (const auto& primitive : simulation_.world().primitives())
+    if (primitive->isVisible()) snapshot.parts.push_back(partOf(*primitive));
   const auto& muscles = simulation_.robot().actuators();
   for (std::size_t i = 0; i < muscles.size(); ++i) snapshot.hoses.push_back(hoseOf(*muscles[i], muscle_colors_[i]));
   snapshot.frames = framesOf(simulation_);
@@ -139,7 +140,7 @@ Bounds boundsOf(const Snapshot& snapshot) {
   };
   for (const DrawnPart& part : snapshot.parts) {
     const Eigen::Vector3f center = part.pose.topRightCorner<3, 1>();
-    const Eigen::Vector3f axis = part.pose.block<3, 1>(0, 2) * (part.kind == Shape::Kind::capped_cylinder ? part.size_mm.y() / 2 : 0);
+    const Eigen::Vector3f axis = part.pose.block<3, 1>(0, 2) * (part.kind == Shape::Kind::capped_cylinder || part.kind == Shape::Kind::cylinder ? part.size_mm.y() / 2 : 0);
     const float margin = part.kind == Shape::Kind::box ? part.size_mm.norm() / 2 : part.size_mm.x();
     add(center + axis, margin);
     add(center - axis, margin);

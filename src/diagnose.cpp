@@ -65,13 +65,15 @@ RecordingInfo modelOf(const Recording& recording, const ReplayOptions& options) 
 void writeSchedule(const Diagnosis& diagnosis, const RecordingInfo& model, const std::filesystem::path& folder) {
   RecordingInfo info;
   info.robot = model.robot;
+  info.robot_hash = model.robot_hash;
   info.physics = model.physics;
   info.initial_state = model.initial_state;
   info.robot_parameters = model.robot_parameters;
   info.active_effects = model.active_effects;
   info.description = "commands proposed by a diagnosis";
   replaceFile((folder / "next.csv").string(), scheduleText(diagnosis.next_experiment));
-  replaceFile((folder / "next.json").string(), sidecarText(info));
+  const std::string sidecar = (folder / "next.json").string();
+  replaceFile(sidecar, sidecarText(info, sidecar));
 }
 
 void writeAll(const Diagnosis& diagnosis, const std::filesystem::path& folder, const DiagnoseArguments& arguments,

@@ -69,6 +69,7 @@ int replay(const ModelOptions& model, const ReplayArguments& arguments) {
   ReplayOptions options = replayOptionsFrom(model);
   options.watch = [&](Simulation& simulation) {
     if (arguments.pictures.wanted()) spectator = makePictures(arguments.pictures, simulation);
+    if (const std::string note = otherDescriptionNote(recording.info, simulation.robot()); !note.empty()) say(model, note);
     for (const std::string& name : unknownSignals(recording, simulation.robot().signalNames()))
       say(model, fmt::format("{}: {} has no {}; it is not compared", arguments.recording, simulation.robot().name(), name));
     return [&](const State& state) {

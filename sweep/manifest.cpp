@@ -4,7 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "hash.h"
+#include "robots_hash.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
 #include "musclesim/base/json_document.h"

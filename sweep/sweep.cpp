@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <set>
 
-#include "hash.h"
+#include "musclesim/base/hash.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
 #include "musclesim/log/recording.h"

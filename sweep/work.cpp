@@ -12,7 +12,8 @@
 #include <thread>
 
 #include "claims.h"
-#include "hash.h"
+#include "musclesim/base/hash.h"
+#include "robots_hash.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
 #include "musclesim/version.h"

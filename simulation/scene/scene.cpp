@@ -96,6 +96,7 @@ Scene::Scene(const Gl& gl)
       sphere_(gl, sphereMesh(10)),
       fine_sphere_(gl, sphereMesh(20)),
       cylinder_(gl, turnedMesh({{1, 0}, {1, 1}})),
+      disc_cylinder_(gl, turnedMesh({{0, 0}, {1, 0}, {1, 1}, {0, 1}})),
       cap_(gl, turnedMesh({{0, -0.06F}, {0.30F, -0.04F}, {0.45F, 0.02F}, {1, 0.5F}, {1, 1}, {0.8F, 1.04F}, {0, 1.04F}})),
       square_(gl, squareMesh()) {}
 
@@ -113,6 +114,10 @@ void Scene::addPart(std::vector<Item>& items, const DrawnPart& part, float alpha
     return;
   }
   const V half(0, 0, s.y() / 2);
+  if (part.kind == Shape::Kind::cylinder) {
+    items.push_back({&disc_cylinder_, part.pose * between(-half, half, s.x()), color, alpha});
+    return;
+  }
   for (const V& end : {V(-half), half}) items.push_back({&sphere_, part.pose * moved(end) * scaled(s.x(), s.x(), s.x()), color, alpha});
   items.push_back({&cylinder_, part.pose * between(-half, half, s.x()), color, alpha});
 }

@@ -45,7 +45,7 @@ class Scene {
 
   const Gl& gl_;
   GpuProgram solid_, floor_;
-  GpuMesh box_, sphere_, fine_sphere_, cylinder_, cap_, square_;
+  GpuMesh box_, sphere_, fine_sphere_, cylinder_, disc_cylinder_, cap_, square_;
   std::vector<std::unique_ptr<GpuMesh>> tubes_;
 };
 

@@ -7,7 +7,7 @@
 #include "musclesim/base/random.h"
 #include "musclesim/simulation/simulation.h"
 #include "support/support.h"
-#include "sweep/hash.h"
+#include "musclesim/base/hash.h"
 
 namespace musclesim {
 namespace {

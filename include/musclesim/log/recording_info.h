@@ -14,7 +14,8 @@ namespace musclesim {
 
 /// The contents of the sidecar. Only `format` and `robot` are required in the file.
 struct RecordingInfo {
-  std::string robot;
+  std::string robot;       ///< a name or, if it ends in ".toml", the path of a robot file; the file has it relative to its own folder
+  std::string robot_hash;  ///< of the robot file's text, empty: not known
   std::optional<std::string> physics;                        ///< "si", "original" or "scaled"
   std::optional<std::string> initial_state;                  ///< "settled" or "built"
   std::map<std::string, Parameter::Value> robot_parameters;  ///< nested objects are flattened with a dot
@@ -30,6 +31,7 @@ struct RecordingInfo {
 };
 
 /// The sidecar as indented JSON text. Throws BadParameter if readRecording would refuse its contents.
-std::string sidecarText(const RecordingInfo& info);
+/// `file`: where it will be, for the way to a robot file; empty: the path is written as it is.
+std::string sidecarText(const RecordingInfo& info, const std::string& file = "");
 
 }  // namespace musclesim

@@ -100,7 +100,7 @@ class Actuator : public WorldPart {
   /// Throws BadParameter if the length along the points is not between the given minimum and the maximum, or a link is shorter than its
   /// beads.
   Actuator(dWorldID world, dSpaceID space, const std::vector<Vector>& points, double given_minimum_length_mm, double minimum_length_mm,
-           double maximum_length_mm);
+           double maximum_length_mm, MuscleModel model = MuscleModel::by_parameter);
 
  private:
   void takeCleanTension();

@@ -33,11 +33,17 @@ class Joint {
   void setName(const std::string& name) { name_ = name; }
 
   /// Angle about axis 0 or 1 in degrees, 0 in the pose as built, positive if the first body turns right-handed about the axis relative to
-  /// the second. Throws BadParameter for joints without that axis.
+  /// the second. It counts on beyond 180 degrees as long as countTurns() is called at least once per half turn; a simulation does so after
+  /// every control step. Throws BadParameter for joints without that axis.
   double angleDeg(int axis = 0) const;
+  /// Counts the turns of every axis that has an angle. `from_zero`: forgets turns made so far.
+  void countTurns(bool from_zero = false);
   /// Least and greatest angle about axis 0 or 1 that the joint's stops allow, in degrees. They are infinite if there are no stops, and for
   /// the second axis of a two-axis hinge, whose stops belong to another joint. Throws like angleDeg.
   std::pair<double, double> stopsDeg(int axis = 0) const;
+  /// Sets the stops of a slider: least and greatest position of the first body along the axis, 0 in the pose as built. Throws BadParameter
+  /// for other joints, or unless the stops are finite, in order and contain 0.
+  void setSliderStopsMm(double low_mm, double high_mm);
   /// Constraint error in mm: the distance between the anchor on one body and the anchor on the other; for sliders the part perpendicular to
   /// the axis.
   double constraintErrorMm() const;
@@ -48,11 +54,15 @@ class Joint {
 
  private:
   Vector separation() const;
+  int angleCount() const;
+  double wrappedAngleDeg(int axis) const;
 
   Kind kind_;
   dJointID id_;
   std::string name_;
   JointReference reference_pose_;
+  int turns_[2] = {};           ///< full turns about each axis, to be added to ODE's angle
+  double counted_deg_[2] = {};  ///< angle when the turns were counted last
   Vector reference_;  ///< sliders and fixed joints: position of the second body (or environment) relative to the first, in the first's
                       ///< frame, mm
 };

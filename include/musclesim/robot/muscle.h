@@ -18,7 +18,7 @@ class Muscle : public Actuator {
   /// Points in mm, world frame; lengths in mm. Throws BadParameter if the curve's chain is shorter than `minimum_length` or longer than
   /// `maximum_length`, or if a link is shorter than its two beads.
   Muscle(dWorldID world, dSpaceID space, const Vector& start, const Vector& start_control, const Vector& end_control, const Vector& end,
-         double minimum_length, double maximum_length);
+         double minimum_length, double maximum_length, MuscleModel model = MuscleModel::by_parameter);
 };
 
 /// A straight muscle by named fields, for Robot::addMuscle.

@@ -5,9 +5,12 @@
 
 namespace musclesim {
 
+/// How a muscle is modelled: a chain of beads or a massless line, or as the parameter muscle.model says.
+enum class MuscleModel { by_parameter, chain, line };
+
 /// Numbers of all muscles, read from the parameters "muscle.*".
 struct MuscleSettings {
-  explicit MuscleSettings(Parameters& parameters);
+  explicit MuscleSettings(Parameters& parameters, MuscleModel model = MuscleModel::by_parameter);
   double bead_radius_mm;  ///< a link is never shorter than two radii
   double bead_mass_g;
   double slider_friction_N;  ///< dry friction of each slider

@@ -21,12 +21,14 @@ namespace musclesim {
 
 /// The form of a primitive, for whoever draws it.
 struct Shape {
-  enum class Kind { box, sphere, capped_cylinder };
+  enum class Kind { box, sphere, capped_cylinder, cylinder };
   Kind kind;
-  Vector size_mm;  ///< box: edges along x, y, z; sphere: radius, 0, 0; capped cylinder: radius, length without the caps (along z), 0
+  Vector size_mm;  ///< box: edges along x, y, z; sphere: radius, 0, 0; capped cylinder: radius, length without the caps (along z), 0;
+                   ///< cylinder: radius, length (along z), 0
 };
 
-/// Limits of one joint axis in degrees.
+/// Limits of one joint axis in degrees, from the pose as built. They contain 0 and lie in -175 .. 175, the second of a ball joint in
+/// -85 .. 85: ODE's angles wrap beyond, and stops need room for what a body overshoots.
 struct Limits {
   double low_deg, high_deg;
 };
@@ -60,10 +62,17 @@ class Primitive : public WorldPart {
   /// Adds a point mass to the body at a point of the world; negative: takes one away. Mass, centre of mass and inertia follow, joints and
   /// drawing stay. Only while the robot stands as built. Throws BadParameter unless mass and moments of inertia stay positive.
   void addPointMass(double mass_g, const Vector& point_mm);
+  /// Replaces mass, centre of mass and inertia of the whole body. `center_mm`: a point of the world in the present pose; `inertia`: about
+  /// that point, in the body's own axes, g mm^2. Joints and drawing stay. Only while the robot stands as built. Throws BadParameter unless
+  /// the mass is positive and the inertia is that of a body: its principal moments I_1 <= I_2 <= I_3 are positive and I_3 <= I_1 + I_2.
+  void setMassProperties(double mass_g, const Vector& center_mm, const Eigen::Matrix3d& inertia);
   /// Moves the body (with all its parts) to a position of its centre of mass and an orientation, at rest. Joints keep their reference.
   void place(const Vector& position_mm, const Eigen::Matrix3d& rotation);
   void setColor(double red, double green, double blue);
   void setName(const std::string& name) { name_ = name; }
+  /// Whether pictures show it (default: they do).
+  void setVisible(bool visible) { visible_ = visible; }
+  bool isVisible() const { return visible_; }
 
   /// Ball joint to `other` (null: the environment) at a point of the world.
   Joint* attachBall(Primitive* other, const Vector& anchor);
@@ -120,6 +129,7 @@ class Primitive : public WorldPart {
   Joint* addJoint(Joint::Kind kind, dJointID joint, Primitive* other, const std::string& what);
   Joint& hinge(Primitive* other, const HingeOptions& options);
   void requireComposable() const;
+  void takeMassProperties(double mass_g, const Vector& center_mm, const Eigen::Matrix3d& inertia);
   static void merge(Body& target, const std::vector<Body*>& bodies, Primitive& parent);
 
   World& world_;
@@ -128,6 +138,7 @@ class Primitive : public WorldPart {
   dGeomID geom_ = nullptr;
   Body* body_ = nullptr;
   Color color_;
+  bool visible_ = true;
   std::string name_;
 };
 
@@ -168,6 +179,12 @@ class Sphere : public Primitive {
 class CappedCylinder : public Primitive {
  public:
   CappedCylinder(dWorldID world, dSpaceID space, const Vector& position, double mass, double density, double radius, double length);
+};
+
+/// A cylinder along z, with flat ends.
+class Cylinder : public Primitive {
+ public:
+  Cylinder(dWorldID world, dSpaceID space, const Vector& position, double mass, double density, double radius, double length);
 };
 
 }  // namespace musclesim

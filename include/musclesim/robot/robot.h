@@ -55,10 +55,12 @@ class Robot {
   /// A joint whose angle is reported.
   struct Angle {
     std::string name;
-    const Joint* joint;
+    Joint* joint;
     int axis;
   };
   const std::vector<Angle>& angles() const { return angles_; }
+  /// Joint::countTurns for all joints whose angles are reported.
+  void countTurns(bool from_zero = false) const;
   /// The colours that the robot gave to its muscles; muscles without a name for their colour are left out.
   std::vector<Color> namedMuscleColors() const;
   /// The primitive with the hand or, where none is reported, the load; null if there is neither.
@@ -73,6 +75,14 @@ class Robot {
   const std::string& name() const { return name_; }
 
   void setName(const std::string& name) { name_ = name; }
+  /// The file that describes this robot, and a hash of its text; empty for robots in C++ and, the file, for those that come with the
+  /// program.
+  const std::string& descriptionFile() const { return description_file_; }
+  const std::string& descriptionHash() const { return description_hash_; }
+  void setDescription(const std::string& file, const std::string& hash) {
+    description_file_ = file;
+    description_hash_ = hash;
+  }
 
   /// The robot of the calling thread's current simulation, as in the paper's run loop. Throws BadParameter if there is none.
   static Robot* getActiveRobot();
@@ -98,16 +108,16 @@ class Robot {
   /// Builds a straight muscle, connects both ends and adds it as the next actuator. Throws BadParameter as Muscle.
   Muscle& addMuscle(const MuscleOptions& options);
   /// The same as addAngle.
-  void reportAngle(const std::string& name, const Joint& joint, int axis = 0) { addAngle(name, &joint, axis); }
+  void reportAngle(const std::string& name, Joint& joint, int axis = 0) { addAngle(name, &joint, axis); }
 
   /// Actuators in the order of the action's entries.
   void addActuator(Actuator* actuator);
   /// A joint whose angle is reported as angle_<name>_deg.
-  void addAngle(const std::string& name, const Joint* joint, int axis = 0);
+  void addAngle(const std::string& name, Joint* joint, int axis = 0);
   /// The reported point: a point of a primitive's body, given in the body's frame relative to its centre of mass, mm.
   void setHand(Primitive* primitive, const Vector& offset_mm = Vector::Zero());
-  /// A primitive whose centre carries what effects hang on the hand, but is not reported.
-  void setLoad(Primitive* primitive);
+  /// A point that carries what effects hang on the hand, but is not reported; given as for setHand.
+  void setLoad(Primitive* primitive, const Vector& offset_mm = Vector::Zero());
   /// Where the next muscle starts or ends in the pose as built: at the given place, unless an effect displaces it along the direction of
   /// its lever arm or upward.
   Vector mountedStart(const Vector& start_mm, const Vector& lever) { return mounted(MuscleEnd::start, start_mm, lever); }
@@ -124,6 +134,7 @@ class Robot {
   bool hand_reported_ = false;
   Vector hand_offset_mm_ = Vector::Zero();
   std::string name_ = "robot";
+  std::string description_file_, description_hash_;
 };
 
 }  // namespace musclesim

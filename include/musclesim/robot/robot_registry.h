@@ -23,7 +23,8 @@ void registerRobot(const std::string& name, const std::string& description) {
   registerRobot(name, description, [](World& world) { return std::make_unique<RobotType>(world); });
 }
 
-/// Builds a registered robot in a world. Throws BadParameter with the nearest name if there is none of that name.
+/// Builds a registered robot in a world, or the one that a file describes if the name ends in ".toml" (makeRobotFromFile).
+/// Throws BadParameter with the nearest name if there is none of that name.
 std::unique_ptr<Robot> makeRobot(const std::string& name, World& world);
 
 /// Names and descriptions of all registered robots, by name.

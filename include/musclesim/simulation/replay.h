@@ -53,6 +53,9 @@ RecordingInfo describeModel(Simulation& simulation, const std::string& initial_s
 /// Signals of a recording that are not among the robot's signals `of_robot`; a replay does not compare them.
 std::vector<std::string> unknownSignals(const Recording& recording, const std::vector<std::string>& of_robot);
 
+/// A remark for the user if the robot's file is no longer the one with which the recording was made; otherwise empty.
+std::string otherDescriptionNote(const RecordingInfo& info, const Robot& robot);
+
 /// Replaces the recording's robot by `robot`, if given, and removes the parameters of the recording's robot.
 void replaceRobot(RecordingInfo& info, const std::optional<std::string>& robot);
 

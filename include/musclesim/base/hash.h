@@ -28,8 +28,4 @@ class Hash {
   std::uint64_t value_ = 0xcbf29ce484222325ULL;
 };
 
-/// Hash of all registered robots with their default parameters: names, masses and positions of the primitives, lengths and limits of the
-/// muscles, parameters. It changes if a robot changes, so that a sweep cannot be continued with another model.
-std::string robotsHash();
-
 }  // namespace musclesim

@@ -1,7 +1,6 @@
-#include "hash.h"
+#include "robots_hash.h"
 
-#include <fmt/format.h>
-
+#include "musclesim/base/hash.h"
 #include "musclesim/robot/robot_registry.h"
 #include "musclesim/simulation/simulation.h"
 
@@ -37,10 +36,6 @@ void addRobot(Hash& hash, const std::string& name) {
 }
 
 }  // namespace
-
-std::string Hash::text() const {
-  return fmt::format("{:016x}", value_);
-}
 
 std::string robotsHash() {
   Hash hash;

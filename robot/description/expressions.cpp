@@ -1,0 +1,52 @@
+#include "expressions.h"
+
+#include <fmt/format.h>
+#include <muParser.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "musclesim/base/parameters.h"
+
+namespace musclesim::description {
+
+namespace {
+
+/// muParser's messages speak of tokens and offsets; these say what a reader of the file can do.
+std::string problemOf(const mu::Parser::exception_type& error, const std::map<std::string, double>& names) {
+  if (error.GetCode() != mu::ecUNASSIGNABLE_TOKEN) return error.GetMsg();
+  std::vector<std::string> known;
+  for (const auto& [name, value] : names) known.push_back(name);
+  const std::string nearest = nearestName(error.GetToken(), known);
+  return fmt::format("there is no parameter \"{}\"{}; known: {}", error.GetToken(),
+                     nearest.empty() ? "" : ", did you mean \"" + nearest + "\"?", fmt::join(known, ", "));
+}
+
+}  // namespace
+
+double Expressions::operator()(const Quantity& quantity) const {
+  if (quantity.expression.empty()) return quantity.number;
+  double value = 0;
+  try {
+    mu::Parser parser;
+    parser.DefineConst("pi", std::numbers::pi);
+    for (const auto& [name, number] : names_) parser.DefineConst(name, number);
+    parser.SetExpr(quantity.expression);
+    value = parser.Eval();
+  } catch (const mu::Parser::exception_type& error) {
+    quantity.place.refuse("\"" + quantity.expression + "\": " + problemOf(error, names_));
+  }
+  if (!std::isfinite(value)) quantity.place.refuse(fmt::format("\"{}\" is {}: must be finite", quantity.expression, value));
+  return value;
+}
+
+Vector Expressions::operator()(const QuantityVector& vector) const {
+  return {(*this)(vector[0]), (*this)(vector[1]), (*this)(vector[2])};
+}
+
+std::array<double, 2> Expressions::operator()(const std::array<Quantity, 2>& pair) const {
+  return {(*this)(pair[0]), (*this)(pair[1])};
+}
+
+}  // namespace musclesim::description

@@ -1,0 +1,77 @@
+#include "musclesim/robot/robot_file.h"
+
+#include <filesystem>
+#include <map>
+#include <mutex>
+
+#include "file_robot.h"
+#include "musclesim/base/file.h"
+
+namespace musclesim {
+
+namespace {
+
+using description::Description;
+
+constexpr std::size_t file_limit_bytes = std::size_t{1} << 20;
+
+/// Descriptions that have been read, by file: a diagnosis builds the same robot thousands of times, in several threads.
+class ReadDescriptions {
+ public:
+  std::shared_ptr<const Description> read(const std::string& file) {
+    std::error_code unknown;
+    const Version version = {std::filesystem::last_write_time(file, unknown), std::filesystem::file_size(file, unknown)};
+    const std::lock_guard lock(access_);
+    Entry& entry = entries_[file];
+    if (!entry.description || entry.version != version)
+      entry = {version, std::make_shared<const Description>(description::readDescription(readTextFile(file, file_limit_bytes), file))};
+    return entry.description;
+  }
+
+ private:
+  using Version = std::pair<std::filesystem::file_time_type, std::uintmax_t>;
+  struct Entry {
+    Version version;
+    std::shared_ptr<const Description> description;
+  };
+  std::mutex access_;
+  std::map<std::string, Entry> entries_;
+};
+
+std::shared_ptr<const Description> readOnce(const std::string& file) {
+  static ReadDescriptions descriptions;
+  return descriptions.read(file);
+}
+
+std::unique_ptr<Robot> build(std::shared_ptr<const Description> description, const std::string& file, World& world) {
+  const std::string name = description->name;
+  const std::string hash = description->hash;
+  auto robot = std::make_unique<description::FileRobot>(world, std::move(description));
+  robot->setName(name);
+  robot->setDescription(file, hash);
+  return robot;
+}
+
+}  // namespace
+
+bool isRobotFile(const std::string& robot) {
+  return robot.ends_with(".toml");
+}
+
+std::unique_ptr<Robot> makeRobotFromFile(const std::string& file, World& world) {
+  return build(readOnce(file), file, world);
+}
+
+std::string nameOfRobotFile(const std::string& file) {
+  return readOnce(file)->name;
+}
+
+std::unique_ptr<Robot> makeRobotFromText(const std::string& text, const std::string& file, World& world) {
+  return build(std::make_shared<const Description>(description::readDescription(text, file)), "", world);
+}
+
+void checkRobotText(const std::string& text, const std::string& file) {
+  description::readDescription(text, file);
+}
+
+}  // namespace musclesim
