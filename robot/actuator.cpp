@@ -52,6 +52,7 @@ Actuator::Actuator(dWorldID world, dSpaceID space, const std::vector<Vector>& po
                    double minimum_length_mm, double maximum_length_mm, MuscleModel model)
     : world_(World::of(world)),
       settings_(world_.parameters(), model),
+      given_minimum_length_mm_(given_minimum_length_mm),
       minimum_length_mm_(minimum_length_mm),
       maximum_length_mm_(maximum_length_mm),
       start_mm_(points.front()),
@@ -64,12 +65,12 @@ Actuator::Actuator(dWorldID world, dSpaceID space, const std::vector<Vector>& po
     shortest_link_mm = std::min(shortest_link_mm, link_mm);
     start_length_mm += link_mm;
   }
-  if (!(given_minimum_length_mm >= 0 && start_length_mm >= given_minimum_length_mm && start_length_mm <= maximum_length_mm))
-    throw BadParameter("start length of " + name_ + " along its curve", fmt::format("{:.4g} mm", start_length_mm),
-                       fmt::format("lie between its minimum and maximum length, {} .. {} mm", given_minimum_length_mm, maximum_length_mm));
-  if (shortest_link_mm < 2 * settings_.bead_radius_mm)
-    throw BadParameter("shortest link of " + name_, fmt::format("{:.4g} mm", shortest_link_mm),
-                       fmt::format("be at least two bead radii, {} mm", 2 * settings_.bead_radius_mm));
+  if (!settings_.line) {
+    requireStartLength(start_length_mm, "start length of " + name_ + " along its curve");
+    if (shortest_link_mm < 2 * settings_.bead_radius_mm)
+      throw BadParameter("shortest link of " + name_, fmt::format("{:.4g} mm", shortest_link_mm),
+                         fmt::format("be at least two bead radii, {} mm", 2 * settings_.bead_radius_mm));
+  }
   law_ = makeForceLaw(world_.parameters(), minimum_length_mm_, maximum_length_mm_);
   if (settings_.line)
     line_ = std::make_unique<LineOfPull>(start_mm_, end_mm_);
@@ -81,6 +82,13 @@ Actuator::Actuator(dWorldID world, dSpaceID space, const std::vector<Vector>& po
 
 Actuator::~Actuator() {
   world_.disown(*this);  // it still owns this if a derived class's constructor threw
+}
+
+void Actuator::requireStartLength(double length_mm, const std::string& which) const {
+  if (!(given_minimum_length_mm_ >= 0 && length_mm >= given_minimum_length_mm_ && length_mm <= maximum_length_mm_))
+    throw BadParameter(
+        which, fmt::format("{:.4g} mm", length_mm),
+        fmt::format("lie between its minimum and maximum length, {} .. {} mm", given_minimum_length_mm_, maximum_length_mm_));
 }
 
 /// Dry friction is a motor at rest with a largest force; viscous friction one without, softened to `force` at `speed`.
@@ -160,11 +168,38 @@ void Actuator::connectEndTo(Primitive* primitive) {
   end_joint_ = connect(links_.back().bead[1], end_mm_, primitive, "end");
 }
 
+LineOfPull& Actuator::openPath(const std::string& what) {
+  if (!line_) throw BadParameter(what + "s are for line muscles (muscle.model = line), and " + name_ + " is a chain");
+  if (path_finished_) throw BadParameter("the " + what + " of " + name_ + " comes too late: add it before the robot is complete");
+  return *line_;
+}
+
 void Actuator::addViaPoint(Primitive* primitive, const Vector& point_mm) {
-  if (!line_) throw BadParameter("via points are for line muscles (muscle.model = line), and " + name_ + " is a chain");
+  LineOfPull& path = openPath("via point");
   requireSameWorld(primitive, "via point");
-  line_->addViaPoint(primitive, point_mm);
+  path.addViaPoint(primitive, point_mm);
   takeCleanTension();
+}
+
+void Actuator::addPulley(Primitive* primitive, const Vector& center_mm, const Vector& axis, double radius_mm,
+                         const std::optional<Vector>& side_mm) {
+  LineOfPull& path = openPath("pulley");
+  requireSameWorld(primitive, "pulley");
+  path.addPulley(primitive, {center_mm, axis, radius_mm, side_mm}, name_);
+  takeCleanTension();
+}
+
+void Actuator::setTendonMm(double tendon_mm) {
+  openPath("tendon").setTendonMm(tendon_mm, name_);
+  takeCleanTension();
+}
+
+void Actuator::finishPath() {
+  if (!line_ || path_finished_) return;
+  line_->requirePointsOutside(name_);
+  const std::string tendon = line_->tendonMm() > 0 ? fmt::format(", without its tendon of {} mm,", line_->tendonMm()) : "";
+  requireStartLength(lengthMm(), "start length of " + name_ + tendon + " along its path");
+  path_finished_ = true;
 }
 
 double Actuator::calculateForce(double pressure_ratio, double length_mm) const {

@@ -1,7 +1,11 @@
 #include "musclesim/robot/line_of_pull.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "musclesim/base/error.h"
 #include "musclesim/base/units.h"
@@ -9,6 +13,7 @@
 #include "musclesim/robot/physics.h"
 #include "musclesim/robot/primitive.h"
 #include "ode_vector.h"
+#include "vector_checks.h"
 
 namespace musclesim {
 
@@ -24,13 +29,14 @@ double speedRatio(const PhysicsSettings& physics) {
 
 }  // namespace
 
-LineOfPull::LineOfPull(const Vector& start_mm, const Vector& end_mm) : points_{{nullptr, start_mm, false}, {nullptr, end_mm, false}} {}
+LineOfPull::LineOfPull(const Vector& start_mm, const Vector& end_mm)
+    : points_{{nullptr, start_mm, false}, {nullptr, end_mm, false}}, pulleys_(1) {}
 
 LineOfPull::Point LineOfPull::pointOn(Primitive* primitive, const Vector& point_mm) {
   if (!primitive) return {nullptr, point_mm, true};
   primitive->body().has_joint = true;  // from now on its body must not be merged into another body
   const dBodyID body = primitive->body().id;
-  return {body, rotationOf(body).transpose() * (point_mm - musclesim::positionOf(body)), true};
+  return {body, rotationOf(body).transpose() * (point_mm - positionOf(body)), true};
 }
 
 void LineOfPull::connect(End end, Primitive* primitive, const std::string& muscle_name) {
@@ -42,28 +48,92 @@ void LineOfPull::connect(End end, Primitive* primitive, const std::string& muscl
 
 void LineOfPull::addViaPoint(Primitive* primitive, const Vector& point_mm) {
   points_.insert(points_.end() - 1, pointOn(primitive, point_mm));
+  pulleys_.emplace_back();
 }
 
-void LineOfPull::locate() const {
-  located_.resize(points_.size());
-  length_mm_ = 0;
-  Located* before = nullptr;
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const Point& point = points_[i];
-    Located& here = located_[i];
-    here.arm = point.body ? turned(point.place, dBodyGetRotation(point.body)) : point.place;
-    here.position = point.body ? Vector(musclesim::positionOf(point.body) + here.arm) : point.place;
-    here.gradient.setZero();
-    if (before) {
-      Vector direction = here.position - before->position;
-      const double segment_mm = direction.norm();
-      if (segment_mm > 0) direction /= segment_mm;
-      before->gradient -= direction;
-      here.gradient = direction;
-      length_mm_ += segment_mm;
-    }
-    before = &here;
+void LineOfPull::addPulley(Primitive* primitive, Pulley pulley, const std::string& muscle_name) {
+  const std::string name = "pulley of " + muscle_name;
+  requireFinite(name + ": center", pulley.center_mm);
+  requireFinite(name + ": axis", pulley.axis);
+  if (!(pulley.radius_mm > 0 && std::isfinite(pulley.radius_mm)))
+    throw BadParameter(name + ": radius", fmt::format("{} mm", pulley.radius_mm), "be positive and finite");
+  if (!pulley.axis.isZero(0)) pulley.axis.normalize();
+  if (pulley.side_mm) {
+    requireFinite(name + ": side point", *pulley.side_mm);
+    const double distance_mm = pulley.distanceMm(*pulley.side_mm);
+    if (distance_mm < pulley.radius_mm)
+      throw BadParameter(name + ": distance of its side point", fmt::format("{:.4g} mm", distance_mm),
+                         fmt::format("be at least its radius, {} mm", pulley.radius_mm));
   }
+  if (pulleys_.back()) throw BadParameter("two pulleys of " + muscle_name + " in a row: there must be a via point between them");
+  const Point center = pointOn(primitive, pulley.center_mm);
+  pulley.center_mm = center.place;
+  if (center.body) {
+    pulley.axis = rotationOf(center.body).transpose() * pulley.axis;
+    if (pulley.side_mm) pulley.side_mm = pointOn(primitive, *pulley.side_mm).place;
+  }
+  pulleys_.back() = MountedPulley{center.body, pulley};
+}
+
+void LineOfPull::setTendonMm(double tendon_mm, const std::string& muscle_name) {
+  if (!(tendon_mm >= 0 && std::isfinite(tendon_mm)))
+    throw BadParameter("tendon of " + muscle_name, fmt::format("{} mm", tendon_mm), "be finite and at least 0 mm");
+  tendon_mm_ = tendon_mm;
+}
+
+Vector LineOfPull::worldPosition(const Point& point) {
+  if (!point.body) return point.place;
+  return positionOf(point.body) + turned(point.place, dBodyGetRotation(point.body));
+}
+
+Pulley LineOfPull::inWorld(const MountedPulley& mounted) {
+  Pulley pulley = mounted.pulley;
+  if (!mounted.body) return pulley;
+  const dReal* rotation = dBodyGetRotation(mounted.body);
+  const Vector position = positionOf(mounted.body);
+  pulley.center_mm = position + turned(pulley.center_mm, rotation);
+  pulley.axis = turned(pulley.axis, rotation);
+  if (pulley.side_mm) pulley.side_mm = position + turned(*pulley.side_mm, rotation);
+  return pulley;
+}
+
+void LineOfPull::requirePointsOutside(const std::string& muscle_name) const {
+  for (std::size_t i = 0; i < pulleys_.size(); ++i) {
+    if (!pulleys_[i]) continue;
+    const Pulley pulley = inWorld(*pulleys_[i]);
+    for (const std::size_t neighbour : {i, i + 1}) {
+      const Vector point = worldPosition(points_[neighbour]);
+      if (pulley.encloses(point))
+        throw BadParameter(fmt::format("distance of point {} of {} from the pulley beside it", neighbour, muscle_name),
+                           fmt::format("{:.4g} mm", pulley.distanceMm(point)),
+                           fmt::format("be at least the radius, {} mm", pulley.radius_mm));
+    }
+  }
+}
+
+/// dl/dx of the points; that of a pulley is the opposite of those of its two points.
+void LineOfPull::locate() const {
+  pushes_.clear();
+  length_mm_ = -tendon_mm_;
+  Vector here = worldPosition(points_.front()), gradient = Vector::Zero();
+  for (std::size_t i = 0; i < pulleys_.size(); ++i) {
+    const Vector next = worldPosition(points_[i + 1]);
+    const auto& mounted = pulleys_[i];
+    const Way way = mounted ? wayPast(inWorld(*mounted), here, next) : straightWay(here, next);
+    length_mm_ += way.length_mm;
+    addPush(points_[i].body, here, gradient - way.start_direction);
+    if (way.wound) {
+      addPush(mounted->body, here, way.start_direction);
+      addPush(mounted->body, next, -way.end_direction);
+    }
+    here = next;
+    gradient = way.end_direction;
+  }
+  addPush(points_.back().body, here, gradient);
+}
+
+void LineOfPull::addPush(dBodyID body, const Vector& position, const Vector& gradient) const {
+  if (body) pushes_.push_back({body, gradient, (position - positionOf(body)).cross(gradient)});
 }
 
 double LineOfPull::lengthMm() const {
@@ -72,19 +142,24 @@ double LineOfPull::lengthMm() const {
 }
 
 std::vector<Vector> LineOfPull::pointsMm() const {
-  locate();
-  std::vector<Vector> result;
-  for (const Located& point : located_) result.push_back(point.position);
+  std::vector<Vector> result = {worldPosition(points_.front())};
+  for (std::size_t i = 0; i < pulleys_.size(); ++i) {
+    const Vector next = worldPosition(points_[i + 1]);
+    if (pulleys_[i]) std::ranges::copy(pointsOnPulleyMm(inWorld(*pulleys_[i]), result.back(), next), std::back_inserter(result));
+    result.push_back(next);
+  }
   return result;
+}
+
+std::vector<LineOfPull::Push> LineOfPull::pushes() const {
+  locate();
+  return pushes_;
 }
 
 double LineOfPull::speed() const {
   double sum = 0;
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const dBodyID body = points_[i].body;
-    if (!body) continue;
-    sum += located_[i].gradient.dot(fromOde(dBodyGetLinearVel(body)) + fromOde(dBodyGetAngularVel(body)).cross(located_[i].arm));
-  }
+  for (const auto& [body, force, torque] : pushes_)
+    sum += force.dot(fromOde(dBodyGetLinearVel(body))) + torque.dot(fromOde(dBodyGetAngularVel(body)));
   return sum;
 }
 
@@ -100,23 +175,11 @@ double LineOfPull::totalForceN(double tension_N, double maximum_length_mm, const
 void LineOfPull::pull(double tension_N, double maximum_length_mm, const MuscleSettings& settings, const PhysicsSettings& physics) const {
   if (!points_.front().connected || !points_.back().connected) return;
   const double force = totalForceN(tension_N, maximum_length_mm, settings, physics) * physics.force_per_N;
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    if (!points_[i].body) continue;
-    const Vector f = -force * located_[i].gradient, &x = located_[i].position;
-    dBodyAddForceAtPos(points_[i].body, f.x(), f.y(), f.z(), x.x(), x.y(), x.z());
+  for (const Push& push : pushes_) {
+    const Vector f = -force * push.force, t = -force * push.torque;
+    dBodyAddForce(push.body, f.x(), f.y(), f.z());
+    dBodyAddTorque(push.body, t.x(), t.y(), t.z());
   }
-}
-
-std::vector<LineOfPull::Push> LineOfPull::pushes() const {
-  std::vector<Push> result;
-  locate();
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const dBodyID body = points_[i].body;
-    if (!body) continue;
-    const auto& [arm, position, gradient] = located_[i];
-    result.push_back({body, gradient, arm.cross(gradient)});
-  }
-  return result;
 }
 
 double LineOfPull::stiffnessNPerMm(double of_tension_N_per_mm) {

@@ -115,8 +115,9 @@ Robot& Simulation::adopt(std::unique_ptr<Robot> robot) {
   return *robot_;
 }
 
-/// Sets the length of internal steps by the muscles there are by now, and what depends on it.
+/// Finishes the muscles there are by now, and sets the length of internal steps by them, and what depends on it.
 void Simulation::prepareSteps() {
+  for (Actuator* actuator : world_->actuators()) actuator->finishPath();
   const double before = world_->errorReduction();
   const bool set_by_user = dWorldGetERP(*world_) != before;
   if (!substeps_given_) substeps_ = automaticSubsteps(stepS(), physics(), world_->joints(), world_->actuators());

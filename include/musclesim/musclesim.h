@@ -51,6 +51,7 @@
 #include "musclesim/robot/muscle_values.h"
 #include "musclesim/robot/physics.h"
 #include "musclesim/robot/primitive.h"
+#include "musclesim/robot/pulley.h"
 #include "musclesim/robot/rig.h"
 #include "musclesim/robot/robot.h"
 #include "musclesim/robot/robot_effects.h"

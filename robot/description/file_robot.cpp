@@ -241,7 +241,7 @@ Actuator* FileRobot::buildMuscle(const MuscleEntry& entry) {
                             : entry.model == "line" ? MuscleModel::line
                                                     : MuscleModel::by_parameter;
   auto* muscle = new Muscle(world(), space(), start_mm, control_mm[0], control_mm[1], end_mm, shortest_mm, longest_mm, model);
-  finish(entry, *muscle, start_mm, end_mm);
+  finish(entry, *muscle);
   buildPath(entry, *muscle);
   return muscle;
 }
@@ -251,10 +251,12 @@ void FileRobot::buildPath(const MuscleEntry& entry, Actuator& muscle) const {
     at(point.place, [&] {
       if (point.pulley.empty()) return muscle.addViaPoint(find(point.body), value_(*point.at_mm));
       const auto pulley = std::ranges::find(description_->pulleys, point.pulley, &PulleyEntry::name);
-      [[maybe_unused]] const Vector axis = pulley->axis ? value_(*pulley->axis) : Vector::Zero();
-      [[maybe_unused]] const auto side_mm = point.side_mm ? std::optional(value_(*point.side_mm)) : std::nullopt;
-      point.place.refuse("pulleys are not there yet");
+      const Vector axis = pulley->axis ? value_(*pulley->axis) : Vector::Zero();
+      const auto side_mm = point.side_mm ? std::optional(value_(*point.side_mm)) : std::nullopt;
+      muscle.addPulley(find(pulley->body), value_(pulley->at_mm), axis, value_(pulley->radius_mm), side_mm);
     });
+  if (entry.tendon_mm) muscle.setTendonMm(value_(*entry.tendon_mm));
+  muscle.finishPath();
 }
 
 Actuator* FileRobot::buildActuator(const MuscleEntry& entry) {
@@ -265,11 +267,11 @@ Actuator* FileRobot::buildActuator(const MuscleEntry& entry) {
     actuator = new LinearActuator(world(), space(), start_mm, end_mm, shortest_mm, longest_mm);
   else
     actuator = new ExpressionActuator(world(), space(), start_mm, end_mm, longest_mm, {0, entry.force_N, entry.place}, value_);
-  finish(entry, *actuator, start_mm, end_mm);
+  finish(entry, *actuator);
   return actuator;
 }
 
-void FileRobot::finish(const MuscleEntry& entry, Actuator& actuator, const Vector&, const Vector&) {
+void FileRobot::finish(const MuscleEntry& entry, Actuator& actuator) {
   actuator.setName(entry.name);
   if (auto law = forceLaw(entry, value_(entry.length_mm)[0], value_(entry.length_mm)[1])) actuator.setForceLaw(std::move(law));
   if (entry.color) {

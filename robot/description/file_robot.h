@@ -29,7 +29,7 @@ class FileRobot final : public Robot {
   void addMechanics(const JointEntry& entry, Joint& joint) const;
   Actuator* buildMuscle(const MuscleEntry& entry);
   Actuator* buildActuator(const MuscleEntry& entry);
-  void finish(const MuscleEntry& entry, Actuator& actuator, const Vector& start_mm, const Vector& end_mm);
+  void finish(const MuscleEntry& entry, Actuator& actuator);
   void buildPath(const MuscleEntry& entry, Actuator& actuator) const;
   std::unique_ptr<ForceLaw> forceLaw(const MuscleEntry& entry, double shortest_mm, double longest_mm) const;
   void buildSpring(const SpringEntry& entry) const;

@@ -2,11 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <vector>
 
 #include "../../robot/actuator_step.h"
+#include "../../robot/ode_vector.h"
+#include "musclesim/base/units.h"
+#include "musclesim/robot/linear_actuator.h"
 #include "musclesim/robot/muscle.h"
 #include "musclesim/simulation/simulation.h"
 #include "support/support.h"
@@ -119,6 +125,348 @@ TEST(LineMuscle, IsNotTiedToAnotherSimulation) {
                                                               line->addViaPoint(bone, {0, -100, 0});
                                                             }})
     EXPECT_TRUE(contains(messageOf<BadParameter>(tie), "different simulations"));
+}
+
+/// A straight line muscle with a wide range of lengths.
+LinearActuator* threadBetween(Simulation& simulation, Primitive* from, const Vector& start, Primitive* to, const Vector& end) {
+  auto* thread = new LinearActuator(simulation.world(), simulation.space(), start, end, 10, 1000);
+  thread->connectStartTo(from);
+  thread->connectEndTo(to);
+  return thread;
+}
+
+Eigen::Matrix3d turnBy(double angle_rad, const Vector& axis) {
+  return Eigen::AngleAxisd(angle_rad, axis).toRotationMatrix();
+}
+
+/// Force and torque on a body, the torque about a point, summed over all pushes.
+std::pair<Vector, Vector> pushOn(dBodyID body, const Vector& point, const LineOfPull& line) {
+  Vector force = Vector::Zero(), torque = Vector::Zero();
+  for (const auto& push : line.pushes()) {
+    if (push.body != body) continue;
+    force += push.force;
+    torque += push.torque + (positionOf(body) - point).cross(push.force);
+  }
+  return {force, torque};
+}
+
+/// A bone on a hinge in the origin, and a muscle from the environment over a pulley on the hinge's axis to the bone.
+struct HingeWithPulley {
+  static constexpr double radius_mm = 30;
+  explicit HingeWithPulley(bool on_bone, const Vector& axis = Vector::UnitZ())
+      : bone(new Box(simulation.world(), nullptr, {100, 0, 0}, 500, 0, 200, 20, 20)),
+        thread(threadBetween(simulation, nullptr, {-120, 20, 0}, bone, {120, 10, 15})) {
+    bone->attachHinge(nullptr, {0, 0, 0}, {0, 0, 1});
+    thread->addPulley(on_bone ? bone : nullptr, {0, 0, 5}, axis, radius_mm, Vector(0, 40, 5));
+  }
+  void turnTo(double angle_deg) {
+    const Eigen::Matrix3d turn = turnBy(angle_deg * rad_per_deg, Vector::UnitZ());
+    bone->place(turn * Vector(100, 0, 0), turn);
+  }
+  /// dl/d(angle of the hinge)
+  double leverMm() const { return pushOn(bone->body().id, Vector::Zero(), *thread->line()).second.z(); }
+  bool wound() const { return thread->line()->pointsMm().size() > 2; }
+
+  Simulation simulation{lineOptions()};
+  Box* bone;
+  LinearActuator* thread;
+};
+
+TEST(MuscleOverPulley, HasAConstantLeverArmWhileItLiesOnAPulleyOnTheHinge) {
+  for (const bool on_bone : {false, true}) {
+    HingeWithPulley hinge(on_bone);
+    const double planar_share = [&] {  // the slope of the helix takes its share of the force
+      hinge.turnTo(0);
+      const auto points = hinge.thread->line()->pointsMm();
+      const Vector first = points[1] - points[0];
+      return std::hypot(first.x(), first.y()) / first.norm();
+    }();
+    EXPECT_LT(planar_share, 0.9999);
+    for (double angle_deg = -150; angle_deg <= 10; angle_deg += 7) {
+      hinge.turnTo(angle_deg);
+      ASSERT_TRUE(hinge.wound());
+      const double planar_mm = std::sqrt(std::pow(hinge.thread->lengthMm(), 2) - 15 * 15);
+      EXPECT_NEAR(hinge.leverMm(), -30 * planar_mm / hinge.thread->lengthMm(), 30e-9) << angle_deg;
+    }
+  }
+}
+
+TEST(MuscleOverPulley, LiftsOffWithoutAJumpOfItsLeverArm) {
+  HingeWithPulley hinge(true);
+  double last_mm = 0;
+  int wound_count = 0, step_count = 0;
+  for (double angle_deg = 0; angle_deg <= 60; angle_deg += 0.01, ++step_count) {
+    hinge.turnTo(angle_deg);
+    wound_count += hinge.wound() ? 1 : 0;
+    const double now_mm = hinge.leverMm();
+    if (step_count > 0) {
+      EXPECT_NEAR(now_mm, last_mm, 0.03) << angle_deg;
+    }
+    last_mm = now_mm;
+  }
+  EXPECT_GT(wound_count, 500);
+  EXPECT_LT(wound_count, step_count - 500);
+}
+
+/// A thread between two free bodies past a pulley on a third one.
+struct FreeBodies {
+  explicit FreeBodies(const Vector& axis, std::optional<Vector> side) {
+    const Vector centers[3] = {{-120, 30, 10}, {110, -25, 30}, {10, -20, 5}};
+    for (const Vector& center : centers) bodies.push_back(new Box(simulation.world(), nullptr, center, 300, 0, 40, 30, 20));
+    bodies[2]->rotate(25, {1, 2, 3});
+    thread = threadBetween(simulation, bodies[0], {-110, 20, 0}, bodies[1], {100, 15, 25});
+    thread->addPulley(bodies[2], {5, -5, 8}, axis, 25, side);
+  }
+  Simulation simulation{lineOptions()};
+  std::vector<Primitive*> bodies;
+  LinearActuator* thread;
+};
+
+TEST(MuscleOverPulley, PushesItsBodiesByTheGradientOfItsLength) {
+  constexpr double h = 1e-4;
+  for (const Vector& axis : {Vector(0.2, -0.1, 1), Vector(0, 0, 0)})
+    for (const auto& side : {std::optional<Vector>(), std::optional<Vector>(Vector(0, -60, 0))}) {
+      FreeBodies free(axis, side);
+      ASSERT_GT(free.thread->line()->pointsMm().size(), 2u);
+      for (Primitive* body : free.bodies) {
+        const Vector center = body->getPosition();
+        const Eigen::Matrix3d rotation = body->getRotation();
+        const auto lengthAt = [&](const Vector& shift, const Eigen::Matrix3d& turn) {
+          body->place(center + shift, turn * rotation);
+          const double length_mm = free.thread->lengthMm();
+          body->place(center, rotation);
+          return length_mm;
+        };
+        const auto [force, torque] = pushOn(body->body().id, center, *free.thread->line());
+        const Eigen::Matrix3d still = Eigen::Matrix3d::Identity();
+        for (int i = 0; i < 3; ++i) {
+          const Vector e = Vector::Unit(i);
+          EXPECT_NEAR((lengthAt(h * e, still) - lengthAt(-h * e, still)) / (2 * h), force[i], 1e-7);
+          EXPECT_NEAR((lengthAt({0, 0, 0}, turnBy(h, e)) - lengthAt({0, 0, 0}, turnBy(-h, e))) / (2 * h), torque[i], 1e-5);
+        }
+      }
+    }
+}
+
+TEST(MuscleOverPulley, ExertsForcesAndTorquesThatSumToZero) {
+  for (const Vector& axis : {Vector(0.2, -0.1, 1), Vector(0, 0, 0)}) {
+    FreeBodies free(axis, {});
+    free.thread->setPressure(0.8);
+    free.simulation.effects().update();
+    EXPECT_GT(free.thread->tensionN(), 10);
+    applyForces(*free.thread);
+    Vector force = Vector::Zero(), torque = Vector::Zero();
+    double largest = 0;
+    for (const Primitive* body : free.bodies) {
+      const Vector f = fromOde(dBodyGetForce(body->body().id));
+      force += f;
+      torque += body->getPosition().cross(f) + fromOde(dBodyGetTorque(body->body().id));
+      largest = std::max(largest, f.norm());
+    }
+    EXPECT_GT(largest, 0);
+    EXPECT_LT(force.norm(), 1e-12 * largest);
+    EXPECT_LT(torque.norm(), 1e-10 * largest);
+  }
+}
+
+TEST(MuscleOverPulley, PullsAPulleyAtItsTwoTangentPoints) {
+  Simulation simulation(lineOptions());
+  auto* wheel = new Sphere(simulation.world(), nullptr, {0, 0, 0}, 500, 0, 30);
+  auto* thread = threadBetween(simulation, nullptr, {-30, -200, 0}, nullptr, {30, -200, 0});
+  thread->addPulley(wheel, {0, 0, 0}, {0, 0, 1}, 30, Vector(0, 50, 0));
+  EXPECT_NEAR(thread->lengthMm(), 400 + 30 * std::numbers::pi, 1e-12);
+  const auto [force, torque] = pushOn(wheel->body().id, Vector::Zero(), *thread->line());
+  EXPECT_LT((force - Vector(0, 2, 0)).norm(), 1e-14) << "raising the wheel lengthens both sides";
+  EXPECT_LT(torque.norm(), 1e-12);
+}
+
+/// A cable under constant tension.
+class Cable : public LinearActuator {
+ public:
+  using LinearActuator::LinearActuator;
+  double calculateForce(double, double) const override { return tension_N; }
+  static constexpr double tension_N = 5;
+};
+
+/// Largest change of kinetic and potential energy of a pendulum and a cable that a constant tension pulls over a pulley, relative to the
+/// largest kinetic energy. The pulley is on the pendulum, off its axis, or on the environment.
+double energyErrorRatio(bool on_pendulum, double step_s) {
+  SimulationOptions options = lineOptions("muscle.slider_friction_N=0");
+  options.step_s = step_s;
+  options.substeps = 1;
+  Simulation simulation(std::move(options));
+  auto* rod = new Box(simulation.world(), nullptr, {0, -150, 0}, 2000, 0, 20, 300, 20);
+  rod->attachHinge(nullptr, {0, 0, 0}, {0, 0, 1});
+  const Vector start = on_pendulum ? Vector(260, -60, 0) : Vector(200, -80, 0),
+               end = on_pendulum ? Vector(260, -300, 20) : Vector(0, -250, 20);
+  auto* cable = new Cable(simulation.world(), simulation.space(), start, end, 10, 1000);
+  cable->connectStartTo(nullptr);
+  cable->connectEndTo(on_pendulum ? nullptr : rod);
+  on_pendulum ? cable->addPulley(rod, {0, -200, 0}, {0, 0, 1}, 25, Vector(-40, -200, 0))
+              : cable->addPulley(nullptr, {60, -120, 0}, {0, 0, 1}, 25, Vector(60, -80, 0));
+  const auto energyJ = [&] { return simulation.mechanicalEnergyJ() + Cable::tension_N * cable->lengthMm() / mm_per_m; };
+  const double start_J = energyJ(), start_mechanical_J = simulation.mechanicalEnergyJ();
+  double error_J = 0, gain_J = 0;
+  bool wound = false;
+  while (simulation.time_s() < 2) {
+    simulation.step();
+    error_J = std::max(error_J, std::abs(energyJ() - start_J));
+    gain_J = std::max(gain_J, std::abs(simulation.mechanicalEnergyJ() - start_mechanical_J));
+    wound = wound || cable->line()->pointsMm().size() > 2;
+  }
+  EXPECT_TRUE(wound);
+  return error_J / gain_J;
+}
+
+TEST(MuscleOverPulley, ConservesTheEnergyOfAPendulum) {
+  for (const bool on_pendulum : {false, true}) {
+    const double coarse = energyErrorRatio(on_pendulum, 2e-3), fine = energyErrorRatio(on_pendulum, 5e-4);
+    EXPECT_LT(fine, 0.002) << on_pendulum;
+
+    EXPECT_LT(fine, 0.4 * coarse) << "the error is that of the step";
+  }
+}
+
+/// Two bones in a row on hinges, with a flexor and an extensor each over pulleys on the hinges.
+class ArmWithPulleys : public Robot {
+ public:
+  explicit ArmWithPulleys(World& world) : Robot(world) {
+    Box& upper = addBox({.mass_g = 800, .center_mm = {100, 0, 0}, .size_mm = {200, 20, 20}});
+    Box& lower = addBox({.mass_g = 500, .center_mm = {300, 0, 0}, .size_mm = {200, 20, 20}});
+    reportAngle("shoulder", upper.hingeToWorld({.anchor_mm = Vector(0, 0, 0), .limits_deg = Limits{-120, 120}}));
+    reportAngle("elbow", lower.hingeTo(upper, {.anchor_mm = Vector(200, 0, 0), .limits_deg = Limits{-120, 120}}));
+    for (const double side : {1, -1}) {
+      muscle(fixedAt({-180, 20 * side, 0}), upper.at({120, 15 * side, 5}), nullptr, {0, 0, 0}, side);
+      muscle(upper.at({40, 15 * side, 0}), lower.at({310, 15 * side, 5}), &upper, {200, 0, 0}, side);
+    }
+  }
+
+ private:
+  void muscle(const Attachment& from, const Attachment& to, Primitive* wheel, const Vector& center, double side) {
+    Actuator& muscle = addMuscle({.from = from, .to = to, .length_mm = {200, 380}});
+    muscle.addPulley(wheel, center, Vector::UnitZ(), 30, Vector(center + Vector(0, 40 * side, 0)));
+  }
+};
+
+TEST(MuscleOverPulley, MovesAlikeUnderBothSteppers) {
+  std::vector<std::vector<double>> angles;
+  for (const StepperKind stepper : {StepperKind::ode, StepperKind::chain}) {
+    SimulationOptions options = lineOptions();
+    options.stepper = stepper;
+    options.substeps = 20;
+    Simulation simulation(std::move(options));
+    Robot& robot = simulation.build<ArmWithPulleys>();
+    simulation.start("built", {0.5, 0.7, 0.4, 0.2});
+    for (int i = 0; i < 30; ++i) simulation.step();
+    angles.push_back(robot.getState().angle_deg);
+    EXPECT_GT(std::abs(angles.back()[0]), 5);
+  }
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(angles[0][i], angles[1][i], 1e-4);
+}
+
+TEST(MuscleOverPulley, ChoosesAStepInWhichItsRobotIsStable) {
+  SimulationOptions options = lineOptions();
+  options.step_s = 0.05;
+  Simulation simulation(std::move(options));
+  Robot& robot = simulation.build<ArmWithPulleys>();
+  EXPECT_GT(simulation.substeps(), 5);
+  simulation.start("built", {1, 0, 0, 1});
+  for (int i = 0; i < 100; ++i) {
+    simulation.step();
+    if (i % 20 == 0) robot.step(i % 40 == 0 ? Action{0, 1, 1, 0} : Action{1, 1, 1, 1});
+  }
+  EXPECT_LT(simulation.worstGap().gap_mm, 1);
+}
+
+TEST(LineMuscle, IsShorterThanItsPathByItsTendon) {
+  Simulation simulation(lineOptions("muscle.slider_friction_N=0"));
+  auto* load = new Sphere(simulation.world(), nullptr, {0, -350, 0}, 1000, 0, 5);
+  auto* muscle = new LinearActuator(simulation.world(), simulation.space(), {0, 0, 0}, {0, -350, 0}, 120, 300);
+  muscle->connectStartTo(nullptr);
+  muscle->connectEndTo(load);
+  muscle->setTendonMm(100);
+  EXPECT_EQ(muscle->lengthMm(), 250);
+  EXPECT_EQ(muscle->tensionN(), muscle->calculateForce(0, 250));
+  load->place({0, -410, 0}, Eigen::Matrix3d::Identity());
+  EXPECT_EQ(muscle->lengthMm(), 310);
+  applyForces(*muscle);
+  const double stop_N = dBodyGetForce(load->body().id)[1] / simulation.physics().force_per_N - muscle->tensionN();
+  EXPECT_NEAR(stop_N, 10 * 10.0, 1e-9) << "10 mm beyond the longest length of the muscle";
+}
+
+TEST(LineMuscle, IsCheckedWhenItsPathIsFinished) {
+  const auto stepped = [](double tendon_mm, bool with_via_point) {
+    Simulation simulation(lineOptions());
+    auto* muscle = lineBetween(simulation, {0, 0, 0}, {0, -310, 0});
+    muscle->setName("triceps");
+    if (with_via_point) muscle->addViaPoint(nullptr, {200, -100, 0});
+    muscle->setTendonMm(tendon_mm);
+    return messageOf<BadParameter>([&] { simulation.step(); });
+  };
+  const auto longer = stepped(0, false);
+  EXPECT_TRUE(contains(longer, "start length of triceps along its path = 310 mm: must lie between"));
+  EXPECT_TRUE(contains(longer, "120 .. 300 mm"));
+  EXPECT_EQ(stepped(10.5, false), "nothing was thrown");
+  EXPECT_TRUE(contains(stepped(200, false), "start length of triceps, without its tendon of 200 mm, along its path = 110 mm"));
+  EXPECT_TRUE(contains(stepped(0, true), "513.6 mm"));
+  EXPECT_EQ(stepped(300, true), "nothing was thrown");
+}
+
+TEST(LineMuscle, ItsPathDoesNotChangeAfterwards) {
+  Simulation simulation(lineOptions());
+  auto* muscle = lineBetween(simulation, {0, 0, 0}, {0, -210, 0});
+  simulation.step();
+  for (const auto& change : std::vector<std::function<void()>>{[&] {
+                                                                 muscle->addViaPoint(nullptr, {0, 0, 0});
+                                                               },
+                                                               [&] {
+                                                                 muscle->addPulley(nullptr, {0, 0, 0}, {0, 0, 1}, 10);
+                                                               },
+                                                               [&] { muscle->setTendonMm(10); }})
+    EXPECT_TRUE(contains(messageOf<BadParameter>(change), "of muscle_0 comes too late"));
+}
+
+TEST(MuscleOverPulley, RefusesWhatCannotBe) {
+  Simulation simulation(lineOptions()), other(lineOptions()), chains;
+  auto* thread = threadBetween(simulation, nullptr, {0, 0, 0}, nullptr, {0, -200, 0});
+  auto* bone = new Sphere(other.world(), nullptr, {0, 0, 0}, 1000, 0, 5);
+  const Vector center(20, -100, 0), z(0, 0, 1);
+  const auto refusal = [&](Actuator* muscle, Primitive* primitive, const Vector& at, const Vector& axis, double radius_mm,
+                           std::optional<Vector> side_mm = {}) {
+    return messageOf<BadParameter>([&] { muscle->addPulley(primitive, at, axis, radius_mm, side_mm); });
+  };
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(contains(refusal(lineBetween(chains, {0, 0, 0}, {0, -210, 0}), nullptr, center, z, 10), "is a chain"));
+  EXPECT_TRUE(contains(refusal(thread, bone, center, z, 10), "different simulations"));
+  EXPECT_TRUE(contains(refusal(thread, nullptr, center, z, 0), "pulley of muscle_0: radius = 0 mm: must be positive"));
+  EXPECT_TRUE(contains(refusal(thread, nullptr, center, z, nan), "must be positive"));
+  EXPECT_TRUE(contains(refusal(thread, nullptr, {nan, 0, 0}, z, 10), "center"));
+  EXPECT_TRUE(contains(refusal(thread, nullptr, center, {0, nan, 0}, 10), "axis"));
+  EXPECT_TRUE(contains(refusal(thread, nullptr, center, z, 10, Vector(0, 0, nan)), "side point"));
+  EXPECT_TRUE(contains(refusal(thread, nullptr, center, z, 10, Vector(20, -91, 70)), "9 mm: must be at least its radius, 10 mm"));
+  EXPECT_TRUE(contains(messageOf<BadParameter>([&] { thread->setTendonMm(-1); }), "tendon of muscle_0 = -1 mm"));
+  EXPECT_TRUE(contains(messageOf<BadParameter>([&] { thread->setTendonMm(nan); }), "tendon of muscle_0"));
+  auto* chain = chains.world().actuators().front();
+  EXPECT_TRUE(contains(messageOf<BadParameter>([&] { chain->setTendonMm(1); }), "is a chain"));
+
+  thread->addPulley(nullptr, center, 5 * z, 30);
+  EXPECT_TRUE(contains(refusal(thread, nullptr, {0, -150, 0}, z, 10), "there must be a via point between them"));
+  thread->addViaPoint(nullptr, {0, -120, 0});
+  thread->addPulley(nullptr, {0, -160, 0}, z, 10);
+  EXPECT_TRUE(contains(messageOf<BadParameter>([&] { simulation.step(); }),
+                       "distance of point 1 of muscle_0 from the pulley beside it = 28.28 mm: must be at least the radius, 30 mm"));
+}
+
+TEST(MuscleOverPulley, GoesOnWhereAnEndGetsIntoThePulley) {
+  Simulation simulation(lineOptions());
+  auto* load = new Sphere(simulation.world(), nullptr, {200, 0, 0}, 1000, 0, 5);
+  auto* thread = threadBetween(simulation, nullptr, {-100, 0, 0}, load, {200, 0, 0});
+  thread->addPulley(nullptr, {0, 0, 0}, {0, 0, 1}, 30, Vector(0, 40, 0));
+  simulation.step();
+  load->place({0, 0, 0}, Eigen::Matrix3d::Identity());
+  EXPECT_EQ(thread->lengthMm(), 100);
+  simulation.step();
+  EXPECT_TRUE(std::isfinite(thread->lengthMm()));
 }
 
 }  // namespace

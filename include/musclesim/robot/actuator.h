@@ -6,6 +6,7 @@
 #include <ode/ode.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,7 +36,8 @@ struct Link {
 /// Length l = sum of the distances of each link's two beads + link count * 2 bead radii.
 ///
 /// With the parameter muscle.model = line there are no links: the tension acts along the straight line between the ends, or along its via
-/// points (LineOfPull), and is never negative. l is the length of that line. Such a muscle has no mass and touches nothing.
+/// points and around its pulleys (LineOfPull), and is never negative. l is the length of that path without the tendon. Such a muscle has no
+/// mass and touches nothing.
 class Actuator : public WorldPart {
  public:
   ~Actuator() override;
@@ -45,8 +47,22 @@ class Actuator : public WorldPart {
   void connectStartTo(Primitive* primitive);
   void connectEndTo(Primitive* primitive);
   /// Lets a line muscle pass through a point that is fixed to a primitive (null: the environment), after those added before.
-  /// Throws BadParameter for a chain.
+  /// Throws BadParameter for a chain, and once the path is finished.
   void addViaPoint(Primitive* primitive, const Vector& point_mm);
+  /// Lets a line muscle pass a pulley that is fixed to a primitive (null: the environment), after the via points added before: a cylinder
+  /// without ends about an axis, or a sphere if the axis is zero. The muscle lies on it where its straight segment would cross it; with a
+  /// side point, fixed to the same primitive, it passes on the side of this point (Pulley has the rule). Points in mm in the world frame,
+  /// in the pose as built. Throws BadParameter for a chain, once the path is finished, for a radius that is not positive, a side point
+  /// inside the pulley, and a second pulley without a via point between.
+  void addPulley(Primitive* primitive, const Vector& center_mm, const Vector& axis, double radius_mm,
+                 const std::optional<Vector>& side_mm = {});
+  /// Gives a line muscle an inextensible cable in series: muscle length = path length - tendon. Throws BadParameter for a chain, once the
+  /// path is finished, and for a length that is negative or not finite.
+  void setTendonMm(double tendon_mm);
+  /// Says that the robot stands as built: a simulation does before the first step with this muscle. The path of a line muscle is finished
+  /// then. Throws BadParameter if its length lies outside of the muscle's range, or a point of it inside a pulley. Does nothing the second
+  /// time, and for chains, whose length the constructor has checked.
+  void finishPath();
 
   /// Tension in N, pulling positive, at a pressure (fraction of full scale) and a length. The default asks the force law (Eq. 1
   /// unless "force_law.name" says otherwise); a user's own actuator overrides it. A result that is not finite stops the run.
@@ -97,13 +113,15 @@ class Actuator : public WorldPart {
 
  protected:
   /// `points` are the chain's link ends, link count + 1 of them. `given_minimum_length_mm` is what the user asked for.
-  /// Throws BadParameter if the length along the points is not between the given minimum and the maximum, or a link is shorter than its
-  /// beads.
+  /// Throws BadParameter if a point is not finite and, for a chain, if the length along the points is not between the given minimum and the
+  /// maximum, or a link is shorter than its beads. For a line muscle finishPath checks the length.
   Actuator(dWorldID world, dSpaceID space, const std::vector<Vector>& points, double given_minimum_length_mm, double minimum_length_mm,
            double maximum_length_mm, MuscleModel model = MuscleModel::by_parameter);
 
  private:
   void takeCleanTension();
+  void requireStartLength(double length_mm, const std::string& which) const;
+  LineOfPull& openPath(const std::string& what);
   void setFriction(dJointID joint, double force, double speed) const;
   void buildLinks(dSpaceID beads, const std::vector<Vector>& points);
   void requireSameWorld(const Primitive* primitive, const std::string& which) const;
@@ -111,11 +129,12 @@ class Actuator : public WorldPart {
 
   World& world_;
   MuscleSettings settings_;
-  double minimum_length_mm_, maximum_length_mm_;
+  double given_minimum_length_mm_, minimum_length_mm_, maximum_length_mm_;
   std::unique_ptr<ForceLaw> law_;
   std::vector<Link> links_;
   std::vector<Joint*> hinges_;
   std::unique_ptr<LineOfPull> line_;
+  bool path_finished_ = false;
   Joint* start_joint_ = nullptr;
   Joint* end_joint_ = nullptr;
   Vector start_mm_, end_mm_;

@@ -1,11 +1,13 @@
-/// The path of a massless muscle: straight lines from its start over its via points to its end.
+/// The path of a massless muscle: a taut thread from its start over via points and pulleys to its end.
 #pragma once
 
 #include <ode/ode.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "musclesim/robot/pulley.h"
 #include "musclesim/robot/state.h"
 
 namespace musclesim {
@@ -14,10 +16,14 @@ class Primitive;
 struct MuscleSettings;
 struct PhysicsSettings;
 
-/// A taut thread from a start over via points to an end. Every point is fixed to a body or to the environment.
+/// A taut thread from a start over via points to an end, past at most one pulley between two of them. Points and pulleys are fixed to
+/// bodies or to the environment.
 ///
-///     l = sum |x_i+1 - x_i|,   force on point i: f (d_i - d_i-1),   d_i = (x_i+1 - x_i) / |x_i+1 - x_i|
-/// x points in mm, d directions, f the force of the thread. The forces on all points sum to zero.
+///     l = sum l_i - l_t,   force on point i: f (d_i - e_i-1),   force and torque on pulley i: the opposite of those on both of its points
+/// l_i length of the way from point i to point i + 1 (Way), d_i and e_i its directions at point i and at point i + 1 (equal if it is
+/// straight), l_t the tendon, an inextensible cable in series, f the force of the thread. All forces sum to zero, and so do all torques:
+/// the way between two points does not change if both and their pulley move as one. So a pulley's forces are those at its two tangent
+/// points.
 class LineOfPull {
  public:
   enum class End { start, end };
@@ -27,9 +33,18 @@ class LineOfPull {
   /// Fixes an end to a primitive's body (null: the environment). Throws BadParameter if it is already connected.
   void connect(End end, Primitive* primitive, const std::string& muscle_name);
   void addViaPoint(Primitive* primitive, const Vector& point_mm);
+  /// Between the point added last and the next one. The axis need not have unit length. Throws BadParameter unless all numbers are finite,
+  /// the radius is positive, the side point lies outside, and there is no pulley since the point added last.
+  void addPulley(Primitive* primitive, Pulley pulley, const std::string& muscle_name);
+  /// Throws BadParameter unless it is finite and at least 0.
+  void setTendonMm(double tendon_mm, const std::string& muscle_name);
+  double tendonMm() const { return tendon_mm_; }
+  /// Throws BadParameter for a point inside of the pulley next to it.
+  void requirePointsOutside(const std::string& muscle_name) const;
 
+  /// Length of the muscle: that of the path without the tendon.
   double lengthMm() const;
-  /// Start, via points and end in the world frame.
+  /// Start, via points and end in the world frame, with points on each pulley where the thread lies on it.
   std::vector<Vector> pointsMm() const;
 
   /// Adds the forces of the thread to the bodies, which must not have moved since the last lengthMm(). The thread's force in N is the
@@ -39,12 +54,12 @@ class LineOfPull {
   /// at which dry and viscous friction are equal, k = 10 N/mm. A thread with a loose end carries no force.
   void pull(double tension_N, double maximum_length_mm, const MuscleSettings& settings, const PhysicsSettings& physics) const;
 
-  /// Effect of a unit force on a body: dl/dx summed over all points on it, as force and torque about its centre of mass in the world frame.
+  /// Effect of a unit force on a body: dl/dx of a point or a pulley on it, as force and torque about its centre of mass in the world frame.
   struct Push {
     dBodyID body;
     Vector force, torque;
   };
-  /// One entry per point that is fixed to a body.
+  /// One entry per point that is fixed to a body, and two per pulley that is fixed to a body and carries the thread.
   std::vector<Push> pushes() const;
   /// stiffnessNPerMm: d(force)/dl at the longest length in N/mm, including the stop's spring. dampingNsPerMm: d(force)/d(speed) at rest, in
   /// N s/mm of true time.
@@ -57,21 +72,25 @@ class LineOfPull {
     Vector place;            ///< position in the body's frame, from its centre of mass, or in the world frame, mm
     bool connected = false;
   };
-  /// A point in the world frame.
-  struct Located {
-    Vector arm;  ///< from its body's centre of mass, mm
-    Vector position;
-    Vector gradient;  ///< d l / d x
+  /// A pulley in the frame of a body (null: the environment), from its centre of mass.
+  struct MountedPulley {
+    dBodyID body;
+    Pulley pulley;
   };
   static Point pointOn(Primitive* primitive, const Vector& point_mm);
-  /// Updates located_ and length_mm_ from the bodies' present poses; speed() and pull() use them.
+  static Vector worldPosition(const Point& point);
+  static Pulley inWorld(const MountedPulley& mounted);
+  /// Updates pushes_ and length_mm_ from the bodies' present poses; speed() and pull() use them.
   void locate() const;
+  void addPush(dBodyID body, const Vector& position, const Vector& gradient) const;
   /// dl/dt in world units; positive while the thread gets longer.
   double speed() const;
   double totalForceN(double tension_N, double maximum_length_mm, const MuscleSettings& settings, const PhysicsSettings& physics) const;
 
   std::vector<Point> points_;
-  mutable std::vector<Located> located_;
+  std::vector<std::optional<MountedPulley>> pulleys_;  ///< between each point and the next
+  double tendon_mm_ = 0;
+  mutable std::vector<Push> pushes_;
   mutable double length_mm_ = 0;
 };
 
