@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "formats.h"
+#include "muscle_path.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
 #include "musclesim/base/text.h"
@@ -47,6 +48,7 @@ ImportedRobot importRobot(const std::string& file) {
   SourceRobot robot = readSource(file);
   if (robot.name.empty()) robot.name = std::filesystem::path(file).stem().string();
   prepare(robot);
+  preparePaths(robot);
   return {robotToml(robot), robot.notes};
 }
 

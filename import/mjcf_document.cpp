@@ -16,16 +16,15 @@ namespace {
 
 constexpr const char* top_class = "main";
 
-/// The least rotation that turns the z axis into a direction.
-Eigen::Matrix3d fromZAxis(const Eigen::Vector3d& direction) {
+}  // namespace
+
+Eigen::Matrix3d turnOfZAxis(const Eigen::Vector3d& direction) {
   const Eigen::Vector3d z = Eigen::Vector3d::UnitZ(), to = direction.normalized(), axis = z.cross(to);
   const double sine = axis.norm();
   constexpr double parallel = 1e-10;  // sine
   const Eigen::Vector3d about = sine < parallel ? Eigen::Vector3d::UnitX() : Eigen::Vector3d(axis / sine);
   return Eigen::AngleAxisd(std::atan2(sine, to.z()), about).toRotationMatrix();
 }
-
-}  // namespace
 
 const XmlElement* MjcfElement::find(const char* attribute) const {
   const auto found = std::find_if(levels_.begin(), levels_.end(), [&](const XmlElement* level) { return level->Attribute(attribute); });
@@ -103,7 +102,7 @@ std::optional<Eigen::Matrix3d> MjcfElement::rotation() const {
     }
     if (const auto z = element.numbers("zaxis", 3, 3); !z.empty()) {
       requireDirection(Eigen::Vector3d(z.data()), "zaxis");
-      return fromZAxis(Eigen::Vector3d(z.data()));
+      return turnOfZAxis(Eigen::Vector3d(z.data()));
     }
     if (const auto e = element.numbers("euler", 3, 3); !e.empty())
       return fromEuler(unit * Eigen::Vector3d(e.data()), document_->compiler().euler_sequence);
@@ -113,7 +112,7 @@ std::optional<Eigen::Matrix3d> MjcfElement::rotation() const {
 
 MjcfDocument::MjcfDocument(const std::string& text, const std::string& file) : file_(file) {
   parseXml(xml_, text, file);
-  include(*xml_.RootElement(), std::filesystem::path(file).parent_path().string(), 0);
+  include(*xml_.RootElement(), std::filesystem::path(file).parent_path().string());
   readCompiler();
   classes_[top_class];
   for (const XmlElement* section : childrenOf(root(), "default")) {
@@ -123,34 +122,26 @@ MjcfDocument::MjcfDocument(const std::string& text, const std::string& file) : f
   }
 }
 
-/// Puts the contents of included files in the place of <include>.
-void MjcfDocument::include(XmlElement& parent, const std::string& folder, int depth) {
-  constexpr int deepest = 100;  // of elements and includes
-  if (depth > deepest) refuse(parent, file_, "elements or included files are nested too deeply");
-  for (XmlElement* child = parent.FirstChildElement(); child;) {
-    XmlElement* const next = child->NextSiblingElement();
+/// Reads included files; childrenOf() puts their contents in the place of <include>.
+void MjcfDocument::include(XmlElement& parent, const std::string& folder) {
+  for (XmlElement* child = parent.FirstChildElement(); child; child = child->NextSiblingElement()) {
     if (std::string(child->Name()) != "include") {
-      include(*child, folder, depth + 1);
-      child = next;
+      include(*child, folder);
       continue;
     }
     const std::string name = textOf(*child, "file");
     if (name.empty()) refuse(*child, file_, "must have a file");
     const std::string path = (std::filesystem::path(folder) / name).lexically_normal().string();
-    for (const auto& earlier : included_files_)
-      if (*earlier == path) refuse(*child, file_, fmt::format("{} is included twice", path));
+    for (const auto& earlier : included_)
+      if (earlier->file == path) refuse(*child, file_, fmt::format("{} is included twice", path));
     constexpr std::size_t limit_bytes = 64 << 20;
-    tinyxml2::XMLDocument included;
-    parseXml(included, readTextFile(path, limit_bytes), path);
-    included_files_.push_back(std::make_unique<std::string>(path));
-    tinyxml2::XMLNode* after = child;
-    for (const XmlElement* element : childrenOf(*included.RootElement())) {
-      after = parent.InsertAfterChild(after, element->DeepClone(&xml_));
-      after->SetUserData(included_files_.back().get());
-    }
-    XmlElement* const following = child->NextSiblingElement();
-    parent.DeleteChild(child);
-    child = following;
+    auto included = std::make_unique<IncludedFile>();
+    included->file = path;
+    parseXml(included->xml, readTextFile(path, limit_bytes), path);
+    included->xml.SetUserData(&included->file);
+    child->SetUserData(included->xml.RootElement());
+    included_.push_back(std::move(included));
+    include(*included_.back()->xml.RootElement(), folder);
   }
 }
 

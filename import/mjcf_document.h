@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -26,6 +27,9 @@ struct MjcfCompiler {
 };
 
 class MjcfDocument;
+
+/// The least rotation that turns the z axis into a direction.
+Eigen::Matrix3d turnOfZAxis(const Eigen::Vector3d& direction);
 
 /// An element with the defaults that apply to it.
 class MjcfElement {
@@ -78,14 +82,18 @@ class MjcfDocument {
     std::string parent;
     std::map<std::string, std::vector<const XmlElement*>> elements;  ///< by kind, in the order of the file
   };
-  void include(XmlElement& parent, const std::string& folder, int depth);
+  struct IncludedFile {
+    tinyxml2::XMLDocument xml;
+    std::string file;
+  };
+  void include(XmlElement& parent, const std::string& folder);
   void readCompiler();
   void readDefaults(const XmlElement& element, const std::string& name, const std::string& parent);
   void collectAttributes(const XmlElement& element, const std::string& kind, std::set<std::string>& names) const;
 
   tinyxml2::XMLDocument xml_;
   std::string file_;
-  std::vector<std::unique_ptr<std::string>> included_files_;  ///< user data of included nodes
+  std::vector<std::unique_ptr<IncludedFile>> included_;
   MjcfCompiler compiler_;
   std::map<std::string, Class> classes_;
 };

@@ -128,7 +128,7 @@ class TomlWriter {
     for (const std::string& note : robot_.notes) text_ += "# - " + oneLine(note) + "\n";
     text_ += "\n";
     line("format", "\"musclesim-robot-1\"");
-    line("name", quoted(oneLine(robot_.name)));
+    line("name", quoted(robot_.name));
     text_ += "\n[start]\nstate = \"built\"\n";
   }
 
@@ -150,7 +150,10 @@ class TomlWriter {
     line("at_mm", place(at));
     if (const std::string rotation = turn(toTarget() * axes); !rotation.empty()) line("rotate_deg", rotation);
     line("shape", body.shapes.empty() ? "{ type = \"none\" }" : shapeText(body.shapes[0]));
-    if (!body.fixed) writeMass(body, at, axes);
+    if (body.fixed)
+      writeDensity();
+    else
+      writeMass(body, at, axes);
     if (!body.shapes.empty()) writeColor(body.shapes[0].color);
     if (body.fixed) line("fixed", "true");
     if (body.free) line("free", "true");
@@ -173,12 +176,16 @@ class TomlWriter {
     if ((center - at).norm() > same_place_m) line("center_of_mass_mm", place(center));
   }
 
+  /// What does not move has a mass without effect.
+  void writeDensity() { line("density_g_per_mm3", "0.001"); }
+
   void writePart(const SourceBody& body, const SourceShape& shape) {
     const Pose pose = body.pose * shape.pose;
     table("body.part");
     line("shape", shapeText(shape));
     line("at_mm", place(pose.translation()));
     if (const std::string rotation = turn(toTarget() * pose.linear()); !rotation.empty()) line("rotate_deg", rotation);
+    if (body.fixed) writeDensity();
     writeColor(shape.color);
   }
 

@@ -272,6 +272,9 @@ void fitLimits(SourceRobot& robot, SourceJoint& joint) {
                                       quantity(joint, (*limits)->low), quantity(joint, (*limits)->high)));
     limits->reset();
   }
+  if (joint.kind != Kind::universal || joint.limits.has_value() == joint.limits2.has_value()) return;
+  // A robot file has limits for both axes or for none.
+  (joint.limits ? joint.limits2 : joint.limits) = SourceRange{-widest, widest};
 }
 
 /// Bodies need positive moments of inertia of which none is greater than the sum of the other two.
@@ -307,6 +310,13 @@ std::string plainName(const std::string& name) {
   return plain;
 }
 
+/// Names that parameters of the program begin with; a robot cannot have them.
+bool isGroupOfParameters(const std::string& name) {
+  static const std::set<std::string> groups = {"muscle", "force_law", "physics", "world", "task",
+                                               "asm",    "aasm",      "effect",  "noise", "record"};
+  return groups.contains(name);
+}
+
 /// Gives all things of one kind names that are plain and different.
 template <class Things>
 void nameAll(SourceRobot& robot, Things& things, const std::string& kind, std::set<std::string> taken) {
@@ -339,6 +349,8 @@ void giveShapes(SourceRobot& robot, SourceBody& body, const LinkShapes& shapes) 
 }
 
 void prepare(SourceRobot& robot) {
+  robot.name = plainName(robot.name);
+  if (isGroupOfParameters(robot.name)) robot.name += "_robot";
   nameAll(robot, robot.bodies, "body", {});
   nameAll(robot, robot.joints, "joint", {});
   nameAll(robot, robot.pulleys, "pulley", {});

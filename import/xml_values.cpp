@@ -17,13 +17,9 @@ void parseXml(tinyxml2::XMLDocument& document, const std::string& text, const st
 }
 
 void refuse(const XmlElement& element, const std::string& file, const std::string& what) {
-  std::string place = file;
-  for (const tinyxml2::XMLNode* node = &element; node; node = node->Parent()) {
-    if (!node->GetUserData()) continue;
-    place = *static_cast<const std::string*>(node->GetUserData());
-    break;
-  }
-  throw BadFile(place, element.GetLineNum(), 0, fmt::format("<{}>: {}", element.Name(), what));
+  const void* included_file = element.GetDocument()->GetUserData();
+  throw BadFile(included_file ? *static_cast<const std::string*>(included_file) : file, element.GetLineNum(), 0,
+                fmt::format("<{}>: {}", element.Name(), what));
 }
 
 std::string textOf(const XmlElement& element, const char* attribute) {
@@ -64,7 +60,14 @@ Eigen::Vector3d vectorOf(const XmlElement& element, const char* attribute, const
 
 std::vector<const XmlElement*> childrenOf(const XmlElement& element, const char* name) {
   std::vector<const XmlElement*> children;
-  for (const XmlElement* child = element.FirstChildElement(name); child; child = child->NextSiblingElement(name)) children.push_back(child);
+  for (const XmlElement* child = element.FirstChildElement(); child; child = child->NextSiblingElement()) {
+    if (const void* included = child->GetUserData()) {
+      const auto more = childrenOf(*static_cast<const XmlElement*>(included), name);
+      children.insert(children.end(), more.begin(), more.end());
+    } else if (!name || std::string_view(child->Name()) == name) {
+      children.push_back(child);
+    }
+  }
   return children;
 }
 

@@ -17,7 +17,7 @@ using XmlElement = tinyxml2::XMLElement;
 /// Parses a text whose outermost element is known. Throws BadFile with the line if it is not well-formed.
 void parseXml(tinyxml2::XMLDocument& document, const std::string& text, const std::string& file);
 
-/// Throws BadFile at the element's line. A node above it may know another file than `file`: its user data is the name, a std::string.
+/// Throws BadFile at the element's line of `file`, or of an included file: the user data of its document is the name, a std::string.
 [[noreturn]] void refuse(const XmlElement& element, const std::string& file, const std::string& what);
 
 /// The attribute's text, empty if there is none.
@@ -32,7 +32,8 @@ std::vector<double> numbersIn(const std::string& text, std::size_t least, std::s
 double numberOf(const XmlElement& element, const char* attribute, double default_value, const std::string& file);
 Eigen::Vector3d vectorOf(const XmlElement& element, const char* attribute, const Eigen::Vector3d& default_value, const std::string& file);
 
-/// The children of an element, in order; with a name: those of that name.
+/// The children of an element, in order; with a name: those of that name. An element whose user data is the outermost element of an
+/// included file stands for the children of that one.
 std::vector<const XmlElement*> childrenOf(const XmlElement& element, const char* name = nullptr);
 
 }  // namespace musclesim
