@@ -38,7 +38,7 @@ class BodyReader {
 
   void noteAttributes(const std::string& kind, std::set<std::string> known) {
     known.insert(placeAttributes().begin(), placeAttributes().end());
-    if (const auto others = document_.otherAttributes(kind, known); !others.empty())
+    if (const auto others = document_.otherAttributes("worldbody", kind, known); !others.empty())
       note(fmt::format("<{}>: {} not taken over", kind, fmt::join(others, ", ")));
   }
 

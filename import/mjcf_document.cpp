@@ -18,14 +18,6 @@ constexpr const char* top_class = "main";
 
 }  // namespace
 
-Eigen::Matrix3d turnOfZAxis(const Eigen::Vector3d& direction) {
-  const Eigen::Vector3d z = Eigen::Vector3d::UnitZ(), to = direction.normalized(), axis = z.cross(to);
-  const double sine = axis.norm();
-  constexpr double parallel = 1e-10;  // sine
-  const Eigen::Vector3d about = sine < parallel ? Eigen::Vector3d::UnitX() : Eigen::Vector3d(axis / sine);
-  return Eigen::AngleAxisd(std::atan2(sine, to.z()), about).toRotationMatrix();
-}
-
 const XmlElement* MjcfElement::find(const char* attribute) const {
   const auto found = std::find_if(levels_.begin(), levels_.end(), [&](const XmlElement* level) { return level->Attribute(attribute); });
   return found == levels_.end() ? nullptr : *found;
@@ -220,10 +212,11 @@ void MjcfDocument::collectAttributes(const XmlElement& element, const std::strin
   for (const XmlElement* child : childrenOf(element)) collectAttributes(*child, kind, names);
 }
 
-std::set<std::string> MjcfDocument::otherAttributes(const std::string& kind, const std::set<std::string>& known) const {
+std::set<std::string> MjcfDocument::otherAttributes(const char* section, const std::string& kind,
+                                                    const std::set<std::string>& known) const {
   std::set<std::string> names;
-  for (const char* section : {"default", "worldbody", "tendon", "option", "compiler"})
-    for (const XmlElement* element : childrenOf(root(), section)) collectAttributes(*element, kind, names);
+  for (const char* place : {"default", section})
+    for (const XmlElement* element : childrenOf(root(), place)) collectAttributes(*element, kind, names);
   for (const std::string& name : known) names.erase(name);
   return names;
 }

@@ -28,9 +28,6 @@ struct MjcfCompiler {
 
 class MjcfDocument;
 
-/// The least rotation that turns the z axis into a direction.
-Eigen::Matrix3d turnOfZAxis(const Eigen::Vector3d& direction);
-
 /// An element with the defaults that apply to it.
 class MjcfElement {
  public:
@@ -74,8 +71,8 @@ class MjcfDocument {
   /// All children of the sections of that name below the root: a file may have a section several times.
   std::vector<const XmlElement*> section(const char* name) const;
 
-  /// Attributes of elements of a kind, also in defaults, that are not among the known ones.
-  std::set<std::string> otherAttributes(const std::string& kind, const std::set<std::string>& known) const;
+  /// Attributes of elements of a kind in a section and in defaults that are not among the known ones.
+  std::set<std::string> otherAttributes(const char* section, const std::string& kind, const std::set<std::string>& known) const;
 
  private:
   struct Class {

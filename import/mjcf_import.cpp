@@ -63,7 +63,7 @@ void noteSections(const MjcfDocument& document, SourceRobot& robot) {
   }
   const std::set<std::string> known = {"angle",     "coordinate",   "inertiafromgeom", "autolimits",        "balanceinertia", "eulerseq",
                                        "boundmass", "boundinertia", "settotalmass",    "inertiagrouprange", "meshdir",        "texturedir"};
-  if (const auto others = document.otherAttributes("compiler", known); !others.empty())
+  if (const auto others = document.otherAttributes("compiler", "compiler", known); !others.empty())
     robot.notes.push_back(fmt::format("<compiler>: {} not taken over", fmt::join(others, ", ")));
 }
 

@@ -25,7 +25,7 @@ class TendonReader {
     if (!robot_.muscles.empty())
       note("muscles: force laws, gains, filters and control ranges of actuators are not taken over; muscles have the force law of the run");
     const std::set<std::string> known = {"name", "class", "stiffness", "damping", "springlength", "rgba", "width", "group", "material"};
-    if (const auto others = document_.otherAttributes("spatial", known); !others.empty())
+    if (const auto others = document_.otherAttributes("tendon", "spatial", known); !others.empty())
       note(fmt::format("<spatial>: {} not taken over", fmt::join(others, ", ")));
   }
 
@@ -136,17 +136,8 @@ class TendonReader {
   }
 
   void addWrap(const XmlElement& step, SourceMuscle& muscle) {
-    const std::size_t geom = geomOf(step);
-    SourceStation station{.pulley = pulleyOf(geom), .point = {}};
-    if (step.Attribute("sidesite")) {
-      const SourcePoint& side = siteOf(step, "sidesite");
-      const std::size_t body = model_.geoms[geom].body;
-      // The side is fixed to the pulley.
-      station.point = SourcePoint{body, robot_.bodies[body].pose.inverse() * robot_.inWorld(side)};
-      if (side.body != body)
-        note(fmt::format("muscle {}: the side site {} is not on the body of {}; it moves with that body here", muscle.name,
-                         textOf(step, "sidesite"), model_.geoms[geom].name));
-    }
+    SourceStation station{.pulley = pulleyOf(geomOf(step)), .point = {}};
+    if (step.Attribute("sidesite")) station.point = siteOf(step, "sidesite");
     muscle.path.push_back(station);
   }
 

@@ -26,6 +26,47 @@ Pulley pulleyInWorld(const SourceRobot& robot, const SourceStation& station) {
   return result;
 }
 
+/// Whether a pulley looks the same from both of the bodies that a joint connects: a cylinder along the axis of a hinge, or a sphere whose
+/// centre lies on it.
+bool isCoaxial(const SourceRobot& robot, const SourcePulley& pulley, const SourceJoint& joint) {
+  if (joint.kind != SourceJoint::Kind::hinge) return false;
+  const Pose &body = robot.bodies[joint.body].pose, pulley_pose = robot.bodies[pulley.body].pose * pulley.pose;
+  const Eigen::Vector3d axis = body.linear() * joint.axis.normalized(), between = pulley_pose.translation() - body * joint.anchor_m;
+  constexpr double same_place_m = 1e-9, parallel = 1e-9;  // sine
+  return between.cross(axis).norm() < same_place_m && (pulley.sphere || pulley_pose.linear().col(2).cross(axis).norm() < parallel);
+}
+
+/// The index of that pulley on another body; adds it if there is none yet.
+std::size_t pulleyOn(SourceRobot& robot, SourcePulley pulley, std::size_t body) {
+  pulley.name += "_on_" + robot.bodies[body].name;
+  pulley.pose = robot.bodies[body].pose.inverse() * robot.bodies[pulley.body].pose * pulley.pose;
+  pulley.body = body;
+  for (std::size_t i = 0; i < robot.pulleys.size(); ++i)
+    if (robot.pulleys[i].name == pulley.name) return i;
+  robot.pulleys.push_back(pulley);
+  return robot.pulleys.size() - 1;
+}
+
+/// Side points are fixed to their pulley's body. A side point on the body at the other end of a hinge takes a pulley along the hinge's axis
+/// with it: pulleys have no friction, so both bodies feel the same.
+void attachSides(SourceRobot& robot, SourceMuscle& muscle) {
+  for (SourceStation& station : muscle.path) {
+    if (!station.pulley || !station.point || station.point->body == robot.pulleys[*station.pulley].body) continue;
+    const SourcePulley pulley = robot.pulleys[*station.pulley];
+    const std::size_t body = pulley.body, other = station.point->body;
+    const auto joint = std::find_if(robot.joints.begin(), robot.joints.end(), [&](const SourceJoint& j) {
+      return (j.body == body && j.to == other) || (j.body == other && j.to == body);
+    });
+    if (joint != robot.joints.end() && isCoaxial(robot, pulley, *joint)) {
+      station.pulley = pulleyOn(robot, pulley, other);
+      continue;
+    }
+    station.point = SourcePoint{body, robot.bodies[body].pose.inverse() * robot.inWorld(*station.point)};
+    robot.notes.push_back(fmt::format("muscle {}: the side point of pulley {} is on body {} in the source and moves with the pulley here",
+                                      muscle.name, pulley.name, robot.bodies[other].name));
+  }
+}
+
 /// A pulley goes where a muscle here cannot wrap as in the source.
 void removeImpossiblePulleys(SourceRobot& robot, SourceMuscle& muscle) {
   for (std::size_t i = 1; i + 1 < muscle.path.size();) {
@@ -156,6 +197,7 @@ double pathLengthM(const SourceRobot& robot, const SourceMuscle& muscle) {
 }
 
 void preparePaths(SourceRobot& robot) {
+  for (SourceMuscle& muscle : robot.muscles) attachSides(robot, muscle);
   for (SourceMuscle& muscle : robot.muscles) removeImpossiblePulleys(robot, muscle);
   removeWhatMovesNothing(robot);
   removeUnusedPulleys(robot);

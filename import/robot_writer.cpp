@@ -78,6 +78,14 @@ std::string turn(const Eigen::Matrix3d& rotation) {
   return fmt::format("[[{}, \"{}\"]]", number(axis(along) < 0 ? -angle_deg : angle_deg), "xyz"[along]);
 }
 
+/// Axes of a shape in the world of the target. A round shape has them with the least turn that gives it its place.
+Eigen::Matrix3d axesOf(const Eigen::Matrix3d& body, const SourceShape& shape) {
+  const Eigen::Matrix3d axes = toTarget() * body * shape.pose.linear();
+  if (shape.kind == SourceShape::Kind::sphere) return Eigen::Matrix3d::Identity();
+  const bool round = shape.kind == SourceShape::Kind::capsule || shape.kind == SourceShape::Kind::cylinder;
+  return round ? turnOfZAxis(axes.col(2)) : axes;
+}
+
 std::string shapeText(const SourceShape& shape) {
   const Eigen::Vector3d size_mm = mm_per_m * shape.size_m;
   switch (shape.kind) {
@@ -139,16 +147,15 @@ class TomlWriter {
   void writeBody(const SourceBody& body) {
     const Eigen::Vector3d center = body.pose * body.mass.center_m;
     Eigen::Vector3d at = center;
-    Eigen::Matrix3d axes = body.pose.linear() * principalInertia(body.mass.inertia_kg_m2).axes;
+    Eigen::Matrix3d axes = toTarget() * body.pose.linear() * principalInertia(body.mass.inertia_kg_m2).axes;
     if (!body.shapes.empty()) {
-      const Pose first = body.pose * body.shapes[0].pose;
-      at = first.translation();
-      axes = first.linear();
+      at = body.pose * body.shapes[0].pose.translation();
+      axes = axesOf(body.pose.linear(), body.shapes[0]);
     }
     table("body");
     line("name", quoted(body.name));
     line("at_mm", place(at));
-    if (const std::string rotation = turn(toTarget() * axes); !rotation.empty()) line("rotate_deg", rotation);
+    if (const std::string rotation = turn(axes); !rotation.empty()) line("rotate_deg", rotation);
     line("shape", body.shapes.empty() ? "{ type = \"none\" }" : shapeText(body.shapes[0]));
     if (body.fixed)
       writeDensity();
@@ -164,7 +171,7 @@ class TomlWriter {
   void writeMass(const SourceBody& body, const Eigen::Vector3d& at, const Eigen::Matrix3d& axes) {
     const Eigen::Vector3d center = body.pose * body.mass.center_m;
     line("mass_g", number(g_per_kg * body.mass.mass_kg, 0));
-    const Eigen::Matrix3d turned = axes.transpose() * body.pose.linear();
+    const Eigen::Matrix3d turned = axes.transpose() * toTarget() * body.pose.linear();
     const Eigen::Matrix3d inertia = g_mm2_per_kg_m2 * (turned * body.mass.inertia_kg_m2 * turned.transpose());
     const double zero = 1e-12 * inertia.cwiseAbs().maxCoeff();  // rounding
     std::vector<double> values{inertia(0, 0), inertia(1, 1), inertia(2, 2)};
@@ -180,11 +187,10 @@ class TomlWriter {
   void writeDensity() { line("density_g_per_mm3", "0.001"); }
 
   void writePart(const SourceBody& body, const SourceShape& shape) {
-    const Pose pose = body.pose * shape.pose;
     table("body.part");
     line("shape", shapeText(shape));
-    line("at_mm", place(pose.translation()));
-    if (const std::string rotation = turn(toTarget() * pose.linear()); !rotation.empty()) line("rotate_deg", rotation);
+    line("at_mm", place(body.pose * shape.pose.translation()));
+    if (const std::string rotation = turn(axesOf(body.pose.linear(), shape)); !rotation.empty()) line("rotate_deg", rotation);
     if (body.fixed) writeDensity();
     writeColor(shape.color);
   }

@@ -57,7 +57,7 @@ struct SourcePulley {
   bool sphere = false;
 };
 
-/// What the path of a muscle passes: a point, or a pulley on the side of a point of the pulley's body.
+/// What the path of a muscle passes: a point, or a pulley on the side of a point.
 struct SourceStation {
   std::optional<std::size_t> pulley;
   std::optional<SourcePoint> point;  ///< on a pulley: the side

@@ -3,12 +3,22 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <cmath>
 #include <optional>
 
 namespace musclesim {
 
 /// Where a frame lies in another: a rotation and a translation in m.
 using Pose = Eigen::Isometry3d;
+
+/// The least rotation that turns the z axis into a direction.
+inline Eigen::Matrix3d turnOfZAxis(const Eigen::Vector3d& direction) {
+  const Eigen::Vector3d z = Eigen::Vector3d::UnitZ(), to = direction.normalized(), axis = z.cross(to);
+  const double sine = axis.norm();
+  constexpr double parallel = 1e-10;  // sine
+  const Eigen::Vector3d about = sine < parallel ? Eigen::Vector3d(Eigen::Vector3d::UnitX()) : Eigen::Vector3d(axis / sine);
+  return Eigen::AngleAxisd(std::atan2(sine, to.z()), about).toRotationMatrix();
+}
 
 struct SourceShape {
   enum class Kind { box, sphere, capsule, cylinder, ellipsoid };
