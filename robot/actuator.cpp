@@ -19,6 +19,8 @@ namespace musclesim {
 
 namespace {
 
+constexpr double squeezed_mm = 1e-6;  ///< by rounding, a chain between its stops may be that much shorter than its beads
+
 /// Axis of the hinge after a link of direction d: up x d, or x where the link is vertical.
 Vector hingeAxisAfter(const Vector& d) {
   const Vector axis(d.z(), 0, -d.x());
@@ -202,6 +204,10 @@ void Actuator::finishPath() {
   path_finished_ = true;
 }
 
+void Actuator::recentre(dBodyID body, const Vector& by_mm) {
+  if (line_ && body) line_->recentre(body, by_mm);
+}
+
 double Actuator::calculateForce(double pressure_ratio, double length_mm) const {
   return law_->tensionN(pressure_ratio, length_mm);
 }
@@ -266,7 +272,7 @@ void Actuator::placeStraight(const Vector& start_mm, const Vector& end_mm) {
   const auto count = static_cast<double>(links_.size());
   const Vector along = end_mm - start_mm;
   const double length_mm = along.norm();
-  if (!(length_mm >= count * 2 * radius && std::isfinite(length_mm)))
+  if (!(length_mm >= count * 2 * radius - squeezed_mm && std::isfinite(length_mm)))
     throw BadParameter("straight length of " + name_, fmt::format("{:.4g} mm", length_mm),
                        fmt::format("be at least its beads' diameters, {} mm", count * 2 * radius));
   // The beads keep their orientation against the chain, so all hinges stay at their reference where the chain was built straight.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "musclesim/base/error.h"
+#include "musclesim/robot/actuator.h"
 #include "musclesim/robot/primitive.h"
 #include "ode_vector.h"
 #include "vector_checks.h"
@@ -75,6 +76,7 @@ void Primitive::addPointMass(double mass_g, const Vector& point_mm) {
   const double total_g = mass.mass + mass_g;
   const Vector center = (mass.mass * getPosition() + mass_g * point_mm) / total_g;
   const Eigen::Matrix3d to_body = getRotation().transpose();
+  const Vector moved_mm = to_body * (center - getPosition());
   const Eigen::Matrix3d inertia = matrixFromOde(mass.I) + pointInertia(mass.mass, to_body * (getPosition() - center)) +
                                   pointInertia(mass_g, to_body * (point_mm - center));
   const bool physical =
@@ -115,6 +117,7 @@ void Primitive::takeMassProperties(double mass_g, const Vector& center, const Ei
   for (std::size_t i = 0; i < drawn.size(); ++i)
     dGeomSetOffsetWorldPosition(body_->parts[i]->geom_, drawn[i].x(), drawn[i].y(), drawn[i].z());
   for (const auto& [joint, anchor] : joints) reattach(*joint, anchor);
+  for (Actuator* actuator : world_.actuators()) actuator->recentre(body_->id, moved_mm);
 }
 
 void Primitive::requireComposable() const {

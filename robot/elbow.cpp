@@ -1,9 +1,9 @@
 #include "musclesim/robot/elbow.h"
 
-#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <string>
 
-#include "equilibrium.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/units.h"
 #include "musclesim/robot/muscle.h"
@@ -30,61 +30,23 @@ Elbow::Elbow(World& world) : Robot(world) {
   if (!(own_inertia_kgm2 > 0))
     throw BadParameter("elbow.forearm_inertia_kgm2", std::to_string(inertia_kgm2) + " kg m^2",
                        "be larger than forearm_kg * center_of_mass_mm^2, the inertia of a point mass there");
-  forearm_ = new CappedCylinder(world, nullptr, {0, -center_of_mass_mm, 0}, forearm_kg * g_per_kg, 0, drawn_radius_mm,
-                                std::max(2 * center_of_mass_mm, 1.0));
-  forearm_->setName("forearm");
-  forearm_->setInertia(Vector::Constant(own_inertia_kgm2 * g_mm2_per_kg_m2));
-  forearm_->rotate(90, Vector::UnitX());
-  hinge_ = forearm_->attachHinge(nullptr, Vector::Zero(), Vector::UnitZ(), -stop_deg, stop_deg);
-  addAngle("elbow", hinge_);
+  auto* forearm = new CappedCylinder(world, nullptr, {0, -center_of_mass_mm, 0}, forearm_kg * g_per_kg, 0, drawn_radius_mm,
+                                     std::max(2 * center_of_mass_mm, 1.0));
+  forearm->setName("forearm");
+  forearm->setInertia(Vector::Constant(own_inertia_kgm2 * g_mm2_per_kg_m2));
+  forearm->rotate(90, Vector::UnitX());
+  addAngle("elbow", forearm->attachHinge(nullptr, Vector::Zero(), Vector::UnitZ(), -stop_deg, stop_deg));
   for (int i = 0; i < 2; ++i) {
     const double side = i == 0 ? 1 : -1;
-    const Vector& bottom = lower_mm_[i] = mountedEnd({side * lever_mm, lower_mm, 0}, {side, 0, 0});
-    const Vector& top = upper_mm_[i] = mountedStart({side * lever_mm, upper_mm, 0}, {side, 0, 0});
-    muscles_[i] = new Muscle(world, space(), top, top + (bottom - top) / 3, top + (bottom - top) * 2 / 3, bottom, minimum_mm, maximum_mm);
-    muscles_[i]->connectStartTo(nullptr);
-    muscles_[i]->connectEndTo(forearm_);
-    addActuator(muscles_[i]);
+    const Vector bottom = mountedEnd({side * lever_mm, lower_mm, 0}, {side, 0, 0});
+    const Vector top = mountedStart({side * lever_mm, upper_mm, 0}, {side, 0, 0});
+    auto* muscle = new Muscle(world, space(), top, top + (bottom - top) / 3, top + (bottom - top) * 2 / 3, bottom, minimum_mm, maximum_mm);
+    muscle->connectStartTo(nullptr);
+    muscle->connectEndTo(forearm);
+    addActuator(muscle);
   }
   const Vector hand(0, -hand_mm, 0);
-  setHand(forearm_, forearm_->getRotation().transpose() * (hand - forearm_->getPosition()));
-}
-
-Vector Elbow::lowerAttachment(int muscle, double angle_rad) const {
-  return Eigen::AngleAxisd(angle_rad, Vector::UnitZ()) * lower_mm_[muscle];
-}
-
-/// Turns the forearm to an angle about the hinge.
-void Elbow::placeForearm(double angle_rad) {
-  const Eigen::Matrix3d turn = Eigen::AngleAxisd(angle_rad, Vector::UnitZ()).toRotationMatrix();
-  const Eigen::Matrix3d hanging = Eigen::AngleAxisd(90 * rad_per_deg, Vector::UnitX()).toRotationMatrix();
-  const Vector hinge_in_forearm = hinge_->reference().anchor[0];
-  forearm_->place(turn * hanging * -hinge_in_forearm, turn * hanging);
-}
-
-double Elbow::torqueNmm(double angle_rad) {
-  placeForearm(angle_rad);
-  RobotEffects& effects = world().effects();
-  const Vector gravity = world().gravityMmPerS2() / world().physics().force_per_N;  // N/g
-  dMass forearm;
-  dBodyGetMass(forearm_->body().id, &forearm);
-  const BodyLoad load = effects.restingLoad(*forearm_);
-  double torque = (forearm_->getPosition().cross(forearm.mass * gravity + load.force_N) + load.torque_Nmm).z();
-  for (int i = 0; i < 2; ++i) {
-    const Vector lower = lowerAttachment(i, angle_rad);
-    const Vector along = upper_mm_[i] - lower;
-    const Vector pull = effects.restingTensionN(i, along.norm()) * along.normalized();
-    const Vector half_weight = muscles_[i]->massG() / 2 * gravity;
-    torque += lower.cross(pull + half_weight).z();
-  }
-  return torque;
-}
-
-void Elbow::settle() {
-  const double low_rad = dJointGetHingeParam(hinge_->id(), dParamLoStop), high_rad = dJointGetHingeParam(hinge_->id(), dParamHiStop);
-  const double angle = restFrom([&](double q) { return -torqueNmm(q); }, 0, low_rad, high_rad);
-  placeForearm(angle);
-  for (int i = 0; i < 2; ++i) muscles_[i]->placeStraight(upper_mm_[i], lowerAttachment(i, angle));
+  setHand(forearm, forearm->getRotation().transpose() * (hand - forearm->getPosition()));
 }
 
 }  // namespace musclesim

@@ -21,18 +21,40 @@ Vector directionSeenFrom(dBodyID body, const Vector& direction) {
   return body ? Vector(rotationOf(body).transpose() * direction) : direction;
 }
 
+/// Anchor and axes in the world; what the joint does not have stays as it is.
+void readFrame(Joint::Kind kind, dJointID id, dVector3& anchor, dVector3 (&axis)[2]) {
+  switch (kind) {
+    case Joint::Kind::ball:
+      return dJointGetBallAnchor(id, anchor);
+    case Joint::Kind::hinge:
+      dJointGetHingeAnchor(id, anchor);
+      dJointGetHingeAxis(id, axis[0]);
+      return dJointGetHingeAxis(id, axis[1]);
+    case Joint::Kind::hinge2:
+      dJointGetHinge2Anchor(id, anchor);
+      dJointGetHinge2Axis1(id, axis[0]);
+      return dJointGetHinge2Axis2(id, axis[1]);
+    case Joint::Kind::universal:
+      dJointGetUniversalAnchor(id, anchor);
+      dJointGetUniversalAxis1(id, axis[0]);
+      return dJointGetUniversalAxis2(id, axis[1]);
+    case Joint::Kind::slider:
+      dJointGetSliderAxis(id, axis[0]);
+      return dJointGetSliderAxis(id, axis[1]);
+    case Joint::Kind::fixed:
+      return;
+  }
+}
+
 JointReference referenceOf(Joint::Kind kind, dJointID id) {
   dBodyID body[2] = {dJointGetBody(id, 0), dJointGetBody(id, 1)};
   JointReference reference = {{Vector::Zero(), Vector::Zero()}, {Vector::Zero(), Vector::Zero()}, Vector::Zero(), {1, 0, 0, 0}};
   if (!body[0]) return reference;
-  dVector3 anchor = {}, axis = {};
-  if (kind == Joint::Kind::ball) dJointGetBallAnchor(id, anchor);
-  if (kind == Joint::Kind::hinge) dJointGetHingeAnchor(id, anchor);
-  if (kind == Joint::Kind::hinge) dJointGetHingeAxis(id, axis);
-  if (kind == Joint::Kind::slider) dJointGetSliderAxis(id, axis);
+  dVector3 anchor = {}, axis[2] = {};
+  readFrame(kind, id, anchor, axis);
   for (int i = 0; i < 2; ++i) {
     reference.anchor[i] = pointSeenFrom(body[i], fromOde(anchor));
-    reference.axis[i] = directionSeenFrom(body[i], fromOde(axis));
+    reference.axis[i] = directionSeenFrom(body[i], fromOde(axis[i]));
   }
   reference.offset = pointSeenFrom(body[1], positionOf(body[0]));
   const dReal unturned[4] = {1, 0, 0, 0};

@@ -111,6 +111,16 @@ void LineOfPull::requirePointsOutside(const std::string& muscle_name) const {
   }
 }
 
+void LineOfPull::recentre(dBodyID body, const Vector& by_mm) {
+  for (Point& point : points_)
+    if (point.body == body) point.place -= by_mm;
+  for (auto& mounted : pulleys_) {
+    if (!mounted || mounted->body != body) continue;
+    mounted->pulley.center_mm -= by_mm;
+    if (mounted->pulley.side_mm) *mounted->pulley.side_mm -= by_mm;
+  }
+}
+
 /// dl/dx of the points; that of a pulley is the opposite of those of its two points.
 void LineOfPull::locate() const {
   pushes_.clear();
@@ -168,12 +178,16 @@ double LineOfPull::totalForceN(double tension_N, double maximum_length_mm, const
   const double speed_mm_per_s = speed() / speedRatio(physics);
   const double friction_N = settings.slider_friction_N * (settings.viscous ? speed_mm_per_s / settings.slider_viscous_speed_mm_per_s
                                                                            : std::tanh(speed_mm_per_s / dry_speed_mm_per_s));
-  const double excess_mm = length_mm_ - maximum_length_mm;
-  return tension_N + friction_N + (excess_mm > 0 ? stop_stiffness_N_per_mm * excess_mm : 0);
+  return tension_N + friction_N + stopN(length_mm_, maximum_length_mm);
+}
+
+double LineOfPull::stopN(double length_mm, double maximum_length_mm) {
+  const double excess_mm = length_mm - maximum_length_mm;
+  return excess_mm > 0 ? stop_stiffness_N_per_mm * excess_mm : 0;
 }
 
 void LineOfPull::pull(double tension_N, double maximum_length_mm, const MuscleSettings& settings, const PhysicsSettings& physics) const {
-  if (!points_.front().connected || !points_.back().connected) return;
+  if (!isConnected()) return;
   const double force = totalForceN(tension_N, maximum_length_mm, settings, physics) * physics.force_per_N;
   for (const Push& push : pushes_) {
     const Vector f = -force * push.force, t = -force * push.torque;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "musclesim/base/error.h"
+#include "settling.h"
 
 namespace musclesim {
 
@@ -109,7 +110,7 @@ Vector Robot::handMm() const {
 }
 
 void Robot::settle() {
-  throw BadParameter("initial_state = settled: this robot has no settled start; use built");
+  placeAtRest(world_);
 }
 
 State Robot::getState() const {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <functional>
 
-#include "equilibrium.h"
 #include "musclesim/base/units.h"
 #include "musclesim/robot/force_law_choice.h"
 #include "musclesim/robot/linear_actuator.h"
@@ -38,46 +37,26 @@ SpringBench::SpringBench(World& world) : Robot(world) {
   const double maximum_mm = parameter("spring_bench.maximum_length_mm", 300, "mm", 15, 1e4, "muscle: longest length, a stop");
   const double carriage_kg = parameter("spring_bench.carriage_kg", 0.5, "kg", 1e-4, 1e3, "mass of the carriage");
   const Vector end((minimum_mm + maximum_mm) / 2, 0, 0);
-  start_mm_ = mountedStart({0, 0, 0}, Vector::UnitY());
-  anchor_mm_ = {2 * maximum_mm, 0, 0};
+  const Vector start = mountedStart({0, 0, 0}, Vector::UnitY());
+  const Vector anchor(2 * maximum_mm, 0, 0);
   constexpr double drawn_mm = 20;
-  carriage_ = new Box(world, nullptr, end, carriage_kg * g_per_kg, 0, drawn_mm, drawn_mm, drawn_mm);
-  carriage_->setName("carriage");
-  carriage_->attachSlider(nullptr, Vector::UnitX());
-  muscle_ = new Muscle(world, space(), start_mm_, start_mm_ + (end - start_mm_) / 3, start_mm_ + (end - start_mm_) * 2 / 3, end, minimum_mm,
-                       maximum_mm);
-  muscle_->setForceLaw(makeForceLaw(world.parameters(), minimum_mm, rest_mm));
-  spring_ =
-      new Spring(world, space(), end, anchor_mm_, 2 * maximum_mm, [this](double length_mm) { return springN(anchor_mm_.x() - length_mm); });
-  muscle_->connectStartTo(nullptr);
-  muscle_->connectEndTo(carriage_);
-  spring_->connectStartTo(carriage_);
-  spring_->connectEndTo(nullptr);
-  addActuator(muscle_);
-  setLoad(carriage_);
+  auto* carriage = new Box(world, nullptr, end, carriage_kg * g_per_kg, 0, drawn_mm, drawn_mm, drawn_mm);
+  carriage->setName("carriage");
+  carriage->attachSlider(nullptr, Vector::UnitX());
+  auto* muscle = new Muscle(world, space(), start, start + (end - start) / 3, start + (end - start) * 2 / 3, end, minimum_mm, maximum_mm);
+  muscle->setForceLaw(makeForceLaw(world.parameters(), minimum_mm, rest_mm));
+  auto* spring = new Spring(world, space(), end, anchor, 2 * maximum_mm,
+                            [this, maximum_mm](double length_mm) { return springN(2 * maximum_mm - length_mm); });
+  muscle->connectStartTo(nullptr);
+  muscle->connectEndTo(carriage);
+  spring->connectStartTo(carriage);
+  spring->connectEndTo(nullptr);
+  addActuator(muscle);
+  setLoad(carriage);
 }
 
 double SpringBench::springN(double length_mm) const {
   return std::max(0.0, load_N_ + spring_N_per_mm_ * (reference_mm_ - length_mm));
-}
-
-void SpringBench::placeCarriage(double length_mm) {
-  const double y = start_mm_.y();
-  carriage_->place({std::sqrt(length_mm * length_mm - y * y), 0, 0}, Eigen::Matrix3d::Identity());
-}
-
-void SpringBench::settle() {
-  RobotEffects& effects = world().effects();
-  const auto stops = muscle_->straightLengthRange();
-  auto surplus = [&](double length_mm) {
-    placeCarriage(length_mm);
-    const double x = carriage_->getPosition().x();
-    return effects.restingTensionN(0, length_mm) * x / length_mm - springN(x) - effects.restingLoad(*carriage_).force_N.x();
-  };
-  placeCarriage(rootBetween(surplus, stops.shortest_mm, stops.longest_mm));
-  const Vector end = carriage_->getPosition();
-  muscle_->placeStraight(start_mm_, end);
-  spring_->placeStraight(end, anchor_mm_);
 }
 
 }  // namespace musclesim

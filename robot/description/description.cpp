@@ -88,14 +88,20 @@ BodyEntry readBody(TableReader table) {
   body.fixed = table.flag("fixed", false);
   body.collides = table.flag("collides", true);
   body.free = table.flag("free", false);
+  body.axes_of = table.optionalText("axes_of").value_or("");
+  body.whole_turns = table.turns("rotate_whole_deg");
   for (TableReader& part : table.tables("part")) {
     body.parts.push_back(readPart(part));
+    body.parts.back().name = part.optionalText("name").value_or("");
     part.requireNoOthers();
     const Part& added = body.parts.back();
     if (massless_parts && (added.mass_g || added.density_g_per_mm3))
       added.place.refuse("inertia_g_mm2 of the body is that of the whole: its parts must have no mass_g and no density_g_per_mm3");
     if (added.type == "none") added.place.refuse("a part must have a shape");
   }
+  const auto hasName = [&](const Part& part) { return part.name == body.axes_of; };
+  if (!body.axes_of.empty() && body.axes_of != body.name && std::ranges::none_of(body.parts, hasName))
+    table.place("axes_of").refuse("\"" + body.axes_of + "\" must be the name of the body or of one of its parts");
   for (const Part& part : body.parts)
     if (!part.mass_g && !part.density_g_per_mm3 && !(massless_parts && &part != &body.parts.front()))
       part.place.refuse("\"mass_g\" is missing: must be a mass in g, or density_g_per_mm3 a density");

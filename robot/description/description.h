@@ -19,6 +19,7 @@ struct ParameterEntry {
 
 /// One rigid shape.
 struct Part {
+  std::string name;  ///< of a part beside the first; empty: the body's name with a number
   std::string type;  ///< box, sphere, capsule, none
   QuantityVector size_mm;
   Quantity radius_mm, length_mm;
@@ -31,8 +32,10 @@ struct Part {
 
 struct BodyEntry {
   std::string name;
-  std::vector<Part> parts;              ///< at least one; the body's axes are those of the first
-  std::vector<Quantity> inertia_g_mm2;  ///< none, 3 or 6 numbers
+  std::vector<Part> parts;                                       ///< at least one
+  std::string axes_of;                                           ///< the part that gives the body its axes; empty: the first
+  std::vector<std::pair<Quantity, QuantityVector>> whole_turns;  ///< of the whole about its centre of mass
+  std::vector<Quantity> inertia_g_mm2;                           ///< none, 3 or 6 numbers
   std::optional<QuantityVector> center_of_mass_mm;
   bool fixed, collides, free;
   FilePlace place;

@@ -68,11 +68,15 @@ constexpr double marker_radius_mm = 1;  ///< of the sphere that stands for a bod
 FileRobot::FileRobot(World& world, std::shared_ptr<const Description> description)
     : Robot(world), description_(std::move(description)), value_(declareParameters()) {
   for (const BodyEntry& body : description_->bodies) at(body.place, [&] { buildBody(body); });
-  for (const bool fixed : {true, false})  // composites first: they keep their parts' poses, but not joints
+  // Composites first: a body with a joint cannot become part of another.
+  const auto buildJoints = [&](bool of_two_bodies) {
     for (const JointEntry& joint : description_->joints)
-      if ((joint.type == "fixed") == fixed) at(joint.place, [&] { buildJoint(joint); });
+      if ((joint.type == "fixed" && joint.to != "world") == of_two_bodies) at(joint.place, [&] { buildJoint(joint); });
+  };
+  buildJoints(true);
   for (const BodyEntry& body : description_->bodies)
     if (body.fixed) at(body.place, [&] { bodies_.at(body.name)->fix(); });
+  buildJoints(false);
   for (const MuscleEntry& muscle : description_->muscles) addActuator(at(muscle.place, [&] { return buildMuscle(muscle); }));
   for (const MuscleEntry& entry : description_->actuators) {
     Actuator* actuator = at(entry.place, [&] { return buildActuator(entry); });
@@ -128,11 +132,14 @@ void FileRobot::buildBody(const BodyEntry& entry) {
   std::vector<Primitive*> parts;
   for (const Part& part : entry.parts) {
     parts.push_back(at(part.place, [&] { return buildPart(part, whole, entry.collides); }));
-    parts.back()->setName(parts.size() == 1 ? entry.name : fmt::format("{}.{}", entry.name, parts.size()));
+    parts.back()->setName(parts.size() == 1 ? entry.name : part.name.empty() ? fmt::format("{}.{}", entry.name, parts.size()) : part.name);
     for (const auto& [angle_deg, axis] : part.turns) parts.back()->rotate(value_(angle_deg), value_(axis));
   }
-  if (parts.size() > 1) Primitive::compositePrimitives(parts, parts.front());
+  const auto named = [&](const Primitive* part) { return part->name() == entry.axes_of; };
+  const auto axes_of = std::ranges::find_if(parts, named);
+  if (parts.size() > 1) Primitive::compositePrimitives(parts, axes_of == parts.end() ? parts.front() : *axes_of);
   if (whole) setMassProperties(entry, *parts.front());
+  for (const auto& [angle_deg, axis] : entry.whole_turns) parts.front()->rotate(value_(angle_deg), value_(axis));
   bodies_[entry.name] = parts.front();
 }
 

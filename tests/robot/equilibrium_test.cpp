@@ -30,6 +30,26 @@ TEST(RestFrom, FindsTheFirstRootOnTheWayItIsPushed) {
   EXPECT_DOUBLE_EQ(restFrom([](double x) { return x * x - 2; }, 0, 0, 2), std::sqrt(2.0));
 }
 
+TEST(RootBetween, NeedsFewValuesOfASmoothFunction) {
+  int count = 0;
+  EXPECT_DOUBLE_EQ(rootBetween(
+                       [&count](double x) {
+                         ++count;
+                         return std::exp(x) - 2;
+                       },
+                       0, 3),
+                   std::log(2.0));
+  EXPECT_LT(count, 30);
+}
+
+TEST(RestFrom, SearchesRangesWithoutEnds) {
+  const double open = INFINITY;
+  EXPECT_DOUBLE_EQ(restFrom([](double x) { return x - 5000; }, 0, -open, open), 5000);
+  EXPECT_DOUBLE_EQ(restFrom([](double x) { return x + 3; }, 2, -open, 7), -3);
+  EXPECT_EQ(restFrom([](double) { return 1.0; }, 0, -open, open), -open);
+  EXPECT_EQ(restFrom([](double) { return -1.0; }, 0, -open, 4), 4);
+}
+
 TEST(RestFrom, EndsAtTheEndItIsPushedTo) {
   EXPECT_EQ(restFrom([](double x) { return std::sin(x); }, 4, -6, 6), 6);
   EXPECT_EQ(restFrom([](double) { return 1.0; }, 0, -0.1, 0.7), -0.1);

@@ -67,6 +67,18 @@ TEST(LineMuscle, PullsAtItsViaPointsAlongBothPieces) {
   EXPECT_NEAR(force[1], 0, 1e-9 * std::abs(expected));
 }
 
+TEST(LineMuscle, KeepsItsPlacesWhereABodyGetsAPointMass) {
+  Simulation simulation(lineOptions());
+  auto* bone = new Sphere(simulation.world(), nullptr, {0, -250, 0}, 1000, 0, 5);
+  bone->rotate(30, {1, 2, 0});
+  auto* muscle = lineBetween(simulation, {0, 0, 0}, {0, -200, 0});
+  muscle->connectStartTo(nullptr);
+  muscle->connectEndTo(bone);
+  bone->addPointMass(500, {90, -300, 10});
+  EXPECT_GT(bone->getPosition().x(), 20);
+  EXPECT_NEAR(muscle->lengthMm(), 200, 1e-12);
+}
+
 TEST(LineMuscle, ConservesMomentumBetweenTwoBodies) {
   Simulation simulation(lineOptions("physics.gravity_m_per_s2=0"));
   auto* heavy = new Sphere(simulation.world(), nullptr, {0, 0, 0}, 1000, 0, 20);

@@ -152,8 +152,12 @@ TEST(Robot, AnActionThatIsNotFiniteEndsTheRun) {
 }
 
 TEST(Robot, ThatCannotSettleSaysSo) {
+  class Loose : public Swing {
+   public:
+    explicit Loose(World& world) : Swing(world) { new Sphere(world, space(), {0, -400, 0}, 100, 0, 10); }
+  };
   Simulation simulation;
-  Robot& robot = simulation.build<Swing>();
+  Robot& robot = simulation.build<Loose>();
   EXPECT_EQ(robot.initialState(), "built");
   EXPECT_TRUE(contains(messageOf<BadParameter>([&] { simulation.start("settled", {0, 0}); }), "use built"));
   EXPECT_TRUE(contains(messageOf<BadParameter>([&] { simulation.start("lying", {0, 0}); }), "initial_state = lying"));

@@ -14,21 +14,7 @@ namespace musclesim {
 class Elbow : public Robot {
  public:
   explicit Elbow(World& world);
-  /// Places the forearm at the frictionless equilibrium of all torques about the hinge, including those of effects, between the stops. If
-  /// there are several, it takes the first that the forearm reaches from the angle as built.
-  void settle() override;
   std::string initialState() const override { return "settled"; }
-
- private:
-  void placeForearm(double angle_rad);
-  double torqueNmm(double angle_rad);
-  Vector lowerAttachment(int muscle, double angle_rad) const;
-
-  Vector upper_mm_[2];  ///< attachments in the world
-  Vector lower_mm_[2];  ///< attachments on the forearm, at angle 0
-  Primitive* forearm_;
-  Joint* hinge_;
-  Actuator* muscles_[2];
 };
 
 }  // namespace musclesim

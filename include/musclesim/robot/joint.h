@@ -13,9 +13,9 @@ namespace musclesim {
 /// Poses of a joint's two bodies when it was made: [0] as seen from the first body, [1] from the second (for the environment: in the world
 /// frame).
 struct JointReference {
-  Vector anchor[2];          ///< ball joints and hinges: anchor from the centre of mass, in the body's frame, mm
-  Vector axis[2];            ///< sliders and hinges: unit vector in the body's frame
-  Vector offset;             ///< sliders and fixed joints: position of the first body relative to the second, in the second's frame, mm
+  Vector anchor[2];          ///< from the centre of mass, in the body's frame, mm; sliders and fixed joints have none
+  Vector axis[2];            ///< unit vector in the body's frame: the only axis, or [0] the first and [1] the second of two axes
+  Vector offset;             ///< position of the first body relative to the second, in the second's frame, mm
   Eigen::Vector4d rotation;  ///< orientation (w, x, y, z) of the second body relative to the first
 };
 
@@ -49,7 +49,7 @@ class Joint {
   double constraintErrorMm() const;
   /// Makes the present pose the reference. Call it after a body's centre of mass has moved.
   void takeReference();
-  /// Relative pose of the two bodies at construction; for joints of kind ball, hinge, slider and fixed.
+  /// Relative pose of the two bodies at construction.
   const JointReference& reference() const { return reference_pose_; }
 
  private:

@@ -6,18 +6,12 @@
 namespace musclesim {
 
 /// One muscle hangs from the origin along -y; a ball joint at its lower end carries the load, a point-like mass on a frictionless vertical
-/// slider. Parameters: rig.minimum_length_mm 120, rig.maximum_length_mm 300, rig.load_kg 2.  Source: Braun 2007, Section 3.2.
+/// slider. Settled: F(p, l) = (load + chain/2) g, without effects and with l between the stops.
+/// Parameters: rig.minimum_length_mm 120, rig.maximum_length_mm 300, rig.load_kg 2.  Source: Braun 2007, Section 3.2.
 class Rig : public Robot {
  public:
   explicit Rig(World& world);
-  /// Places the load at the frictionless equilibrium F(p, l) = (load + chain/2) g with l between the stops, including all effects.
-  void settle() override;
   std::string initialState() const override { return "settled"; }
-
- private:
-  Vector top_mm_;
-  Actuator* muscle_;
-  Primitive* load_;
 };
 
 }  // namespace musclesim

@@ -14,19 +14,12 @@ namespace musclesim {
 class SpringBench : public Robot {
  public:
   explicit SpringBench(World& world);
-  /// Places the carriage at the frictionless equilibrium F(p, l) = R(l) between the muscle's stops, including all effects.
-  void settle() override;
   std::string initialState() const override { return "settled"; }
 
  private:
-  void placeCarriage(double length_mm);
   double springN(double length_mm) const;
 
   double load_N_, spring_N_per_mm_, reference_mm_;
-  Vector start_mm_, anchor_mm_;
-  Actuator* muscle_;
-  Actuator* spring_;
-  Primitive* carriage_;
 };
 
 }  // namespace musclesim

@@ -15,25 +15,14 @@ namespace musclesim {
 class Wrist : public Robot {
  public:
   explicit Wrist(World& world);
-  /// Places the hand at the frictionless equilibrium of all torques about the hinge, including those of effects, between the stops. If
-  /// there are several, it takes the first that the hand reaches from the angle as built.
-  void settle() override;
   std::string initialState() const override { return "settled"; }
 
  private:
   void buildHand();
   void buildMuscle(int i);
-  void placeHand(double angle_rad);
-  double torqueNmm(double angle_rad);
-  /// The end of the lever that a muscle is attached to.
-  Vector leverEnd(int muscle, double angle_rad) const;
 
-  double center_of_mass_mm_, lever_mm_, middle_rad_;
-  Vector upper_mm_[2];  ///< attachments in the world
-  Vector lower_mm_[2];  ///< attachments on the lever, at angle 0
+  double lever_mm_, middle_rad_;
   Primitive* hand_;
-  Joint* hinge_;
-  Actuator* muscles_[2];
 };
 
 }  // namespace musclesim

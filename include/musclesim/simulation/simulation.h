@@ -56,6 +56,8 @@ class Simulation {
 
   /// Builds a registered robot in this simulation's world. Throws BadParameter if it already has one.
   Robot& build(const std::string& robot_name);
+  /// Builds the robot that a function makes, for example makeRobotFromText.
+  Robot& build(const std::function<std::unique_ptr<Robot>(World&)>& make) { return adopt(make(*world_)); }
   /// Builds a robot of a class that need not be registered.
   template <class RobotType>
   RobotType& build() {

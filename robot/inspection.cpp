@@ -1,0 +1,224 @@
+#include "inspection.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+
+#include "../log/diagram.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/units.h"
+#include "musclesim/robot/line_of_pull.h"
+#include "ode_vector.h"
+#include "skeleton.h"
+
+namespace musclesim {
+
+namespace {
+
+constexpr double free_range_deg = 90;    ///< shown of a joint without stops
+constexpr int angle_count = 37;          ///< 5 degrees apart over a half turn
+constexpr double difference_rad = 1e-4;  ///< of lengths for moment arms: far above rounding, far below the curvature of any lever
+
+const char* nameOf(Joint::Kind kind) {
+  static const std::map<Joint::Kind, const char*> names = {{Joint::Kind::ball, "ball"},     {Joint::Kind::hinge, "hinge"},
+                                                           {Joint::Kind::hinge2, "hinge2"}, {Joint::Kind::universal, "universal"},
+                                                           {Joint::Kind::slider, "slider"}, {Joint::Kind::fixed, "fixed"}};
+  return names.at(kind);
+}
+
+/// Where a chain ends, in the world; for the present poses of the bodies.
+Vector endOf(const Joint* joint) {
+  const dBodyID body = dJointGetBody(joint->id(), 1);
+  const Vector& place = joint->reference().anchor[1];
+  return body ? Vector(positionOf(body) + rotationOf(body) * place) : place;
+}
+
+/// Length of a muscle in the present pose of the bodies, whose chain need not have followed.
+double lengthMm(const Actuator& actuator) {
+  if (actuator.line()) return actuator.lengthMm();
+  if (!actuator.startJoint() || !actuator.endJoint()) return std::nan("");
+  return (endOf(actuator.endJoint()) - endOf(actuator.startJoint())).norm();
+}
+
+/// A body, the joint that holds it and what hangs on it.
+class Tree {
+ public:
+  Tree(const World& world, const Robot& robot) : world_(world), robot_(robot) {}
+
+  std::string text() {
+    std::string out = robot_.name() + "\n";
+    addHeldBy(nullptr, "  ", out);
+    for (const auto& body : world_.bodies())
+      if (std::ranges::find(shown_, body->id) == shown_.end()) addBody(*body, "free", "  ", out);
+    for (const Actuator* actuator : world_.actuators()) addMuscle(*actuator, out);
+    return out;
+  }
+
+ private:
+  void addHeldBy(dBodyID holder, const std::string& indent, std::string& out) {
+    for (const auto& joint : world_.joints()) {
+      const dBodyID first = dJointGetBody(joint->id(), 0), second = dJointGetBody(joint->id(), 1);
+      const dBodyID held = second == holder ? first : first == holder ? second : nullptr;
+      const Body* body = bodyOf(held);
+      if (!body || std::ranges::find(shown_, held) != shown_.end()) continue;
+      addBody(*body, jointText(*joint), indent, out);
+    }
+  }
+
+  const Body* bodyOf(dBodyID id) const {
+    const auto found = std::ranges::find_if(world_.bodies(), [id](const auto& body) { return body->id == id; });
+    return id && found != world_.bodies().end() ? found->get() : nullptr;
+  }
+
+  static std::string jointText(const Joint& joint) {
+    std::string text = fmt::format("{} {}", nameOf(joint.kind()), joint.name());
+    if (joint.kind() != Joint::Kind::hinge && joint.kind() != Joint::Kind::universal) return text;
+    const auto [low, high] = joint.stopsDeg();
+    return std::isfinite(low) ? text + fmt::format(", {:.4g} .. {:.4g} deg", low, high) : text;
+  }
+
+  void addBody(const Body& body, const std::string& held_by, const std::string& indent, std::string& out) {
+    shown_.push_back(body.id);
+    dMass mass;
+    dBodyGetMass(body.id, &mass);
+    const Vector center = positionOf(body.id);
+    const Vector moments = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(matrixFromOde(mass.I)).eigenvalues();
+    out += fmt::format(
+        "{}{} ({})\n{}    {:.4g} g, centre of mass {:.4g}, {:.4g}, {:.4g} mm, moments of inertia {:.4g}, {:.4g}, {:.4g} g mm^2\n", indent,
+        body.parts.empty() ? "body" : body.parts.front()->name(), held_by, indent, mass.mass, center.x(), center.y(), center.z(),
+        moments[0], moments[1], moments[2]);
+    addHeldBy(body.id, indent + "  ", out);
+  }
+
+  static void addMuscle(const Actuator& actuator, std::string& out) {
+    out += fmt::format("  {} ({}): {:.4g} mm as built, {:.4g} .. {:.4g} mm\n", actuator.name(),
+                       actuator.line() ? "line" : fmt::format("chain of {} links", actuator.links().size()), actuator.lengthMm(),
+                       actuator.minimumLengthMm(), actuator.maximumLengthMm());
+  }
+
+  const World& world_;
+  const Robot& robot_;
+  std::vector<dBodyID> shown_;
+};
+
+/// Joints that hold one body against the other and so let them touch or overlap.
+bool areJoined(const World& world, dBodyID a, dBodyID b) {
+  return std::ranges::any_of(world.joints(), [&](const auto& joint) {
+    const dBodyID first = dJointGetBody(joint->id(), 0), second = dJointGetBody(joint->id(), 1);
+    return (first == a && second == b) || (first == b && second == a);
+  });
+}
+
+void findOverlaps(const World& world, std::vector<std::string>& found) {
+  const auto& parts = world.primitives();
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    for (std::size_t j = i + 1; j < parts.size(); ++j) {
+      const Primitive &a = *parts[i], &b = *parts[j];
+      const bool touch = dGeomGetSpace(a.geom()) && dGeomGetSpace(b.geom());
+      if (!touch || &a.body() == &b.body() || areJoined(world, a.body().id, b.body().id)) continue;
+      dContactGeom contact;
+      if (dCollide(a.geom(), b.geom(), 1, &contact, sizeof contact) > 0)
+        found.push_back(
+            fmt::format("{} and {} overlap by {:.3g} mm as built and will push each other apart", a.name(), b.name(), contact.depth));
+    }
+}
+
+void findLooseEnds(const Robot& robot, std::vector<std::string>& found) {
+  for (const Actuator* muscle : robot.actuators()) {
+    if (muscle->line()) continue;
+    for (const auto& [joint, end] : {std::pair{muscle->startJoint(), "start"}, std::pair{muscle->endJoint(), "end"}})
+      if (!joint) found.push_back(fmt::format("{} is connected to nothing at its {}", muscle->name(), end));
+  }
+}
+
+/// Muscles that the motion of a joint takes out of their range, and joints that no muscle moves.
+void findMotions(const std::vector<MomentArms>& arms, const Robot& robot, std::vector<std::string>& found) {
+  constexpr double still_mm = 0.01;  // a moment arm below this moves nothing
+  for (const MomentArms& joint : arms) {
+    bool moved = false;
+    for (std::size_t m = 0; m < joint.arm_mm.size(); ++m) {
+      const Actuator& muscle = *robot.actuators()[m];
+      moved = moved || std::ranges::any_of(joint.arm_mm[m], [](double arm) { return std::abs(arm) > still_mm; });
+      const auto [shortest, longest] = std::ranges::minmax_element(joint.length_mm[m]);
+      const auto angleAt = [&](auto place) { return joint.angle_deg[static_cast<std::size_t>(place - joint.length_mm[m].begin())]; };
+      if (*shortest < muscle.minimumLengthMm())
+        found.push_back(fmt::format("{} would be {:.4g} mm long at {} = {:.3g} deg, shorter than its shortest length, {:.4g} mm",
+                                    muscle.name(), *shortest, joint.joint, angleAt(shortest), muscle.minimumLengthMm()));
+      if (*longest > muscle.maximumLengthMm())
+        found.push_back(
+            fmt::format("{} would be {:.4g} mm long at {} = {:.3g} deg, longer than its longest length, {:.4g} mm: it stops the joint",
+                        muscle.name(), *longest, joint.joint, angleAt(longest), muscle.maximumLengthMm()));
+    }
+    if (!moved) found.push_back(fmt::format("no muscle moves {}: all moment arms are zero", joint.joint));
+  }
+}
+
+}  // namespace
+
+std::string describeRobot(const World& world, const Robot& robot) {
+  return Tree(world, robot).text();
+}
+
+std::vector<MomentArms> momentArms(World& world, const Robot& robot) {
+  Skeleton skeleton(world);
+  const auto& coordinates = skeleton.coordinates();
+  std::vector<MomentArms> all;
+  for (const Robot::Angle& angle : robot.angles()) {
+    const auto place =
+        std::ranges::find_if(coordinates, [&](const Coordinate& c) { return c.joint == angle.joint && c.axis == angle.axis; });
+    if (place == coordinates.end()) continue;
+    const double low_deg = std::isfinite(place->low) ? place->low * deg_per_rad : -free_range_deg;
+    const double high_deg = std::isfinite(place->high) ? place->high * deg_per_rad : free_range_deg;
+    MomentArms arms{angle.name, {}, {}, {}};
+    arms.arm_mm.resize(robot.actuators().size());
+    arms.length_mm.resize(robot.actuators().size());
+    Eigen::VectorXd q = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(coordinates.size()));
+    const auto lengthAt = [&](std::size_t muscle, double angle_rad) {
+      q[place - coordinates.begin()] = angle_rad;
+      skeleton.setPose(q);
+      skeleton.placeBodies();
+      return lengthMm(*robot.actuators()[muscle]);
+    };
+    for (int i = 0; i < angle_count; ++i) {
+      arms.angle_deg.push_back(low_deg + (high_deg - low_deg) * i / (angle_count - 1));
+      const double at_rad = arms.angle_deg.back() * rad_per_deg;
+      for (std::size_t muscle = 0; muscle < arms.arm_mm.size(); ++muscle) {
+        const double shorter = lengthAt(muscle, at_rad + difference_rad), longer = lengthAt(muscle, at_rad - difference_rad);
+        arms.arm_mm[muscle].push_back((longer - shorter) / (2 * difference_rad));
+        arms.length_mm[muscle].push_back(lengthAt(muscle, at_rad));
+      }
+    }
+    all.push_back(std::move(arms));
+  }
+  return all;
+}
+
+std::string momentArmFigure(const std::vector<MomentArms>& arms, const Robot& robot) {
+  std::vector<Diagram> diagrams;
+  for (const MomentArms& joint : arms) {
+    Diagram diagram{joint.joint, "angle [deg]", "moment arm [mm]", {}};
+    for (std::size_t muscle = 0; muscle < joint.arm_mm.size(); ++muscle)
+      diagram.series.push_back(
+          {robot.actuators()[muscle]->name(), muscleColor(muscle, robot.namedMuscleColors()), joint.angle_deg, joint.arm_mm[muscle]});
+    diagrams.push_back(std::move(diagram));
+  }
+  constexpr int most_columns = 2;
+  return diagramsSvg("Moment arms of " + robot.name(), diagrams, std::min(most_columns, static_cast<int>(diagrams.size())));
+}
+
+std::vector<std::string> oddities(World& world, const Robot& robot) {
+  std::vector<std::string> found;
+  if (robot.actuators().empty()) found.emplace_back("there is no muscle: no command can move this robot");
+  if (robot.angles().empty() && !robot.getState().hand_mm)
+    found.emplace_back("neither an angle nor a hand is reported: recordings hold pressures, forces and lengths only");
+  findLooseEnds(robot, found);
+  findOverlaps(world, found);
+  if (!robot.actuators().empty()) findMotions(momentArms(world, robot), robot, found);
+  return found;
+}
+
+}  // namespace musclesim

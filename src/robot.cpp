@@ -1,0 +1,131 @@
+/// `musclesim robot`: checks, shows, begins, exports and imports robot files.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "../robot/inspection.h"
+#include "../robot/robotic_arm_file.h"
+#include "commands.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/file.h"
+#include "musclesim/robot/robot_file.h"
+#include "pictures.h"
+#include "robot_template.h"
+
+namespace musclesim::program {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A simulation with the robot as built, to look at.
+std::unique_ptr<Simulation> built(const ModelOptions& model, const std::string& robot) {
+  auto simulation = std::make_unique<Simulation>(simulationOptions(model));
+  simulation->build(robot);
+  simulation->parameters().requireAllKnown();
+  return simulation;
+}
+
+void printOddities(const std::vector<std::string>& found) {
+  for (const std::string& oddity : found) fmt::print("odd: {}\n", oddity);
+}
+
+int check(const ModelOptions& model, const std::string& robot) {
+  const auto simulation = built(model, robot);
+  const Robot& made = simulation->robot();
+  fmt::print("{}: {} bodies, {} joints with a reported angle, {} muscles; starts {}\n", robot, simulation->world().bodies().size(),
+             made.angles().size(), made.actuatorCount(), made.initialState());
+  if (made.initialState() == "settled") simulation->settle(Action(static_cast<std::size_t>(made.actuatorCount()), 0.0));
+  const auto found = oddities(simulation->world(), made);
+  printOddities(found);
+  if (found.empty()) fmt::print("nothing odd found\n");
+  return done;
+}
+
+struct ShowArguments {
+  std::string robot;
+  std::optional<std::string> out;
+  PictureOptions pictures;
+};
+
+int show(const ModelOptions& model, const ShowArguments& arguments) {
+  auto simulation = built(model, arguments.robot);
+  fmt::print("{}", describeRobot(simulation->world(), simulation->robot()));
+  const fs::path stem = arguments.out.value_or(simulation->robot().name());
+  PictureOptions pictures = arguments.pictures;
+  pictures.screenshot = stem.string() + ".png";
+  const auto painter = makePictures(pictures, *simulation);
+  painter->see(simulation->robot().getState());
+  painter->finish();
+  const auto arms = momentArms(simulation->world(), simulation->robot());
+  if (arms.empty()) return done;
+  const std::string figure = stem.string() + "-moment-arms.svg";
+  replaceFile(figure, momentArmFigure(arms, simulation->robot()));
+  fmt::print("moment arms {}\n", figure);
+  return done;
+}
+
+/// Writes a robot file that must not exist yet, or to standard output.
+void write(const std::optional<std::string>& out, const std::string& text) {
+  if (!out) {
+    fmt::print("{}", text);
+    return;
+  }
+  FileReplacement file(*out, text);
+  if (!file.commitIfAbsent()) throw BadParameter("file", *out, "not exist yet: choose another name or remove it");
+  fmt::print("robot file {}\n", *out);
+}
+
+int begin(const std::string& name, const std::optional<std::string>& out) {
+  write(out.value_or(name + ".toml"), robotTemplate(name));
+  return done;
+}
+
+int exportRobot(const std::string& name, const std::optional<std::string>& out) {
+  std::vector<std::string> known = {"arm"};
+  for (const auto& [shipped, text] : shippedRobotFiles()) {
+    known.push_back(shipped);
+    if (shipped == name) return write(out, text), done;
+  }
+  if (name != "arm") throw BadParameter("robot", name, fmt::format("be one of {}", fmt::join(known, ", ")));
+  write(out, roboticArmFile());
+  return done;
+}
+
+}  // namespace
+
+Action addRobot(CLI::App& command, ModelOptions& model) {
+  command.require_subcommand(1);
+  auto action = std::make_shared<Action>();
+  const auto sub = [&](const char* name, const char* description) { return command.add_subcommand(name, description); };
+
+  auto robot = std::make_shared<std::string>();
+  CLI::App* checks = sub("check", "Builds a robot and says what is odd about it");
+  checks->add_option("robot", *robot, "Robot file, or the name of a robot: NAME.toml")->required();
+  addModelOptions(*checks, model);
+  checks->callback([=, &model] { *action = [=, &model] { return check(model, *robot); }; });
+
+  auto shown = std::make_shared<ShowArguments>();
+  CLI::App* shows = sub("show", "Prints a robot's bodies, joints and muscles and draws it, with the muscles' moment arms");
+  shows->add_option("robot", shown->robot, "Robot file, or the name of a robot: NAME.toml")->required();
+  shows->add_option("--out", shown->out, "Begin of the names of the pictures: STEM.png, STEM-moment-arms.svg (default: the robot's name)");
+  addModelOptions(*shows, model);
+  addPictureOptions(*shows, shown->pictures, "Picture");
+  shows->callback([=, &model] { *action = [=, &model] { return show(model, *shown); }; });
+
+  auto name = std::make_shared<std::string>();
+  auto out = std::make_shared<std::optional<std::string>>();
+  CLI::App* begins = sub("new", "Writes a commented robot file to begin with");
+  begins->add_option("name", *name, "Name of the robot")->required();
+  begins->add_option("-o,--out", *out, "File to write (default: NAME.toml)");
+  begins->callback([=] { *action = [=] { return begin(*name, *out); }; });
+
+  CLI::App* exports = sub("export", "Writes the file of a robot that comes with the program");
+  exports->add_option("name", *name, "arm, rig, elbow, wrist or spring_bench")->required();
+  exports->add_option("-o,--out", *out, "File to write (default: standard output)");
+  exports->callback([=] { *action = [=] { return exportRobot(*name, *out); }; });
+  return [action] { return (*action)(); };
+}
+
+}  // namespace musclesim::program

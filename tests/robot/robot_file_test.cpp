@@ -1,0 +1,203 @@
+/// Robots from files: what the reader refuses, what it builds.
+#include "musclesim/robot/robot_file.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "musclesim/base/error.h"
+#include "musclesim/robot/robot_registry.h"
+#include "musclesim/simulation/simulation.h"
+#include "support/support.h"
+
+namespace musclesim {
+namespace {
+
+/// A lever on a hinge between two line muscles; every wrong description below changes one thing in it.
+const std::string lever = R"(format = "musclesim-robot-1"
+name = "lever"
+
+[parameter.lever_mm]
+value = 80
+range = [20, 200]
+meaning = "distance of the attachments from the hinge"
+
+[[body]]
+name = "bar"
+at_mm = [0, 0, 0]
+shape = { type = "box", size_mm = [200, 20, 20] }
+mass_g = 400
+
+[[joint]]
+name = "lever"
+type = "hinge"
+body = "bar"
+at_mm = [0, 0, 0]
+axis = "z"
+limits_deg = [-40, 40]
+
+[[pulley]]
+name = "drum"
+at_mm = [40, -100, 0]
+axis = "z"
+radius_mm = 10
+
+[[muscle]]
+name = "right"
+from = { body = "world", at_mm = ["lever_mm", -260, 0] }
+to = { body = "bar", at_mm = ["lever_mm", -10, 0] }
+length_mm = [150, 320]
+model = "line"
+
+[[muscle]]
+name = "left"
+from = { body = "world", at_mm = ["-lever_mm", -260, 0] }
+to = { body = "bar", at_mm = ["-lever_mm", -10, 0] }
+length_mm = [150, 320]
+model = "line"
+
+[hand]
+body = "bar"
+at_mm = [100, 0, 0]
+)";
+
+std::string replaced(const std::string& from, const std::string& to) {
+  std::string text = lever;
+  const auto place = text.find(from);
+  EXPECT_NE(place, std::string::npos) << from;
+  return text.replace(place, from.size(), to);
+}
+
+struct Built {
+  explicit Built(const std::string& text, SimulationOptions options = {}) : simulation(std::move(options)) {
+    robot = &simulation.build([&](World& world) { return makeRobotFromText(text, "lever.toml", world); });
+  }
+  Simulation simulation;
+  Robot* robot;
+};
+
+TEST(RobotFile, BuildsBodiesJointsMusclesAndHand) {
+  Built built(lever);
+  EXPECT_EQ(built.robot->name(), "lever");
+  EXPECT_EQ(built.robot->actuatorCount(), 2);
+  EXPECT_EQ(built.robot->actuators()[0]->name(), "right");
+  EXPECT_NEAR(built.robot->actuators()[0]->lengthMm(), 250, 1e-9);
+  EXPECT_NEAR(built.robot->getState().hand_mm->x(), 100, 1e-9);
+  EXPECT_EQ(built.robot->signalNames().back(), "hand_z_mm");
+  EXPECT_EQ(built.robot->angles().front().name, "lever");
+  EXPECT_NEAR(built.robot->hand()->massG(), 400, 1e-9);
+}
+
+TEST(RobotFile, ParametersMoveWhatTheyDescribe) {
+  SimulationOptions options;
+  options.parameters.setFromText("lever.lever_mm=60", "test");
+  Built built(lever, std::move(options));
+  EXPECT_NEAR(built.robot->actuators()[0]->line()->pointsMm().front().x(), 60, 1e-12);
+  SimulationOptions wrong;
+  wrong.parameters.setFromText("lever.lever_mm=10", "test");
+  EXPECT_THROW(Built(lever, std::move(wrong)), BadParameter);
+}
+
+struct Wrong {
+  const char* name;
+  std::string from, to;
+  std::string message;  ///< a part of the error
+  int line = 0;         ///< 0: any
+};
+
+std::ostream& operator<<(std::ostream& out, const Wrong& wrong) {
+  return out << wrong.name;
+}
+
+const std::vector<Wrong>& wrongDescriptions() {
+  static const std::vector<Wrong> all = {
+      {"not TOML", "value = 80", "value = = 80", "", 5},
+      {"no format", "format = \"musclesim-robot-1\"\n", "", "\"format\" is missing"},
+      {"another format", "musclesim-robot-1", "musclesim-robot-2", "must be \"musclesim-robot-1\"", 1},
+      {"name of the program's own", "name = \"lever\"", "name = \"muscle\"", "choose another name", 2},
+      {"unknown key", "mass_g = 400", "mas_g = 400", "did you mean \"mass_g\"", 13},
+      {"unknown section", "[hand]", "[hnad]", "did you mean \"hand\""},
+      {"text for a number", "mass_g = 400", "mass_g = true", "must be a number", 13},
+      {"infinite number", "mass_g = 400", "mass_g = inf", "must be finite", 13},
+      {"negative mass", "mass_g = 400", "mass_g = -400", "must be positive"},
+      {"no mass", "mass_g = 400", "", "\"mass_g\" is missing", 9},
+      {"two numbers for a vector", "[200, 20, 20]", "[200, 20]", "list of 3 numbers", 12},
+      {"shape of another kind", "type = \"box\"", "type = \"bax\"", "did you mean \"box\"", 12},
+      {"shape without size", ", size_mm = [200, 20, 20]", "", "\"size_mm\" is missing", 12},
+      {"unknown parameter", "\"lever_mm\", -260", "\"levr_mm\", -260", "did you mean \"lever_mm\"", 31},
+      {"expression that cannot be read", "\"lever_mm\", -260", "\"lever_mm * \", -260", "\"lever_mm * \"", 31},
+      {"expression that is not finite", "\"lever_mm\", -260", "\"lever_mm / 0\", -260", "must be finite", 31},
+      {"parameter outside its range", "value = 80", "value = 300", "must lie in its range 20 .. 200", 5},
+      {"range in the wrong order", "range = [20, 200]", "range = [200, 20]", "in order", 6},
+      {"two bodies of one name", "[[joint]]",
+       "[[body]]\nname = \"bar\"\nat_mm = [0, 0, 0]\nshape = { type = \"none\" }\nmass_g = 1\ninertia_g_mm2 = "
+       "[1, 1, 1]\nfree = true\n[[joint]]",
+       "two bodies of the name \"bar\"", 15},
+      {"two muscles of one name", "name = \"left\"", "name = \"right\"", "two muscles and actuators of the name \"right\""},
+      {"joint of a body that is not there", "body = \"bar\"\nat_mm = [0, 0, 0]\naxis", "body = \"baar\"\nat_mm = [0, 0, 0]\naxis",
+       "did you mean \"bar\"", 15},
+      {"muscle of a body that is not there", "to = { body = \"bar\"", "to = { body = \"lever\"", "there is no \"lever\" among the bodies",
+       32},
+      {"muscle with both ends on one body", "from = { body = \"world\", at_mm = [\"lever_mm\"",
+       "from = { body = \"bar\", at_mm = [\"lever_mm\"", "both ends are on \"bar\"", 29},
+      {"muscle that is too short", "length_mm = [150, 320]", "length_mm = [260, 320]", "lie between its minimum and maximum length", 29},
+      {"muscle that is too long", "length_mm = [150, 320]", "length_mm = [150, 240]", "lie between its minimum and maximum length", 29},
+      {"path of a chain", "model = \"line\"", "model = \"chain\"\npath = [{ pulley = \"drum\" }]", "needs model = \"line\""},
+      {"pulley that is not there", "model = \"line\"", "model = \"line\"\npath = [{ pulley = \"drums\" }]", "did you mean \"drum\"", 35},
+      {"tendon of a chain", "model = \"line\"", "model = \"chain\"\ntendon_mm = 10", "needs model = \"line\""},
+      {"unknown force law", "model = \"line\"", "force_law = { name = \"brown\" }", "braun", 34},
+      {"unknown number of a force law", "model = \"line\"", "force_law = { name = \"chou-hannaford\", bore_M = 3 }", "bore_N", 34},
+      {"limits without the pose as built", "limits_deg = [-40, 40]", "limits_deg = [10, 40]", "contain 0 deg", 15},
+      {"limits that wrap", "limits_deg = [-40, 40]", "limits_deg = [-40, 200]", "where the engine can hold them", 15},
+      {"limits in the wrong order", "limits_deg = [-40, 40]", "limits_deg = [40, -40]", "in order", 15},
+      {"axis without direction", "axis = \"z\"", "axis = [0, 0, 0]", "have a direction", 15},
+      {"axis of another name", "axis = \"z\"", "axis = \"w\"", "must be \"x\", \"y\", \"z\"", 20},
+      {"joint of another type", "type = \"hinge\"", "type = \"hinges\"", "did you mean \"hinge\"", 17},
+      {"joint to itself", "at_mm = [0, 0, 0]\naxis", "to = \"bar\"\nat_mm = [0, 0, 0]\naxis", "to itself", 15},
+      {"inertia that no body has", "mass_g = 400", "mass_g = 400\ninertia_g_mm2 = [1, 1, 100]", "no body has", 9},
+      {"two moments of inertia", "mass_g = 400", "mass_g = 400\ninertia_g_mm2 = [1, 1]", "must have 3", 14},
+      {"body that nothing holds", "body = \"bar\"\nat_mm = [0, 0, 0]\naxis = \"z\"\nlimits_deg = [-40, 40]",
+       "body = \"base\"\nat_mm = [0, 0, 0]\naxis = \"z\"\nlimits_deg = [-40, 40]\n[[body]]\nname = \"base\"\nat_mm = [0, 0, 0]\nshape = { "
+       "type "
+       "= \"sphere\", radius_mm = 5 }\nmass_g = 1",
+       "nothing holds this body", 9},
+      {"cycle of fixed joints", "[[pulley]]",
+       "[[joint]]\nname = \"a\"\ntype = \"fixed\"\nbody = \"bar\"\n[[joint]]\nname = \"b\"\ntype = "
+       "\"fixed\"\nbody = \"bar\"\n[[pulley]]",
+       "cycle of fixed joints"},
+      {"hand on a body that is not there", "[hand]\nbody = \"bar\"", "[hand]\nbody = \"bra\"", "did you mean \"bar\""},
+      {"negative friction", "axis = \"z\"\nlimits", "axis = \"z\"\nfriction_Nm = -1\nlimits", "must not be negative", 21},
+      {"friction of a slider on a hinge", "axis = \"z\"\nlimits", "axis = \"z\"\nfriction_N = 1\nlimits", "did you mean \"friction_Nm\"",
+       21},
+      {"color outside its range", "mass_g = 400", "mass_g = 400\ncolor = [2, 0, 0]", "lie in 0 .. 1"},
+      {"start of another kind", "[hand]", "[start]\nstate = \"hanging\"\n[hand]", "built, settled"},
+  };
+  return all;
+}
+
+class WrongDescription : public testing::TestWithParam<Wrong> {};
+
+TEST_P(WrongDescription, EndsWithFileLineAndWhatIsAllowed) {
+  const std::string text = replaced(GetParam().from, GetParam().to);
+  try {
+    Built built(text);
+    FAIL() << "accepted:\n" << text;
+  } catch (const BadFile& error) {
+    EXPECT_EQ(error.file(), "lever.toml");
+    EXPECT_TRUE(contains(error.what(), GetParam().message)) << error.what();
+    EXPECT_GT(error.line(), 0) << error.what();
+    if (GetParam().line > 0) {
+      EXPECT_EQ(error.line(), GetParam().line) << error.what();
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(RobotFile, WrongDescription, testing::ValuesIn(wrongDescriptions()));
+
+TEST(RobotFile, ThereAreAtLeastThirtyWrongDescriptions) {
+  EXPECT_GE(wrongDescriptions().size(), 30U);
+}
+
+}  // namespace
+}  // namespace musclesim

@@ -1,0 +1,434 @@
+/// Robots that have no settle of their own: Robot::settle() finds their equilibrium.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <functional>
+
+#include "musclesim/base/error.h"
+#include "musclesim/base/units.h"
+#include "musclesim/robot/muscle.h"
+#include "musclesim/robot/robot.h"
+#include "musclesim/simulation/simulation.h"
+#include "skeleton.h"
+#include "support/support.h"
+
+namespace musclesim {
+namespace {
+
+constexpr double g_N_per_kg = gravity_m_per_s2;
+
+SimulationOptions withText(const std::vector<std::string>& settings) {
+  SimulationOptions options;
+  for (const std::string& setting : settings) options.parameters.setFromText(setting, "test");
+  return options;
+}
+
+std::vector<double> valuesOf(Simulation& simulation) {
+  return simulation.robot().signalValues(simulation.robot().getState());
+}
+
+/// Torque on a hinge in proportion to its angle.
+class TorsionSpring : public ForceElement {
+ public:
+  TorsionSpring(const Joint& hinge, double Nm_per_rad, double rest_rad) : hinge_(hinge), Nm_per_rad_(Nm_per_rad), rest_rad_(rest_rad) {}
+  void load(bool, const AddLoad& add) const override {
+    dVector3 axis;
+    dJointGetHingeAxis(hinge_.id(), axis);
+    const double torque_Nmm = -Nm_per_rad_ * (hinge_.angleDeg() * rad_per_deg - rest_rad_) * mm_per_m;
+    add(dJointGetBody(hinge_.id(), 0), {Vector::Zero(), torque_Nmm * Vector(axis[0], axis[1], axis[2])});
+  }
+
+ private:
+  const Joint& hinge_;
+  double Nm_per_rad_, rest_rad_;
+};
+
+/// Force along y in proportion to the height of a body's centre of mass.
+class LinearSpring : public ForceElement {
+ public:
+  LinearSpring(const Primitive& part, double N_per_mm) : part_(part), N_per_mm_(N_per_mm) {}
+  void load(bool, const AddLoad& add) const override {
+    add(part_.body().id, {-N_per_mm_ * part_.getPosition().y() * Vector::UnitY(), Vector::Zero()});
+  }
+
+ private:
+  const Primitive& part_;
+  double N_per_mm_;
+};
+
+/// 1 kg, 100 mm beside a hinge with a torsion spring, whose rest angle is such that the pendulum rests at -0.4 rad.
+class TorsionPendulum : public Robot {
+ public:
+  explicit TorsionPendulum(World& world) : Robot(world) {
+    Box& bar = addBox({.mass_g = 1000, .center_mm = {100, 0, 0}, .size_mm = {200, 20, 20}});
+    const Joint& hinge = bar.hingeToWorld({.anchor_mm = Vector(0, 0, 0)});
+    reportAngle("bar", hinge);
+    const double rest_rad = rests_at_rad + g_N_per_kg * 0.1 * std::cos(rests_at_rad) / 2;
+    world.addForceElement(std::make_unique<TorsionSpring>(hinge, 2.0, rest_rad));
+  }
+  static constexpr double rests_at_rad = -0.4;
+};
+
+TEST(Settle, ATorsionPendulumRestsWhereSpringAndWeightBalance) {
+  for (const PhysicsKind physics : {PhysicsKind::si, PhysicsKind::original}) {
+    SimulationOptions options;
+    options.physics = physics;
+    Simulation simulation(options);
+    Robot& robot = simulation.build<TorsionPendulum>();
+    simulation.settle({});
+    EXPECT_NEAR(robot.getState().angle_deg[0] * rad_per_deg, TorsionPendulum::rests_at_rad, 1e-12) << nameOf(physics);
+  }
+}
+
+/// Two links along -y from a hinge at the origin and a hinge at (0, -200, 0), both about z; a pair of muscles at each.
+class TwoLinks : public Robot {
+ public:
+  explicit TwoLinks(World& world) : Robot(world) {
+    Box& upper = addBox({.mass_g = 800, .center_mm = {0, -100, 0}, .size_mm = {30, 200, 30}});
+    Box& lower = addBox({.mass_g = 500, .center_mm = {0, -290, 0}, .size_mm = {30, 180, 30}});
+    reportAngle("shoulder", upper.hingeToWorld({.anchor_mm = Vector(0, 0, 0), .limits_deg = Limits{-80, 80}}));
+    reportAngle("elbow", lower.hingeTo(upper, {.anchor_mm = Vector(0, -200, 0), .limits_deg = Limits{-80, 80}}));
+    for (const double side : {1.0, -1.0}) {
+      addMuscle({.from = fixedAt({side * 45, 200, 0}), .to = upper.at({side * 45, -20, 0}), .length_mm = {120, 320}});
+      addMuscle({.from = upper.at({side * 40, -30, 0}), .to = lower.at({side * 40, -215, 0}), .length_mm = {105, 300}});
+    }
+    setHand(&lower, {0, -90, 0});
+  }
+};
+
+/// Lengths of the muscles of TwoLinks at two angles, by hand.
+std::vector<double> lengthsAt(double shoulder_rad, double elbow_rad) {
+  const auto turned = [](double angle_rad, const Vector& v) { return Vector(Eigen::AngleAxisd(angle_rad, Vector::UnitZ()) * v); };
+  const Vector elbow = turned(shoulder_rad, {0, -200, 0});
+  std::vector<double> lengths;
+  for (const double side : {1.0, -1.0}) {
+    lengths.push_back((Vector(side * 45, 200, 0) - turned(shoulder_rad, {side * 45, -20, 0})).norm());
+    lengths.push_back((turned(shoulder_rad, {side * 40, -30, 0}) - elbow - turned(shoulder_rad + elbow_rad, {side * 40, -15, 0})).norm());
+  }
+  return lengths;
+}
+
+/// Torques in N mm about both hinges of TwoLinks, by virtual work.
+Eigen::Vector2d torquesAt(const Robot& robot, const Action& pressure, double shoulder_rad, double elbow_rad) {
+  constexpr double d = 1e-5;
+  const double upper_N = 0.8 * g_N_per_kg, lower_N = 0.5 * g_N_per_kg;
+  Eigen::Vector2d torque(-(upper_N * 100 + lower_N * 200) * std::sin(shoulder_rad) - lower_N * 90 * std::sin(shoulder_rad + elbow_rad),
+                         -lower_N * 90 * std::sin(shoulder_rad + elbow_rad));
+  const auto lengths = lengthsAt(shoulder_rad, elbow_rad);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double tension_N = robot.actuators()[i]->calculateForce(pressure[i], lengths[i]);
+    torque[0] -= tension_N * (lengthsAt(shoulder_rad + d, elbow_rad)[i] - lengthsAt(shoulder_rad - d, elbow_rad)[i]) / (2 * d);
+    torque[1] -= tension_N * (lengthsAt(shoulder_rad, elbow_rad + d)[i] - lengthsAt(shoulder_rad, elbow_rad - d)[i]) / (2 * d);
+  }
+  return torque;
+}
+
+TEST(Settle, TwoLinksWithFourMusclesRestWhereTheTorquesBalance) {
+  Simulation simulation(withText({"muscle.model=line"}));
+  Robot& robot = simulation.build<TwoLinks>();
+  for (const Action& pressure : {Action{0.8, 0.3, 0.2, 0.9}, Action{0, 0, 0, 0}, Action{1, 0.7, 0.1, 0}}) {
+    simulation.settle(pressure);
+    const State state = robot.getState();
+    const double shoulder_rad = state.angle_deg[0] * rad_per_deg, elbow_rad = state.angle_deg[1] * rad_per_deg;
+    EXPECT_LT(torquesAt(robot, pressure, shoulder_rad, elbow_rad).cwiseAbs().maxCoeff(), 1e-4) << "of several 1000 N mm";
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(state.length_mm[i], lengthsAt(shoulder_rad, elbow_rad)[i], 1e-9);
+    if (pressure[0] > 0) {
+      EXPECT_GT(shoulder_rad, 0.1);
+    }
+  }
+}
+
+TEST(Settle, TwoLinksStayWhereTheySettle) {
+  for (const char* model : {"muscle.model=line", "muscle.model=chain"}) {
+    Simulation simulation(withText({model, "physics.contacts=off"}));
+    Robot& robot = simulation.build<TwoLinks>();
+    simulation.settle({0.8, 0.3, 0.2, 0.9});
+    const State settled = robot.getState();
+    EXPECT_GT(std::abs(settled.angle_deg[1]), 5);
+    simulation.start("settled", {0.8, 0.3, 0.2, 0.9});
+    simulation.advance(0.5);
+    for (int i = 0; i < 2; ++i) EXPECT_NEAR(robot.getState().angle_deg[i], settled.angle_deg[i], 0.1) << model;
+    EXPECT_LT(simulation.largestGap().gap_mm, 0.05) << model;
+  }
+}
+
+TEST(Settle, HasTheSameBitsFromAnyPose) {
+  for (const char* model : {"muscle.model=line", "muscle.model=chain"}) {
+    Simulation simulation(withText({model}));
+    Robot& robot = simulation.build<TwoLinks>();
+    simulation.settle({0.6, 0.3, 0.2, 0.9});
+    const auto once = valuesOf(simulation);
+    robot.step({0, 1, 1, 0});
+    for (int i = 0; i < 20; ++i) simulation.step();
+    EXPECT_NE(valuesOf(simulation), once);
+    simulation.settle({0.6, 0.3, 0.2, 0.9});
+    EXPECT_EQ(valuesOf(simulation), once) << model;
+  }
+}
+
+TEST(Settle, HasTheSamePoseInAllPhysics) {
+  std::vector<std::vector<double>> angles;
+  for (const PhysicsKind physics : {PhysicsKind::si, PhysicsKind::original, PhysicsKind::scaled}) {
+    SimulationOptions options;
+    options.physics = physics;
+    Simulation simulation(options);
+    Robot& robot = simulation.build<TwoLinks>();
+    simulation.settle({0.8, 0.3, 0.2, 0.9});
+    angles.push_back(robot.getState().angle_deg);
+  }
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(angles[1][i], angles[0][i], 1e-9);
+    EXPECT_NEAR(angles[2][i], angles[0][i], 1e-9);
+  }
+}
+
+/// A ball on a rod that is held to one side, high up.
+class BallPendulum : public Robot {
+ public:
+  explicit BallPendulum(World& world) : Robot(world) {
+    Sphere& ball = addSphere({.mass_g = 300, .center_mm = {60, 70, 30}, .radius_mm = 10});
+    ball.attachBall(nullptr, {10, 20, 30});
+    setHand(&ball);
+  }
+};
+
+TEST(Settle, APendulumOnABallJointHangsDown) {
+  Simulation simulation;
+  Robot& robot = simulation.build<BallPendulum>();
+  simulation.settle({});
+  EXPECT_LT((*robot.getState().hand_mm - Vector(10, 20 - std::sqrt(5000.0), 30)).norm(), 1e-7);
+}
+
+TEST(Settle, ALoadHangsAtTheEndOfItsSpring) {
+  class Hanging : public Robot {
+   public:
+    explicit Hanging(World& world) : Robot(world) {
+      Box& load = addBox({.mass_g = 2000, .size_mm = {20, 20, 20}});
+      load.attachSlider(nullptr, Vector::UnitY());
+      world.addForceElement(std::make_unique<LinearSpring>(load, 3.0));
+      setHand(&load);
+    }
+  };
+  Simulation simulation;
+  Robot& robot = simulation.build<Hanging>();
+  simulation.settle({});
+  EXPECT_NEAR(robot.getState().hand_mm->y(), -2 * g_N_per_kg / 3, 1e-12);
+}
+
+/// Two bars in a horizontal row; their weight turns both hinges to negative angles.
+class Row : public Robot {
+ public:
+  explicit Row(World& world) : Robot(world) {
+    Box& inner = addBox({.mass_g = 300, .center_mm = {50, 0, 0}, .size_mm = {100, 10, 10}});
+    Box& outer = addBox({.mass_g = 300, .center_mm = {150, 0, 0}, .size_mm = {100, 10, 10}});
+    reportAngle("inner", inner.hingeToWorld({.anchor_mm = Vector(0, 0, 0), .limits_deg = Limits{-25, 10}}));
+    reportAngle("outer", outer.hingeTo(inner, {.anchor_mm = Vector(100, 0, 0), .limits_deg = limits(world)}));
+  }
+  Limits limits(World& world) {
+    return {-parameter("row.outer_deg", 40, "deg", 0, 170, "lower stop of the outer hinge"),
+            world.physics().gravity_mm_per_s2 > 0 ? 30 : 1.0};
+  }
+};
+
+TEST(Settle, RestsAtItsStops) {
+  Simulation both;
+  both.build<Row>();
+  both.settle({});
+  EXPECT_NEAR(both.robot().getState().angle_deg[0], -25, 1e-12);
+  EXPECT_NEAR(both.robot().getState().angle_deg[1], -40, 1e-12);
+  Simulation one(withText({"row.outer_deg=100"}));
+  one.build<Row>();
+  one.settle({});
+  EXPECT_NEAR(one.robot().getState().angle_deg[0], -25, 1e-12);
+  EXPECT_NEAR(one.robot().getState().angle_deg[1], -65, 1e-7) << "hangs down";
+}
+
+/// A load that two crossed sliders let move in a plane, on a muscle from the origin.
+class CrossedSliders : public Robot {
+ public:
+  explicit CrossedSliders(World& world) : Robot(world) {
+    Box& carriage = addBox({.mass_g = 10, .center_mm = {40, 0, 0}, .size_mm = {20, 20, 20}});
+    Box& load = addBox(
+        {.mass_g = parameter("load_kg", 50, "kg", 0.1, 100, "load") * g_per_kg, .center_mm = {40, -200, 0}, .size_mm = {20, 20, 20}});
+    carriage.attachSlider(nullptr, Vector::UnitX());
+    load.attachSlider(&carriage, Vector::UnitY());
+    addMuscle({.from = fixedAt({0, 0, 0}), .to = load.at({40, -200, 0}), .length_mm = {120, 300}});
+    setHand(&load);
+  }
+};
+
+TEST(Settle, AChainEndsAtItsLongestLength) {
+  Simulation simulation;
+  Robot& robot = simulation.build<CrossedSliders>();
+  simulation.settle({0.2});
+  EXPECT_LT((*robot.getState().hand_mm - Vector(0, -300, 0)).norm(), 1e-5);
+  EXPECT_NEAR(robot.getState().length_mm[0], 300, 1e-8);
+}
+
+TEST(Settle, ALineIsStretchedBeyondItsLongestLength) {
+  Simulation simulation(withText({"muscle.model=line"}));
+  Robot& robot = simulation.build<CrossedSliders>();
+  simulation.settle({0.2});
+  const State state = robot.getState();
+  EXPECT_NEAR(state.force_N[0] + 10 * (state.length_mm[0] - 300), 50 * g_N_per_kg, 1e-6) << "10 N/mm beyond the longest length";
+}
+
+TEST(Settle, ASqueezedChainIsRefused) {
+  class Standing : public Robot {
+   public:
+    explicit Standing(World& world) : Robot(world) {
+      Box& load = addBox({.mass_g = 5000, .center_mm = {0, 210, 0}, .size_mm = {20, 20, 20}});
+      load.attachSlider(nullptr, Vector::UnitY());
+      addMuscle({.from = fixedAt({0, 0, 0}), .to = load.at({0, 210, 0}), .length_mm = {120, 300}, .name = "pillar"});
+    }
+  };
+  Simulation simulation;
+  simulation.build<Standing>();
+  const std::string message = messageOf<BadParameter>([&] { simulation.settle({0.5}); });
+  EXPECT_TRUE(contains(message, "pillar is squeezed"));
+  EXPECT_TRUE(contains(message, "120 mm"));
+  EXPECT_TRUE(contains(message, "use built"));
+  EXPECT_EQ(simulation.world().primitives()[0]->getPosition().y(), 210) << "stays where it was";
+}
+
+TEST(Settle, WhatHasNoEquilibriumIsRefused) {
+  class Falling : public Robot {
+   public:
+    explicit Falling(World& world) : Robot(world) {
+      addBox({.mass_g = 1000, .size_mm = {20, 20, 20}, .name = "stone"}).attachSlider(nullptr, Vector::UnitY());
+    }
+  };
+  class FallingPendulum : public Robot {
+   public:
+    explicit FallingPendulum(World& world) : Robot(world) {
+      Box& stone = addBox({.mass_g = 1000, .size_mm = {20, 20, 20}, .name = "stone"});
+      stone.attachSlider(nullptr, Vector::UnitY());
+      addBox({.mass_g = 100, .center_mm = {50, 0, 0}, .size_mm = {100, 5, 5}}).hingeTo(stone, {.anchor_mm = Vector(0, 0, 0)});
+    }
+  };
+  Simulation one, two;
+  one.build<Falling>();
+  two.build<FallingPendulum>();
+  for (Simulation* simulation : {&one, &two}) {
+    const std::string message = messageOf<BadParameter>([&] { simulation->settle({}); });
+    EXPECT_TRUE(contains(message, "slider of stone and environment"));
+    EXPECT_TRUE(contains(message, simulation == &one ? "-9.81 N " : "-10.8 N "));
+    EXPECT_TRUE(contains(message, "--initial-state built"));
+  }
+}
+
+TEST(Settle, LoopsAndFreeBodiesAreRefused) {
+  class Loop : public Robot {
+   public:
+    explicit Loop(World& world) : Robot(world) {
+      Box& left = addBox({.mass_g = 100, .center_mm = {-50, 0, 0}, .size_mm = {100, 5, 5}, .name = "left"});
+      Box& right = addBox({.mass_g = 100, .center_mm = {50, 0, 0}, .size_mm = {100, 5, 5}, .name = "right"});
+      left.hingeToWorld({.anchor_mm = Vector(-100, 0, 0)});
+      right.hingeToWorld({.anchor_mm = Vector(100, 0, 0)});
+      left.hingeTo(right, {.anchor_mm = Vector(0, 0, 0)});
+    }
+  };
+  class Free : public Robot {
+   public:
+    explicit Free(World& world) : Robot(world) { addSphere({.mass_g = 100, .radius_mm = 5, .name = "marble"}); }
+  };
+  Simulation loop, free;
+  loop.build<Loop>();
+  free.build<Free>();
+  EXPECT_TRUE(contains(messageOf<BadParameter>([&] { loop.settle({}); }), "hinge of left and right closes a loop"));
+  EXPECT_TRUE(contains(messageOf<BadParameter>([&] { free.settle({}); }), "marble is free"));
+}
+
+TEST(Settle, AMuscleWithALooseEndIsRefused) {
+  class Loose : public Robot {
+   public:
+    explicit Loose(World& world) : Robot(world) {
+      auto* muscle = new Muscle(world, space(), {0, 0, 0}, {0, -70, 0}, {0, -140, 0}, {0, -210, 0}, 120, 300);
+      muscle->connectStartTo(nullptr);
+      addActuator(muscle);
+    }
+  };
+  Simulation simulation;
+  simulation.build<Loose>();
+  EXPECT_TRUE(contains(messageOf<BadParameter>([&] { simulation.settle({0.5}); }), "the end of muscle_0 is not connected"));
+}
+
+// The skeleton's poses against ODE's joints.
+
+/// Two bars, not along the axes of the world, with a joint between them and a hinge to the environment.
+struct Pair {
+  explicit Pair(const std::function<Joint*(Primitive& a, Primitive& b)>& join) {
+    World& world = simulation.world();
+    first = new Box(world, nullptr, {20, 30, -10}, 100, 0, 40, 20, 10);
+    second = new Box(world, nullptr, {70, 60, 15}, 150, 0, 30, 20, 50);
+    first->rotate(25, {1, 2, 3});
+    second->rotate(-40, {3, -1, 1});
+    first->attachHinge(nullptr, {0, 0, 0}, {1, 1, 0});
+    joint = join(*first, *second);
+  }
+  Simulation simulation;
+  Primitive *first, *second;
+  Joint* joint;
+};
+
+TEST(Skeleton, CoordinatesAreTheAnglesAndPositionsOfTheJoints) {
+  const Vector anchor(40, 50, 5), axis(0.6, 0, 0.8), across(0, 1, 0);
+  const std::vector<std::function<Joint*(Primitive&, Primitive&)>> joints = {
+      [&](Primitive& a, Primitive& b) { return b.attachHinge(&a, anchor, axis); },
+      [&](Primitive& a, Primitive& b) { return a.attachHinge(&b, anchor, axis); },
+      [&](Primitive& a, Primitive& b) { return b.attachUniversal(&a, anchor, axis, across); },
+      [&](Primitive& a, Primitive& b) { return a.attachUniversal(&b, anchor, axis, across); },
+      [&](Primitive& a, Primitive& b) { return b.attachHinge(&a, anchor, axis, across); },
+      [&](Primitive& a, Primitive& b) { return a.attachHinge(&b, anchor, axis, Vector(0.2, 1, 0)); },
+      [&](Primitive& a, Primitive& b) { return b.attachSlider(&a, axis); },
+      [&](Primitive& a, Primitive& b) { return a.attachSlider(&b, axis); },
+      [&](Primitive& a, Primitive& b) { return b.attachBall(&a, anchor); }};
+  for (std::size_t number = 0; number < joints.size(); ++number) {
+    Pair pair(joints[number]);
+    Skeleton skeleton(pair.simulation.world());
+    const auto count = static_cast<Eigen::Index>(skeleton.coordinates().size());
+    Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(count, -0.7, 0.9);
+    skeleton.setPose(q);
+    skeleton.placeBodies();
+    EXPECT_LT(pair.joint->constraintErrorMm(), 1e-10) << number;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const Coordinate& coordinate = skeleton.coordinates()[static_cast<std::size_t>(i)];
+      const Joint& joint = *coordinate.joint;
+      if (joint.kind() == Joint::Kind::ball) continue;
+      const bool slides = joint.kind() == Joint::Kind::slider;
+      const double value = slides ? dJointGetSliderPosition(joint.id()) : joint.angleDeg(coordinate.axis) * rad_per_deg;
+      EXPECT_NEAR(value, q[i], 1e-10) << number << ", axis " << coordinate.axis;
+    }
+    const Vector moved = pair.second->getPosition();
+    skeleton.setPose(Eigen::VectorXd::Zero(count));
+    skeleton.placeBodies();
+    EXPECT_LT((pair.second->getPosition() - Vector(70, 60, 15)).norm(), 1e-12) << "the pose as built";
+    EXPECT_GT((pair.second->getPosition() - moved).norm(), 1) << number;
+  }
+}
+
+TEST(Skeleton, GeneralisedForcesAreTheWorkPerDisplacement) {
+  Pair pair([](Primitive& a, Primitive& b) { return b.attachUniversal(&a, {40, 50, 5}, {0.6, 0, 0.8}, {0, 1, 0}); });
+  auto* third = new Sphere(pair.simulation.world(), nullptr, {90, 10, 40}, 200, 0, 10);
+  third->attachBall(pair.second, {80, 50, 20});
+  Skeleton skeleton(pair.simulation.world());
+  const int number = skeleton.numberOf(third->body().id);
+  const Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(6, -0.7, 0.9);
+  const Vector force(1, -2, 3), place(5, 6, -7);
+  skeleton.setPose(q);
+  skeleton.loadWithWeights(Vector::Zero());
+  skeleton.addForce(number, force, skeleton.pointMm(number, place));
+  Eigen::VectorXd forces(6);
+  skeleton.takeForces(forces);
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    constexpr double d = 1e-5;
+    skeleton.setPose(skeleton.displaced(q, d * Eigen::VectorXd::Unit(6, i)));
+    const Vector ahead = skeleton.pointMm(number, place);
+    skeleton.setPose(skeleton.displaced(q, -d * Eigen::VectorXd::Unit(6, i)));
+    EXPECT_NEAR(forces[i], force.dot(ahead - skeleton.pointMm(number, place)) / (2 * d), 1e-6) << i;
+  }
+}
+
+}  // namespace
+}  // namespace musclesim
