@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "muscle_path.h"
 #include "musclesim/base/text.h"
 
 namespace musclesim {
@@ -19,7 +20,10 @@ class TendonReader {
 
   void read() {
     for (const XmlElement* actuator : document_.section("actuator")) readActuator(*actuator);
+    findDrivenSliders();
+    for (const XmlElement* tendon : document_.section("tendon")) extendSlider(*tendon);
     for (const XmlElement* tendon : document_.section("tendon")) readTendon(*tendon);
+    for (const auto& [joint, text] : joint_drives_) note(text);
     for (const auto& [tendon, actuators] : drives_)
       note(fmt::format("actuator {}: its tendon {} is not a spatial tendon of this file", actuators.front().name, tendon));
     if (!robot_.muscles.empty())
@@ -35,6 +39,13 @@ class TendonReader {
     std::optional<SourceRange> length_m;
   };
 
+  /// A body on a slider that an actuator drives: the place where a muscle ends and its tendon begins.
+  struct Slider {
+    std::string actuator, joint;
+    std::size_t to = 0;                                     ///< the body along which it slides
+    const XmlElement *muscle = nullptr, *tendon = nullptr;  ///< the straight tendon that stands for the muscle, if any; the tendon
+  };
+
   void note(const std::string& text) { robot_.notes.push_back(text); }
 
   void readActuator(const XmlElement& xml) {
@@ -45,7 +56,11 @@ class TendonReader {
       std::string target;
       for (const char* attribute : {"joint", "jointinparent", "site", "body", "cranksite"})
         if (element.has(attribute)) target = fmt::format(" on {} {}", attribute, element.text(attribute));
-      note(fmt::format("actuator {}: <{}>{} is not taken over", name, kind, target));
+      const std::string text = fmt::format("actuator {}: <{}>{} is not taken over", name, kind, target);
+      if (element.has("joint"))
+        joint_drives_.emplace_back(element.text("joint"), text), joint_actuators_.emplace(element.text("joint"), name);
+      else
+        note(text);
       return;
     }
     Drive drive{.name = name, .length_m = {}};
@@ -54,7 +69,82 @@ class TendonReader {
     drives_[tendon].push_back(drive);
   }
 
+  bool isStill(std::size_t body) const {
+    if (body == 0) return true;
+    const auto joint = std::find_if(robot_.joints.begin(), robot_.joints.end(), [&](const auto& j) { return j.body == body; });
+    return joint != robot_.joints.end() && joint->kind == SourceJoint::Kind::fixed && isStill(joint->to);
+  }
+
+  /// Bodies that hang on one driven slider at what does not move, and that carry no other body.
+  void findDrivenSliders() {
+    for (const SourceJoint& joint : robot_.joints) {
+      const auto actuator = joint_actuators_.find(joint.name);
+      const bool carries =
+          std::any_of(robot_.joints.begin(), robot_.joints.end(), [&](const SourceJoint& other) { return other.to == joint.body; });
+      if (joint.kind == SourceJoint::Kind::slider && actuator != joint_actuators_.end() && isStill(joint.to) && !carries)
+        sliders_[joint.body] = {.actuator = actuator->second, .joint = joint.name, .to = joint.to};
+    }
+    std::map<std::size_t, int> elastic;
+    for (const XmlElement* tendon : document_.section("tendon"))
+      if (const auto body = sliderOf(*tendon)) noteEnd(*tendon, *body, elastic[*body]);
+    std::erase_if(sliders_, [&](const auto& slider) { return elastic[slider.first] != 1; });
+  }
+
+  /// The slider's body on which one end of a tendon without an actuator of its own lies.
+  std::optional<std::size_t> sliderOf(const XmlElement& tendon) const {
+    const auto steps = childrenOf(tendon, "site");
+    if (std::string(tendon.Name()) != "spatial" || steps.empty() || drives_.contains(textOf(tendon, "name"))) return {};
+    for (const XmlElement* end : {steps.front(), steps.back()})
+      if (const auto site = model_.sites.find(textOf(*end, "site")); site != model_.sites.end() && sliders_.contains(site->second.body))
+        return site->second.body;
+    return {};
+  }
+
+  /// A tendon with stiffness is the cable of the slider; a straight one without leads to the other end of the muscle.
+  void noteEnd(const XmlElement& tendon, std::size_t body, int& elastic_count) {
+    if (!problemOf(tendon).empty()) return;
+    if (document_.with(tendon, "tendon").number("stiffness", 0) > 0) {
+      sliders_[body].tendon = &tendon;
+      ++elastic_count;
+    } else if (childrenOf(tendon).size() == 2) {
+      sliders_[body].muscle = &tendon;
+    }
+  }
+
+  /// Writes a driven slider and its cable as one muscle with a cable in series; the slider's body goes.
+  void extendSlider(const XmlElement& xml) {
+    const auto body = sliderOf(xml);
+    if (!body || sliders_.at(*body).tendon != &xml) return;
+    const Slider slider = sliders_.at(*body);
+    const MjcfElement element = document_.with(xml, "tendon");
+    addMuscle(xml, element, {});
+    SourceMuscle& muscle = robot_.muscles.back();
+    if (muscle.path.front().point->body != *body) muscle.path = {muscle.path.rbegin(), muscle.path.rend()};
+    muscle.name = slider.actuator;
+    const SourcePoint joint_of_both{slider.to, robot_.bodies[slider.to].pose.inverse() * robot_.inWorld(*muscle.path.front().point)};
+    muscle.path.front().point = joint_of_both;
+    if (slider.muscle) {
+      muscle.tendon_m = pathLengthM(robot_, muscle);
+      const auto sites = childrenOf(*slider.muscle, "site");
+      const SourcePoint &first = siteOf(*sites[0], "site"), &last = siteOf(*sites[1], "site");
+      std::vector<SourceStation> path(1);
+      path[0].point = first.body == *body ? last : first;
+      path.insert(path.end(), muscle.path.begin(), muscle.path.end());
+      muscle.path = path;
+      consumed_.insert(slider.muscle);
+    }
+    consumed_.insert(&xml);
+    note(fmt::format("muscle {}: stands for body {} on its slider {} with its actuator and for the tendon {}{}", muscle.name,
+                     robot_.bodies[*body].name, slider.joint, element.text("name"),
+                     slider.muscle ? ", which is a cable that does not stretch here" : ""));
+    robot_.bodies[*body].gone = true;
+    std::erase_if(robot_.joints, [&](const SourceJoint& joint) { return joint.body == *body; });
+    std::erase_if(joint_drives_, [&](const auto& drive) { return drive.first == slider.joint; });
+    sliders_.erase(*body);
+  }
+
   void readTendon(const XmlElement& xml) {
+    if (consumed_.contains(&xml)) return;
     const MjcfElement element = document_.with(xml, "tendon");
     const std::string name = element.text("name", fmt::format("in line {}", xml.GetLineNum()));
     const auto drive = drives_.find(element.text("name"));
@@ -174,8 +264,12 @@ class TendonReader {
   const MjcfDocument& document_;
   MjcfModel& model_;
   SourceRobot& robot_;
-  std::map<std::string, std::vector<Drive>> drives_;  ///< by the name of the tendon
-  std::map<std::size_t, std::size_t> pulleys_;        ///< of geoms
+  std::map<std::string, std::vector<Drive>> drives_;               ///< by the name of the tendon
+  std::vector<std::pair<std::string, std::string>> joint_drives_;  ///< joint, and the note that its actuator is left out
+  std::map<std::string, std::string> joint_actuators_;             ///< by the name of the joint
+  std::map<std::size_t, Slider> sliders_;                          ///< by body
+  std::set<const XmlElement*> consumed_;                           ///< tendons that are muscles with a slider
+  std::map<std::size_t, std::size_t> pulleys_;                     ///< of geoms
 };
 
 }  // namespace

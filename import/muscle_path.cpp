@@ -137,15 +137,20 @@ SourceRobot posed(const SourceRobot& robot, RandomStream& random) {
   return result;
 }
 
+/// Without the cable in series.
+double lengthM(const SourceRobot& robot, const SourceMuscle& muscle) {
+  return pathLengthM(robot, muscle) - muscle.tendon_m;
+}
+
 void giveRanges(SourceRobot& robot) {
   std::vector<SourceRange> ranges;
-  for (const SourceMuscle& muscle : robot.muscles) ranges.push_back({pathLengthM(robot, muscle), pathLengthM(robot, muscle)});
+  for (const SourceMuscle& muscle : robot.muscles) ranges.push_back({lengthM(robot, muscle), lengthM(robot, muscle)});
   constexpr int pose_count = 400;
   RandomStream random(0, "import.muscle_ranges");
   for (int pose = 0; pose < pose_count; ++pose) {
     const SourceRobot other = posed(robot, random);
     for (std::size_t i = 0; i < ranges.size(); ++i) {
-      const double length_m = pathLengthM(other, other.muscles[i]);
+      const double length_m = lengthM(other, other.muscles[i]);
       ranges[i] = {std::min(ranges[i].low, length_m), std::max(ranges[i].high, length_m)};
     }
   }
@@ -170,7 +175,7 @@ void giveRanges(SourceRobot& robot) {
 /// Ranges that the reader of robot files takes: at least 15 mm, with the length as built inside.
 void fitRange(SourceRobot& robot, SourceMuscle& muscle) {
   constexpr double shortest_m = 0.015, longest_share = 0.9;
-  const double built_m = pathLengthM(robot, muscle);
+  const double built_m = lengthM(robot, muscle);
   SourceRange range = *muscle.length_m;
   range.low = std::max(std::min(range.low, built_m), shortest_m);
   range.high = std::max({range.high, built_m, range.low / longest_share});

@@ -263,6 +263,7 @@ class TomlWriter {
     line("from", end(*muscle.path.front().point));
     line("to", end(*muscle.path.back().point));
     if (muscle.length_m) line("length_mm", range(*muscle.length_m, mm_per_m));
+    lineUnlessZero("tendon_mm", mm_per_m * muscle.tendon_m);
     if (muscle.path.size() > 2) {
       text_ += "path = [\n";
       for (std::size_t i = 1; i + 1 < muscle.path.size(); ++i) text_ += "  " + station(muscle.path[i]) + ",\n";

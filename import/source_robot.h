@@ -66,6 +66,7 @@ struct SourceStation {
 struct SourceMuscle {
   std::string name = {};
   std::vector<SourceStation> path;  ///< the first and the last are points
+  double tendon_m = 0;              ///< a cable in series: length of the muscle = length of the path - tendon
   std::optional<SourceRange> length_m;
   std::optional<std::array<double, 3>> color;
 };

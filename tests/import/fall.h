@@ -1,0 +1,42 @@
+/// Runs the fall of a robot that was imported: no contacts, no pressures.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "import/import.h"
+#include "musclesim/robot/robot_file.h"
+#include "musclesim/simulation/simulation.h"
+
+namespace musclesim {
+
+inline std::unique_ptr<Simulation> simulationOf(const ImportedRobot& robot) {
+  SimulationOptions options;
+  options.step_s = 0.01;
+  options.substeps = 100;  // the solver's error falls with the first power of its step; 0.1 ms leaves a few hundredths of a degree
+  options.parameters.set("physics.contacts", "off", "test");
+  auto simulation = std::make_unique<Simulation>(options);
+  simulation->build([&](World& world) { return makeRobotFromText(robot.toml, "imported.toml", world); });
+  return simulation;
+}
+
+/// Calls `see` with the time and the joint angles after every control step of 1 s.
+inline void fall(Simulation& simulation, const std::function<void(double time_s, const std::vector<double>& angle_deg)>& see) {
+  simulation.start("built", Action(static_cast<std::size_t>(simulation.robot().actuatorCount()), 0.0));
+  constexpr int step_count = 100;
+  for (int step = 0; step < step_count; ++step) {
+    simulation.step();
+    see(simulation.time_s(), simulation.robot().getState().angle_deg);
+  }
+}
+
+/// Replaces every occurrence; for changes to descriptions that a test wants for both programs.
+inline std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) text.replace(at, what.size(), by);
+  return text;
+}
+
+}  // namespace musclesim

@@ -1,0 +1,196 @@
+/// Robots that were imported from MJCF against MuJoCo itself: lengths and moment arms of muscles, and falls.
+#include <mujoco/mujoco.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "fall.h"
+#include "import_fixture.h"
+#include "musclesim/base/file.h"
+#include "musclesim/base/random.h"
+#include "musclesim/base/units.h"
+#include "musclesim/robot/primitive.h"
+
+namespace musclesim {
+namespace {
+
+/// A model with its data in the other program.
+class Mujoco {
+ public:
+  explicit Mujoco(const std::string& file) {
+    char error[1000] = "";
+    model_ = mj_loadXML(file.c_str(), nullptr, error, sizeof error);
+    if (!model_) throw std::runtime_error(error);
+    data_ = mj_makeData(model_);
+    mj_forward(model_, data_);
+  }
+  ~Mujoco() {
+    mj_deleteData(data_);
+    mj_deleteModel(model_);
+  }
+  Mujoco(const Mujoco&) = delete;
+  Mujoco& operator=(const Mujoco&) = delete;
+  mjModel& model() { return *model_; }
+  mjData& data() { return *data_; }
+  int joint(const std::string& name) const { return mj_name2id(model_, mjOBJ_JOINT, name.c_str()); }
+  double angleDeg(const std::string& name) const { return data_->qpos[model_->jnt_qposadr[joint(name)]] * deg_per_rad; }
+
+ private:
+  mjModel* model_;
+  mjData* data_;
+};
+
+Eigen::Matrix3d toTarget() {
+  return (Eigen::Matrix3d() << 1, 0, 0, 0, 0, 1, 0, -1, 0).finished();
+}
+
+Vector centerMm(const mjData& data, int body) {
+  return mm_per_m * toTarget() * Eigen::Vector3d(data.xipos + 3 * body);
+}
+
+Eigen::Matrix3d rotationOf(const mjData& data, int body) {
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(data.xmat + 9 * body);
+}
+
+class MujocoComparison : public ImportedRobotTest {
+ protected:
+  void SetUp() override {
+    ImportedRobotTest::SetUp();
+    folder_of_robots_ = sharedFolder() / "data" / "robots";
+    if (!std::filesystem::exists(folder_of_robots_ / "arm26.xml")) GTEST_SKIP() << folder_of_robots_ << " is not there";
+  }
+  std::string source(const std::string& name) const { return readTextFile((folder_of_robots_ / name).string(), 1 << 20); }
+
+  /// The largest difference of the reported angles over a fall of 1 s, in degrees; the widest angle goes to widest_deg_.
+  double fallDifferenceDeg(const std::string& text) {
+    const std::string file = write("fall.xml", text);
+    importFile(file);
+    Mujoco mujoco(file);
+    mujoco.model().opt.timestep = 1e-4;
+    mujoco.model().opt.integrator = mjINT_RK4;
+    mujoco.model().opt.disableflags |= mjDSBL_CONTACT;
+    const auto simulation = simulationOf(robot_);
+    const auto& angles = simulation->robot().angles();
+    double worst_deg = 0;
+    widest_deg_ = 0;
+    fall(*simulation, [&](double until_s, const std::vector<double>& angle_deg) {
+      while (mujoco.data().time < until_s - 0.5e-4) mj_step(&mujoco.model(), &mujoco.data());
+      for (std::size_t i = 0; i < angles.size(); ++i) {
+        worst_deg = std::max(worst_deg, std::abs(angle_deg[i] - mujoco.angleDeg(angles[i].name)));
+        widest_deg_ = std::max(widest_deg_, std::abs(angle_deg[i]));
+      }
+    });
+    RecordProperty("worst_deg", std::to_string(worst_deg));
+    return worst_deg;
+  }
+
+  std::filesystem::path folder_of_robots_;
+  double widest_deg_ = 0;
+};
+
+TEST_F(MujocoComparison, LengthsAndMomentArmsOfTheArmAgreeInAnyPose) {
+  const std::string file = (folder_of_robots_ / "arm26.xml").string();
+  importFile(file);
+  const auto simulation = simulationOf(robot_);
+  Robot& robot = simulation->robot();
+  Mujoco mujoco(file);
+  // Bodies of the robot and of the other program, with their rotations as built.
+  const std::vector<std::pair<std::string, int>> bodies = {{"upper_arm", 1}, {"forearm", 2}};
+  std::vector<Eigen::Matrix3d> built, built_there;
+  std::vector<Primitive*> primitives;
+  for (const auto& [name, body] : bodies) {
+    for (Primitive* primitive : simulation->world().primitives())
+      if (primitive->name() == name) primitives.push_back(primitive);
+    built.push_back(primitives.back()->getRotation());
+    built_there.push_back(rotationOf(mujoco.data(), body));
+    EXPECT_NEAR((primitives.back()->getPosition() - centerMm(mujoco.data(), body)).norm(), 0, 1e-9) << name;
+  }
+  const auto lengths = [&](double shoulder_rad, double elbow_rad) {
+    mujoco.data().qpos[0] = shoulder_rad;
+    mujoco.data().qpos[1] = elbow_rad;
+    mj_forward(&mujoco.model(), &mujoco.data());
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      const Eigen::Matrix3d turn = rotationOf(mujoco.data(), bodies[i].second) * built_there[i].transpose();
+      primitives[i]->place(centerMm(mujoco.data(), bodies[i].second), toTarget() * turn * toTarget().transpose() * built[i]);
+    }
+    std::vector<double> lengths_mm;
+    for (const Actuator* muscle : robot.actuators()) lengths_mm.push_back(muscle->lengthMm());
+    return lengths_mm;
+  };
+  RandomStream random(1, "test");
+  double worst_mm = 0, worst_mm_per_rad = 0;
+  for (int pose = 0; pose < 1000; ++pose) {
+    const double q[2] = {random.uniform(0, 120 * rad_per_deg), random.uniform(0, 120 * rad_per_deg)};
+    for (int joint = 0; joint < 2; ++joint) {
+      constexpr double h_rad = 1e-5;
+      const auto more = lengths(q[0] + (joint == 0 ? h_rad : 0), q[1] + (joint == 1 ? h_rad : 0));
+      const auto less = lengths(q[0] - (joint == 0 ? h_rad : 0), q[1] - (joint == 1 ? h_rad : 0));
+      const auto here = lengths(q[0], q[1]);
+      for (int muscle = 0; muscle < 6; ++muscle) {
+        worst_mm = std::max(worst_mm, std::abs(here[muscle] - mm_per_m * mujoco.data().ten_length[muscle]));
+        worst_mm_per_rad = std::max(
+            worst_mm_per_rad, std::abs((more[muscle] - less[muscle]) / (2 * h_rad) - mm_per_m * mujoco.data().ten_J[2 * muscle + joint]));
+      }
+    }
+  }
+  RecordProperty("worst_mm", std::to_string(worst_mm));
+  RecordProperty("worst_mm_per_rad", std::to_string(worst_mm_per_rad));
+  EXPECT_LT(worst_mm, 0.05);
+  EXPECT_LT(worst_mm_per_rad, 0.05);
+}
+
+/// Takes <tendon> and <actuator> out.
+std::string withoutMuscles(std::string text) {
+  const std::size_t begin = text.find("<tendon>"), end = text.find("</actuator>");
+  return text.erase(begin, end + std::string("</actuator>").size() - begin);
+}
+
+TEST_F(MujocoComparison, TheFallOfTheTwoLinkArmAgrees) {
+  // Its hinges are vertical: turn its plane up, or it does not fall.
+  std::string text = replaced(withoutMuscles(source("arm26.xml")), "limited=\"true\" range=\"0 120\"", "");
+  text = replaced(text, "<body pos=\"0 0 0\">", "<body pos=\"0 0 0\" euler=\"70 0 10\">");
+  EXPECT_LT(fallDifferenceDeg(text), 0.2);
+  EXPECT_GT(widest_deg_, 60);
+}
+
+/// The file names meshes that are not there. The importer takes cubes of their mass; so both programs get these cubes here.
+std::string withCubes(std::string text) {
+  const std::size_t assets = text.find("<asset>"), end = text.find("</asset>");
+  text.erase(assets, end + std::string("</asset>").size() - assets);
+  for (std::size_t at = text.find("type = \"mesh\""); at != std::string::npos; at = text.find("type = \"mesh\"", at + 1)) {
+    const std::size_t mass_at = text.find("mass=\"", at) + 6;
+    const double half_m = std::cbrt(std::stod(text.substr(mass_at)) / 1000) / 2;
+    const std::size_t mesh = text.find("mesh=\"", at);
+    text.erase(mesh, text.find('"', mesh + 6) + 1 - mesh);
+    text.replace(at, std::string("type = \"mesh\"").size(),
+                 "type=\"box\" size=\"" + std::to_string(half_m) + " " + std::to_string(half_m) + " " + std::to_string(half_m) + "\"");
+  }
+  return text;
+}
+
+std::string withoutFriction(std::string text) {
+  for (std::size_t at = text.find("frictionloss"); at != std::string::npos; at = text.find("frictionloss", at))
+    text.erase(at, text.find('"', text.find('"', at) + 1) + 1 - at);
+  return text;
+}
+
+TEST_F(MujocoComparison, TheFallOfTheFourJointArmAgrees) {
+  std::string text = withoutFriction(withCubes(withoutMuscles(source("pamy.xml"))));
+  text = replaced(text, "limited=\"true\"", "limited=\"false\"");
+  text = replaced(text, "density=\"1.2\"", "density=\"0\"");  // of the air
+  EXPECT_LT(fallDifferenceDeg(text), 0.2);
+  EXPECT_GT(widest_deg_, 60);
+}
+
+TEST_F(MujocoComparison, ItsFrictionHoldsTheFourJointArmInBothPrograms) {
+  // The other program's friction creeps as far as solreffriction and solimpfriction say; without them it hardly does.
+  std::string text = withCubes(withoutMuscles(source("pamy.xml")));
+  for (const char* attribute : {"solreffriction", "solimpfriction"})
+    for (std::size_t at = text.find(attribute); at != std::string::npos; at = text.find(attribute, at))
+      text.erase(at, text.find('"', text.find('"', at) + 1) + 1 - at);
+  EXPECT_LT(fallDifferenceDeg(text), 0.2);
+  EXPECT_LT(widest_deg_, 0.2);
+}
+
+}  // namespace
+}  // namespace musclesim
