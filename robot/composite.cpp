@@ -76,7 +76,6 @@ void Primitive::addPointMass(double mass_g, const Vector& point_mm) {
   const double total_g = mass.mass + mass_g;
   const Vector center = (mass.mass * getPosition() + mass_g * point_mm) / total_g;
   const Eigen::Matrix3d to_body = getRotation().transpose();
-  const Vector moved_mm = to_body * (center - getPosition());
   const Eigen::Matrix3d inertia = matrixFromOde(mass.I) + pointInertia(mass.mass, to_body * (getPosition() - center)) +
                                   pointInertia(mass_g, to_body * (point_mm - center));
   const bool physical =
@@ -107,6 +106,7 @@ void Primitive::takeMassProperties(double mass_g, const Vector& center, const Ei
   dMassSetParameters(&mass, mass_g, 0, 0, 0, inertia(0, 0), inertia(1, 1), inertia(2, 2), inertia(0, 1), inertia(0, 2), inertia(1, 2));
   dBodySetMass(body_->id, &mass);
   if (center == getPosition()) return;
+  const Vector moved_mm = getRotation().transpose() * (center - getPosition());
   std::vector<std::pair<Joint*, Vector>> joints;
   for (const auto& joint : world_.joints())
     if (dJointGetBody(joint->id(), 0) == body_->id || dJointGetBody(joint->id(), 1) == body_->id)
