@@ -204,8 +204,8 @@ void Actuator::finishPath() {
   path_finished_ = true;
 }
 
-void Actuator::recentre(dBodyID body, const Vector& by_mm) {
-  if (line_ && body) line_->recentre(body, by_mm);
+void Actuator::moveCenter(dBodyID body, const Vector& shift_mm) {
+  if (line_) line_->moveCenter(body, shift_mm);
 }
 
 double Actuator::calculateForce(double pressure_ratio, double length_mm) const {

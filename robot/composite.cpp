@@ -117,7 +117,8 @@ void Primitive::takeMassProperties(double mass_g, const Vector& center, const Ei
   for (std::size_t i = 0; i < drawn.size(); ++i)
     dGeomSetOffsetWorldPosition(body_->parts[i]->geom_, drawn[i].x(), drawn[i].y(), drawn[i].z());
   for (const auto& [joint, anchor] : joints) reattach(*joint, anchor);
-  for (Actuator* actuator : world_.actuators()) actuator->recentre(body_->id, moved_mm);
+  for (Actuator* actuator : world_.actuators()) actuator->moveCenter(body_->id, moved_mm);
+  for (const auto& element : world_.forceElements()) element->moveCenter(body_->id, moved_mm);
 }
 
 void Primitive::requireComposable() const {

@@ -29,7 +29,8 @@ std::vector<MomentArms> momentArms(World& world, const Robot& robot);
 std::string momentArmFigure(const std::vector<MomentArms>& arms, const Robot& robot);
 
 /// What is odd about a robot though it can be built: muscles that are connected to nothing or leave their range within the range of a
-/// joint, joints that no muscle moves, parts that overlap, nothing that is reported. One sentence each. Moves the bodies as momentArms
+/// joint, joints that no muscle moves, parts that overlap, nothing that is reported. One sentence each. Of a
+/// robot whose joints close a loop only what does not need moment arms. Moves the bodies as momentArms
 /// does.
 std::vector<std::string> oddities(World& world, const Robot& robot);
 

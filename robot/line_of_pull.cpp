@@ -81,6 +81,16 @@ void LineOfPull::setTendonMm(double tendon_mm, const std::string& muscle_name) {
   tendon_mm_ = tendon_mm;
 }
 
+void LineOfPull::moveCenter(dBodyID body, const Vector& shift_mm) {
+  for (Point& point : points_)
+    if (point.body == body) point.place -= shift_mm;
+  for (auto& mounted : pulleys_) {
+    if (!mounted || mounted->body != body) continue;
+    mounted->pulley.center_mm -= shift_mm;
+    if (mounted->pulley.side_mm) *mounted->pulley.side_mm -= shift_mm;
+  }
+}
+
 Vector LineOfPull::worldPosition(const Point& point) {
   if (!point.body) return point.place;
   return positionOf(point.body) + turned(point.place, dBodyGetRotation(point.body));
@@ -111,16 +121,6 @@ void LineOfPull::requirePointsOutside(const std::string& muscle_name) const {
   }
 }
 
-void LineOfPull::recentre(dBodyID body, const Vector& by_mm) {
-  for (Point& point : points_)
-    if (point.body == body) point.place -= by_mm;
-  for (auto& mounted : pulleys_) {
-    if (!mounted || mounted->body != body) continue;
-    mounted->pulley.center_mm -= by_mm;
-    if (mounted->pulley.side_mm) *mounted->pulley.side_mm -= by_mm;
-  }
-}
-
 /// dl/dx of the points; that of a pulley is the opposite of those of its two points.
 void LineOfPull::locate() const {
   pushes_.clear();
@@ -132,9 +132,9 @@ void LineOfPull::locate() const {
     const Way way = mounted ? wayPast(inWorld(*mounted), here, next) : straightWay(here, next);
     length_mm_ += way.length_mm;
     addPush(points_[i].body, here, gradient - way.start_direction);
-    if (way.wound) {
-      addPush(mounted->body, here, way.start_direction);
-      addPush(mounted->body, next, -way.end_direction);
+    if (way.wound && mounted->body) {
+      const Vector center = positionOf(mounted->body), &d = way.start_direction, &e = way.end_direction;
+      pushes_.push_back({mounted->body, d - e, (here - center).cross(d) - (next - center).cross(e)});
     }
     here = next;
     gradient = way.end_direction;

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 namespace musclesim {
@@ -32,11 +33,11 @@ Vector planeNormal(const Vector& a, const Vector& b, const std::optional<Vector>
 struct Winding {
   bool exists = false;  ///< otherwise the way is straight
   Vector n, a, b;
-  double height_mm, start_height_mm;  ///< from a to b, and of a over the centre
-  double sense;                       ///< s
-  double k_a_mm, k_b_mm;
-  double arc_rad;  ///< theta
-  double radius_mm;
+  double height_mm = 0, start_height_mm = 0;  ///< from a to b, and of a over the centre
+  double sense = 0;                           ///< s
+  double k_a_mm = 0, k_b_mm = 0;
+  double arc_rad = 0;  ///< theta
+  double radius_mm = 0;
 
   double acrossMm() const { return k_a_mm + radius_mm * arc_rad + k_b_mm; }
   /// Directions of the thread across the axis, at a and b.
@@ -72,14 +73,17 @@ Winding windingOf(const Pulley& pulley, const Vector& from_mm, const Vector& to_
   w.height_mm = w.n.dot(end) - w.start_height_mm;
   w.k_a_mm = std::sqrt(std::max(0.0, a_squared - r * r));
   w.k_b_mm = std::sqrt(std::max(0.0, b_squared - r * r));
-  const double sine = w.n.dot(w.a.cross(w.b)), angle_rad = std::atan2(std::abs(sine), w.a.dot(w.b));
+  // The arguments of the factors are delta, -phi_a and -phi_b.
+  const double cosine = w.a.dot(w.b), sine = w.n.dot(w.a.cross(w.b));
+  const std::complex<double> tangents = std::complex(r, -w.k_a_mm) * std::complex(r, -w.k_b_mm);
   w.sense = sine >= 0 ? 1 : -1;
-  w.arc_rad = angle_rad - std::atan2(w.k_a_mm, r) - std::atan2(w.k_b_mm, r);
+  w.arc_rad = std::arg(std::complex(cosine, std::abs(sine)) * tangents);
   w.exists = w.arc_rad > 0;
   if (side && !passesWithSegment(w, *side)) {
     w.exists = true;
     w.sense = -w.sense;
-    w.arc_rad += 2 * (std::numbers::pi - angle_rad);
+    w.arc_rad = std::arg(std::complex(cosine, -std::abs(sine)) * tangents);
+    if (w.arc_rad <= 0) w.arc_rad += 2 * std::numbers::pi;
   }
   return w;
 }
@@ -105,7 +109,6 @@ Way wayPast(const Pulley& pulley, const Vector& from_mm, const Vector& to_mm) {
   const Winding w = windingOf(pulley, from_mm, to_mm);
   if (!w.exists) return straightWay(from_mm, to_mm);
   const double across_mm = w.acrossMm(), length_mm = std::hypot(across_mm, w.height_mm);
-  if (length_mm == 0) return straightWay(from_mm, to_mm);
   const double share = across_mm / length_mm;
   const Vector climb = w.height_mm / length_mm * w.n;
   return {length_mm, share * w.startAcross() + climb, share * w.endAcross() + climb, true};

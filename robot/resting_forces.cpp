@@ -15,7 +15,7 @@ namespace musclesim {
 namespace {
 
 constexpr double first_stop_N_per_mm = 1000;  ///< much stiffer than a muscle (some N/mm), so that a few corrections suffice
-constexpr double squeeze_ratio = 1e-6;        ///< of the typical force: what a chain may push, because solutions are not exact
+constexpr double rounding_mm = 1e-6;          ///< of the length of a straight chain
 constexpr double torque_lever_mm = 100;       ///< makes an amount of force of a torque
 
 }  // namespace
@@ -102,30 +102,29 @@ double RestingForces::typicalForceN() const {
   return sum_N;
 }
 
-double RestingForces::correctStops() {
-  double largest_N = 0;
-  const auto correct = [&](double& stop_N, double beyond_mm) {
+RestingForces::Beyond RestingForces::correctStops() {
+  Beyond farthest;
+  const auto correct = [&](const Actuator& muscle, double& stop_N, double beyond_mm) {
     const double corrected_N = std::max(0.0, stop_N + stop_N_per_mm_ * beyond_mm);
-    largest_N = std::max(largest_N, std::abs(corrected_N - stop_N));
+    const double change_mm = std::abs(corrected_N - stop_N) / stop_N_per_mm_;
+    if (change_mm > farthest.by_mm) farthest = {&muscle, change_mm};
     stop_N = corrected_N;
   };
   for (Pull& pull : pulls_) {
     if (pull.actuator->line()) continue;
-    correct(pull.longest_stop_N, pull.length_mm - pull.longest_mm);
-    correct(pull.shortest_stop_N, pull.shortest_mm - pull.length_mm);
+    correct(*pull.actuator, pull.longest_stop_N, pull.length_mm - pull.longest_mm);
+    correct(*pull.actuator, pull.shortest_stop_N, pull.shortest_mm - pull.length_mm);
   }
-  return largest_N / stop_N_per_mm_;
+  return farthest;
 }
 
-void RestingForces::requireNoChainSqueezed() const {
-  for (const Pull& pull : pulls_) {
-    const double push_N = -(pull.tension_N + pull.stop_N);
-    if (pull.shortest_stop_N > 0 && push_N > squeeze_ratio * typicalForceN())
+void RestingForces::requireChainsFit() const {
+  for (const Pull& pull : pulls_)
+    if (!pull.actuator->line() && pull.length_mm < pull.shortest_mm - rounding_mm)
       throw BadParameter(
-          fmt::format("{} is squeezed: its ends come as near to each other as its links allow when straight, {:.4g} mm, and "
-                      "it would have to push them apart with {:.3g} N, where a chain gives way to the side",
-                      pull.actuator->name(), pull.shortest_mm, push_N));
-  }
+          fmt::format("{} is a chain that runs in a curve and cannot be laid straight: in the pose as built its ends are "
+                      "{:.4g} mm apart, and its links need {:.4g} mm",
+                      pull.actuator->name(), pull.length_mm, pull.shortest_mm));
 }
 
 void RestingForces::layMuscles() const {

@@ -30,12 +30,16 @@ class RestingForces {
   /// Sum of the amounts of all forces of the last at(), N: a scale for what is small.
   double typicalForceN() const;
 
-  /// Corrects the forces of the chains' stops by what the last at() found. Returns the largest change over the stiffness: how far a length
-  /// is beyond its stop, mm.
-  double correctStops();
+  struct Beyond {
+    const Actuator* muscle = nullptr;
+    double by_mm = 0;
+  };
+  /// Corrects the forces of the chains' stops by what the last at() found. Returns the largest change over the stiffness: the chain that is
+  /// farthest beyond a stop, and how far.
+  Beyond correctStops();
   void stiffenStops(double factor) { stop_N_per_mm_ *= factor; }
-  /// Throws BadParameter if a chain would have to push its ends apart with the stops of its links: it would give way to the side.
-  void requireNoChainSqueezed() const;
+  /// Throws BadParameter if the ends of a chain were nearer to each other in the last at() than its links allow when straight.
+  void requireChainsFit() const;
   /// Lays all chains along their straight lines in the pose of the last at().
   void layMuscles() const;
 

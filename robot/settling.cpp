@@ -11,6 +11,7 @@
 #include "equilibrium.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/units.h"
+#include "musclesim/robot/actuator.h"
 #include "ode_vector.h"
 #include "resting_forces.h"
 #include "skeleton.h"
@@ -53,19 +54,18 @@ class Settling {
 
   void place() {
     VectorXd q = built_;
-    double before_mm = dInfinity;
+    forces_.at(q, force_);
+    forces_.requireChainsFit();
+    RestingForces::Beyond before = {nullptr, dInfinity};
     for (int i = 0; i < correction_limit; ++i) {
       q = movable_.size() == 1 ? restOfOne() : restOfSeveral(q);
       forces_.at(q, force_);
-      const double beyond_mm = forces_.correctStops();
-      if (beyond_mm <= stop_accuracy_mm) {
-        forces_.requireNoChainSqueezed();
-        return forces_.layMuscles();
-      }
-      if (beyond_mm > before_mm / 4) forces_.stiffenStops(10);  // the rest of the robot is as stiff as the stops
-      before_mm = beyond_mm;
+      const RestingForces::Beyond beyond = forces_.correctStops();
+      if (beyond.by_mm <= stop_accuracy_mm) return forces_.layMuscles();
+      if (beyond.by_mm > before.by_mm / 4) forces_.stiffenStops(10);  // the rest of the robot is as stiff as the stops
+      before = beyond;
     }
-    throw BadParameter(fmt::format("a muscle stays {:.3g} mm beyond the range of its links", before_mm));
+    throw BadParameter(fmt::format("{} stays {:.3g} mm beyond the range of its links", before.muscle->name(), before.by_mm));
   }
 
  private:

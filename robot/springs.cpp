@@ -43,6 +43,10 @@ Attachment inBody(const Attachment& point) {
   return {point.primitive, rotationOf(body).transpose() * (point.point_mm - positionOf(body))};
 }
 
+void shift(Attachment& point, dBodyID body, const Vector& shift_mm) {
+  if (point.primitive && point.primitive->body().id == body) point.point_mm -= shift_mm;
+}
+
 void push(const Attachment& point, const Motion& motion, const Vector& force_N, const ForceElement::AddLoad& add) {
   if (point.primitive) add(point.primitive->body().id, {force_N, motion.arm.cross(force_N)});
 }
@@ -145,12 +149,20 @@ void PointSpring::load(bool at_rest, const AddLoad& add) const {
   push(ends_[1], to, -force_N * direction, add);
 }
 
+void PointSpring::moveCenter(dBodyID body, const Vector& shift_mm) {
+  for (Attachment& end : ends_) shift(end, body, shift_mm);
+}
+
 Wall::Wall(World&, const Attachment& point, const Vector& at_mm, const Vector& normal, double stiffness_N_per_mm)
     : point_(inBody(point)), at_mm_(at_mm), normal_(normal.normalized()), stiffness_N_per_mm_(stiffness_N_per_mm) {
   requireFinite("a point of a wall", at_mm);
   requireDirection("normal of a wall", normal);
   if (!(stiffness_N_per_mm > 0) || !std::isfinite(stiffness_N_per_mm))
     throw BadParameter("stiffness of a wall", fmt::format("{}", stiffness_N_per_mm), "be positive and finite");
+}
+
+void Wall::moveCenter(dBodyID body, const Vector& shift_mm) {
+  shift(point_, body, shift_mm);
 }
 
 void Wall::load(bool, const AddLoad& add) const {

@@ -31,6 +31,7 @@ class PointSpring final : public ForceElement {
   /// Points of the world in the pose as built. Throws BadParameter for values that are negative or not finite.
   PointSpring(World& world, const Attachment& from, const Attachment& to, const PointSpringSettings& settings);
   void load(bool at_rest, const AddLoad& add) const override;
+  void moveCenter(dBodyID body, const Vector& shift_mm) override;
 
  private:
   double speed_ratio_;  ///< true speed over speed in world units
@@ -45,6 +46,7 @@ class Wall final : public ForceElement {
   /// that is not positive.
   Wall(World& world, const Attachment& point, const Vector& at_mm, const Vector& normal, double stiffness_N_per_mm);
   void load(bool at_rest, const AddLoad& add) const override;
+  void moveCenter(dBodyID body, const Vector& shift_mm) override;
 
  private:
   Attachment point_;  ///< in the body's frame

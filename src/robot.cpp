@@ -10,6 +10,7 @@
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
 #include "musclesim/robot/robot_file.h"
+#include "musclesim/simulation/replay.h"
 #include "pictures.h"
 #include "robot_template.h"
 
@@ -21,7 +22,10 @@ namespace fs = std::filesystem;
 
 /// A simulation with the robot as built, to look at.
 std::unique_ptr<Simulation> built(const ModelOptions& model, const std::string& robot) {
-  auto simulation = std::make_unique<Simulation>(simulationOptions(model));
+  const ReplayOptions options = replayOptionsFrom(model);
+  RecordingInfo plant;
+  plant.robot = robot;
+  auto simulation = std::make_unique<Simulation>(simulationOptionsFor(plant, robot, options));
   simulation->build(robot);
   simulation->parameters().requireAllKnown();
   return simulation;
@@ -36,8 +40,8 @@ int check(const ModelOptions& model, const std::string& robot) {
   const Robot& made = simulation->robot();
   fmt::print("{}: {} bodies, {} joints with a reported angle, {} muscles; starts {}\n", robot, simulation->world().bodies().size(),
              made.angles().size(), made.actuatorCount(), made.initialState());
-  if (made.initialState() == "settled") simulation->settle(Action(static_cast<std::size_t>(made.actuatorCount()), 0.0));
-  const auto found = oddities(simulation->world(), made);
+  if (made.initialState() == "settled") simulation->settle(musclesim::Action(static_cast<std::size_t>(made.actuatorCount()), 0.0));
+  const auto found = oddities(simulation->world(), made);  // moves the bodies: the last thing to do
   printOddities(found);
   if (found.empty()) fmt::print("nothing odd found\n");
   return done;
@@ -58,7 +62,12 @@ int show(const ModelOptions& model, const ShowArguments& arguments) {
   const auto painter = makePictures(pictures, *simulation);
   painter->see(simulation->robot().getState());
   painter->finish();
-  const auto arms = momentArms(simulation->world(), simulation->robot());
+  std::vector<MomentArms> arms;
+  try {
+    arms = momentArms(simulation->world(), simulation->robot());
+  } catch (const BadParameter& problem) {
+    fmt::print("no moment arms: {}\n", problem.what());
+  }
   if (arms.empty()) return done;
   const std::string figure = stem.string() + "-moment-arms.svg";
   replaceFile(figure, momentArmFigure(arms, simulation->robot()));

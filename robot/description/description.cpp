@@ -99,6 +99,7 @@ BodyEntry readBody(TableReader table) {
       added.place.refuse("inertia_g_mm2 of the body is that of the whole: its parts must have no mass_g and no density_g_per_mm3");
     if (added.type == "none") added.place.refuse("a part must have a shape");
   }
+  table.requireNoOthers();
   const auto hasName = [&](const Part& part) { return part.name == body.axes_of; };
   if (!body.axes_of.empty() && body.axes_of != body.name && std::ranges::none_of(body.parts, hasName))
     table.place("axes_of").refuse("\"" + body.axes_of + "\" must be the name of the body or of one of its parts");
@@ -107,7 +108,6 @@ BodyEntry readBody(TableReader table) {
       part.place.refuse("\"mass_g\" is missing: must be a mass in g, or density_g_per_mm3 a density");
   if (body.parts.front().type == "none" && body.inertia_g_mm2.empty())
     body.place.refuse("a body without a shape needs inertia_g_mm2, three moments of inertia");
-  table.requireNoOthers();
   return body;
 }
 

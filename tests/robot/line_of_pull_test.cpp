@@ -6,11 +6,15 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "../../robot/actuator_step.h"
 #include "../../robot/ode_vector.h"
+#include "../../simulation/snapshot.h"
 #include "musclesim/base/units.h"
 #include "musclesim/robot/linear_actuator.h"
 #include "musclesim/robot/muscle.h"
@@ -376,6 +380,14 @@ TEST(MuscleOverPulley, MovesAlikeUnderBothSteppers) {
   for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(angles[0][i], angles[1][i], 1e-4);
 }
 
+TEST(MuscleOverPulley, IsDrawnOnItsPulley) {
+  Simulation simulation(lineOptions());
+  Robot& robot = simulation.build<ArmWithPulleys>();
+  const Snapshot snapshot = SnapshotTaker(simulation).take(robot.getState());
+  ASSERT_EQ(snapshot.hoses.size(), 4u);
+  for (const DrawnHose& hose : snapshot.hoses) EXPECT_GT(hose.points_mm.size(), 3u) << "both ends and points on the pulley";
+}
+
 TEST(MuscleOverPulley, ChoosesAStepInWhichItsRobotIsStable) {
   SimulationOptions options = lineOptions();
   options.step_s = 0.05;
@@ -388,6 +400,15 @@ TEST(MuscleOverPulley, ChoosesAStepInWhichItsRobotIsStable) {
     if (i % 20 == 0) robot.step(i % 40 == 0 ? Action{0, 1, 1, 0} : Action{1, 1, 1, 1});
   }
   EXPECT_LT(simulation.worstGap().gap_mm, 1);
+}
+
+TEST(LineMuscle, KeepsItsPlacesOnABodyThatCarriesAPointMass) {
+  FreeBodies free({0.2, -0.1, 1}, Vector(0, -60, 0));
+  const std::vector<Vector> before = free.thread->line()->pointsMm();
+  for (Primitive* body : free.bodies) body->addPointMass(200, body->getPosition() + Vector(10, 20, -5));
+  const std::vector<Vector> after = free.thread->line()->pointsMm();
+  ASSERT_EQ(after.size(), before.size());
+  for (std::size_t i = 0; i < before.size(); ++i) EXPECT_LT((after[i] - before[i]).norm(), 1e-10) << i;
 }
 
 TEST(LineMuscle, IsShorterThanItsPathByItsTendon) {

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "musclesim/base/error.h"
+#include "musclesim/robot/line_of_pull.h"
 #include "musclesim/robot/robot_registry.h"
 #include "musclesim/simulation/simulation.h"
 #include "support/support.h"
@@ -166,7 +167,7 @@ const std::vector<Wrong>& wrongDescriptions() {
        "[[joint]]\nname = \"a\"\ntype = \"fixed\"\nbody = \"bar\"\n[[joint]]\nname = \"b\"\ntype = "
        "\"fixed\"\nbody = \"bar\"\n[[pulley]]",
        "cycle of fixed joints"},
-      {"hand on a body that is not there", "[hand]\nbody = \"bar\"", "[hand]\nbody = \"bra\"", "did you mean \"bar\""},
+      {"hand on a body that is not there", "[hand]\nbody = \"bar\"", "[hand]\nbody = \"bars\"", "did you mean \"bar\""},
       {"negative friction", "axis = \"z\"\nlimits", "axis = \"z\"\nfriction_Nm = -1\nlimits", "must not be negative", 21},
       {"friction of a slider on a hinge", "axis = \"z\"\nlimits", "axis = \"z\"\nfriction_N = 1\nlimits", "did you mean \"friction_Nm\"",
        21},

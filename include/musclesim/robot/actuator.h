@@ -76,6 +76,9 @@ class Actuator : public WorldPart {
   void setColor(double red, double green, double blue, const std::string& name = "");
   void setName(const std::string& name);
 
+  /// For Primitive::addPointMass: LineOfPull::moveCenter of a line muscle.
+  void moveCenter(dBodyID body, const Vector& shift_mm);
+
   // The muscle's entry in World::values().
   double command() const { return world_.values().command_ratio[worldIndex()]; }
   double pressure() const { return world_.values().pressure_ratio[worldIndex()]; }
@@ -111,8 +114,6 @@ class Actuator : public WorldPart {
   /// Tension at the present length without effects, N: calculateForce, but a line muscle never pushes.
   double cleanTensionN(double pressure_ratio) const;
 
-  /// For Primitive::addPointMass, see LineOfPull::recentre. The joints of a chain are set up again like all others.
-  void recentre(dBodyID body, const Vector& by_mm);
 
  protected:
   /// `points` are the chain's link ends, link count + 1 of them. `given_minimum_length_mm` is what the user asked for.

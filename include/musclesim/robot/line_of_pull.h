@@ -41,10 +41,11 @@ class LineOfPull {
   double tendonMm() const { return tendon_mm_; }
   /// Throws BadParameter for a point inside of the pulley next to it.
   void requirePointsOutside(const std::string& muscle_name) const;
-  /// Keeps the points and pulleys on a body in place when its centre of mass has been moved by a vector in its frame, mm.
-  void recentre(dBodyID body, const Vector& by_mm);
   /// Whether both ends are connected; if not, the thread carries no force.
   bool isConnected() const { return points_.front().connected && points_.back().connected; }
+
+  /// Says that a body's centre of mass has moved to another point of the body, given from the old one in the body's frame.
+  void moveCenter(dBodyID body, const Vector& shift_mm);
 
   /// Length of the muscle: that of the path without the tendon.
   double lengthMm() const;
@@ -63,7 +64,7 @@ class LineOfPull {
     dBodyID body;
     Vector force, torque;
   };
-  /// One entry per point that is fixed to a body, and two per pulley that is fixed to a body and carries the thread.
+  /// One entry per point that is fixed to a body, and one per pulley that is fixed to a body and carries the thread.
   std::vector<Push> pushes() const;
   /// k max(0, l - l_max), the force of the stop in N.
   static double stopN(double length_mm, double maximum_length_mm);

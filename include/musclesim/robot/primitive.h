@@ -59,8 +59,9 @@ class Primitive : public WorldPart {
   void fix();
   /// Replaces the moments of inertia about the body's own axes, g mm^2. Throws BadParameter unless all are positive.
   void setInertia(const Vector& moments_g_mm2);
-  /// Adds a point mass to the body at a point of the world; negative: takes one away. Mass, centre of mass and inertia follow, joints and
-  /// drawing stay. Only while the robot stands as built. Throws BadParameter unless mass and moments of inertia stay positive.
+  /// Adds a point mass to the body at a point of the world; negative: takes one away. Mass, centre of mass and inertia follow; joints,
+  /// line muscles and drawing stay. Only while the robot stands as built. Throws BadParameter unless mass and moments of inertia stay
+  /// positive.
   void addPointMass(double mass_g, const Vector& point_mm);
   /// Replaces mass, centre of mass and inertia of the whole body. `center_mm`: a point of the world in the present pose; `inertia`: about
   /// that point, in the body's own axes, g mm^2. Joints and drawing stay. Only while the robot stands as built. Throws BadParameter unless

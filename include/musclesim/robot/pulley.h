@@ -48,7 +48,9 @@ Way straightWay(const Vector& from_mm, const Vector& to_mm);
 /// it does not touch and y . m < 0, the thread passes on the other side; if it touches, the thread takes the arc whose middle is nearer to
 /// y, s = sign of y . (n x (a/|a| - b/|b|)). The way is also straight if a point lies inside the pulley.
 /// The choice depends on the pose only. So the length jumps where the side changes; a side point on the side where the thread always
-/// passes avoids this. Source of the side point: the "side sites" of the simulator MuJoCo, XML reference, spatial tendons.
+/// passes avoids this. Source of the side point: the "side sites" of the simulator MuJoCo, XML reference, spatial tendons. MuJoCo 2.2.2
+/// gives the same lengths but in two cases: where one of the two arcs is longer than 180 degrees it may choose the other one, and where the
+/// side point of a sphere is nearer to the centre than r across the normal it leads the thread through the inside.
 Way wayPast(const Pulley& pulley, const Vector& from_mm, const Vector& to_mm);
 
 /// Points of that way on the pulley, for drawing: both tangent points and at least one every 15 degrees between them; none if it is
