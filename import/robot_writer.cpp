@@ -232,7 +232,7 @@ class TomlWriter {
     lineUnlessZero(slides ? "damping_Ns_per_m" : "damping_Nms_per_rad", joint.damping);
     lineUnlessZero(slides ? "stiffness_N_per_mm" : "stiffness_Nm_per_rad", slides ? joint.stiffness / mm_per_m : joint.stiffness);
     if (joint.stiffness != 0) lineUnlessZero(slides ? "rest_mm" : "rest_deg", joint.rest * (slides ? mm_per_m : deg_per_rad));
-    if (joint.kind == SourceJoint::Kind::hinge) line("report", "true");
+    if (joint.kind == SourceJoint::Kind::hinge || joint.kind == SourceJoint::Kind::universal) line("report", "true");
   }
 
   void writePulley(const SourcePulley& pulley) {

@@ -53,7 +53,7 @@ std::optional<SourceJoint> universalOf(const std::vector<SourceJoint>& series) {
   if (!anchor || !areSquare(series[0], series[1])) return {};
   SourceJoint joint = series[1];
   joint.kind = Kind::universal;
-  joint.name = series[0].name + "_" + series[1].name;
+  joint.name = series[1].name + "_" + series[0].name;
   joint.anchor_m = *anchor;
   joint.axis2 = series[0].axis;  // still in the child's frame
   joint.limits2 = series[0].limits;

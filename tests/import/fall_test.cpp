@@ -82,5 +82,22 @@ TEST_F(FallTest, AnArmFromUrdfFollowsItsEquationsOfMotion) {
   EXPECT_GT(widest_deg, 60);  // it did fall
 }
 
+TEST_F(FallTest, ImportedRobotsRunWithTheUsualSettings) {
+  for (const char* name : {"planar_arm.urdf", "arm26.xml", "pamy.xml"}) {
+    const auto file = sharedFolder() / "data" / "robots" / name;
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
+    importFile(file.string());
+    Simulation simulation;
+    Robot& robot = simulation.build([&](World& world) { return makeRobotFromText(robot_.toml, "imported.toml", world); });
+    Action pressures(static_cast<std::size_t>(robot.actuatorCount()), 0.1);
+    simulation.start("built", pressures);
+    for (int step = 0; step < 50; ++step) {
+      robot.step(pressures);
+      simulation.step();
+    }
+    EXPECT_LT(simulation.worstGap().gap_mm, 1) << name << ": " << simulation.worstGap().joint;
+  }
+}
+
 }  // namespace
 }  // namespace musclesim

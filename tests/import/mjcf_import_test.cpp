@@ -5,6 +5,10 @@ namespace {
 
 using MjcfImport = ImportedRobotTest;
 
+std::string replacedOnce(std::string text, const std::string& what, const std::string& by) {
+  return text.replace(text.find(what), what.size(), by);
+}
+
 std::string world(const std::string& bodies, const std::string& before = "", const std::string& after = "") {
   return "<mujoco model=\"m\">" + before + "<worldbody>" + bodies + "</worldbody>" + after + "</mujoco>";
 }
@@ -107,7 +111,7 @@ TEST_F(MjcfImport, LimitsCountFromTheReferencePosition) {
 
 TEST_F(MjcfImport, SeveralJointsOfABody) {
   import(world(box("<joint name=\"x\" axis=\"1 0 0\" range=\"-30 40\" limited=\"true\"/><joint name=\"y\" axis=\"0 1 0\"/>")));
-  const auto universal = find("joint", "x_y");
+  const auto universal = find("joint", "y_x");
   EXPECT_EQ(text(universal, "type"), "universal");
   expectNear(universal, "axis", {0, 0, -1});  // y, fixed to the body
   expectNear(universal, "axis2", {1, 0, 0});  // x, fixed to the world
@@ -250,6 +254,41 @@ TEST_F(MjcfImport, RefusesWhatItCannotRead) {
   EXPECT_TRUE(hasNote("tendon t: it branches"));
 }
 
+/// A bead on a slider that an actuator drives, a cable from it over a drum to an arm, and a line that shows where the muscle is.
+TEST_F(MjcfImport, DrivenSlidersWithCablesBecomeMuscles) {
+  const std::string bodies =
+      "<site name=\"post\" pos=\"-0.8 0 0.05\"/><body name=\"bead\" pos=\"-0.3 0 0.05\"><joint name=\"stroke\" type=\"slide\" axis=\"1 0 "
+      "0\"/>"
+      "<geom size=\"0.01\"/><site name=\"bead\"/></body>"
+      "<body name=\"arm\"><joint name=\"j\" axis=\"0 1 0\" limited=\"true\" range=\"-60 60\"/>"
+      "<geom type=\"capsule\" size=\"0.02\" fromto=\"0 0 0 0.4 0 0\"/><geom name=\"drum\" type=\"cylinder\" size=\"0.05 0.02\" zaxis=\"0 1 "
+      "0\"/>"
+      "<site name=\"end\" pos=\"0.1 0 0.03\"/></body>";
+  const std::string tendons =
+      "<tendon><spatial name=\"cable\" stiffness=\"1e5\"><site site=\"bead\"/><geom geom=\"drum\"/><site site=\"end\"/></spatial>"
+      "<spatial name=\"line\"><site site=\"bead\"/><site site=\"post\"/></spatial></tendon>"
+      "<actuator><general name=\"pam\" joint=\"stroke\"/></actuator>";
+  import(world(bodies, "", tendons));
+  EXPECT_EQ(count("body"), 1U);
+  EXPECT_EQ(count("joint"), 1U);
+  EXPECT_EQ(count("spring"), 0U);
+  const auto muscle = find("muscle", "pam");
+  expectNear(*muscle["from"].as_table(), "at_mm", {-800, 50, 0});
+  expectNear(*muscle["path"][0].as_table(), "at_mm", {-300, 50, 0});
+  EXPECT_EQ(text(*muscle["path"][1].as_table(), "pulley"), "drum");
+  // The muscle has the length of its own line as built; the cable has the rest.
+  const double path_mm = 500 + std::hypot(300, 50) + std::hypot(100, 30);
+  EXPECT_NEAR(number(muscle, "tendon_mm"), path_mm - 500, 30);
+  const auto range = numbers(muscle, "length_mm");
+  EXPECT_LT(range[0], 500 * 0.98 - 20);
+  EXPECT_GT(range[1], 500 * 1.02 + 20);
+  EXPECT_TRUE(hasNote("muscle pam: stands for body bead on its slider stroke"));
+  // Without the line the muscle begins at the bead and has no cable.
+  import(world(bodies, "", replacedOnce(tendons, "<spatial name=\"line\"><site site=\"bead\"/><site site=\"post\"/></spatial>", "")));
+  EXPECT_FALSE(find("muscle", "pam").contains("tendon_mm"));
+  expectNear(*find("muscle", "pam")["from"].as_table(), "at_mm", {-300, 50, 0});
+}
+
 TEST_F(MjcfImport, ReadsTheArmsOfAnotherProgram) {
   const auto folder = sharedFolder() / "data" / "robots";
   if (!std::filesystem::exists(folder / "arm26.xml")) GTEST_SKIP() << folder << " is not there";
@@ -259,6 +298,7 @@ TEST_F(MjcfImport, ReadsTheArmsOfAnotherProgram) {
   EXPECT_EQ(count("joint"), 2U);
   importFile((folder / "pamy.xml").string());
   find("joint", "dof4");
+  EXPECT_EQ(count("muscle"), 8U);
 }
 
 }  // namespace
