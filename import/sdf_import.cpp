@@ -1,6 +1,8 @@
 /// SDF, read by libsdformat.
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -30,6 +32,25 @@ Pose toEigen(const ignition::math::Pose3d& pose) {
   return result;
 }
 
+/// Sends what is written to standard error nowhere as long as it lives: libsdformat tries a file that is no valid SDF as URDF, and the
+/// library that reads URDF writes its complaints there.
+class QuietStandardError {
+ public:
+  QuietStandardError() : kept_(dup(STDERR_FILENO)), nowhere_(open("/dev/null", O_WRONLY | O_CLOEXEC)) {
+    if (kept_ >= 0 && nowhere_ >= 0) dup2(nowhere_, STDERR_FILENO);
+  }
+  ~QuietStandardError() {
+    if (kept_ >= 0) dup2(kept_, STDERR_FILENO);
+    for (const int descriptor : {kept_, nowhere_})
+      if (descriptor >= 0) close(descriptor);
+  }
+  QuietStandardError(const QuietStandardError&) = delete;
+  QuietStandardError& operator=(const QuietStandardError&) = delete;
+
+ private:
+  int kept_, nowhere_;
+};
+
 class SdfReader {
  public:
   explicit SdfReader(const std::string& file) {
@@ -38,6 +59,7 @@ class SdfReader {
   }
 
   SourceRobot read() {
+    const QuietStandardError quiet;
     sdf::Console::Instance()->SetQuiet(true);
     sdf::ParserConfig config;
     config.SetWarningsPolicy(sdf::EnforcementPolicy::LOG);
@@ -64,6 +86,7 @@ class SdfReader {
   void check(const sdf::Errors& errors) const {
     if (errors.empty()) return;
     const auto& first = errors.front();
+    if (first.Code() == sdf::ErrorCode::FILE_READ) throw BadFile(robot_.file, "is not valid SDF; ~/.sdformat/sdformat.log says why");
     throw BadFile(robot_.file, first.LineNumber().value_or(0), 0, first.Message());
   }
 
@@ -172,7 +195,15 @@ class SdfReader {
         note(fmt::format("body {}: the shape of {} is not taken over", body, element.Name()));
         return;
     }
+    requirePositive(shape, body, element.Name());
     solids.push_back(shape);
+  }
+
+  void requirePositive(const SourceShape& shape, const std::string& body, const std::string& name) const {
+    const bool round = shape.kind == SourceShape::Kind::capsule || shape.kind == SourceShape::Kind::cylinder;
+    const int count = shape.kind == SourceShape::Kind::sphere ? 1 : round ? 2 : 3;
+    if (!(shape.size_m.head(count).minCoeff() > 0))
+      throw BadFile(robot_.file, fmt::format("body {}: the sizes of {} must be positive", body, name));
   }
 
   std::size_t bodyOf(const std::string& name, const std::string& scope, const std::string& joint) const {
@@ -271,7 +302,13 @@ class SdfReader {
 }  // namespace
 
 SourceRobot readSdf(const std::string& file) {
-  return SdfReader(file).read();
+  try {
+    return SdfReader(file).read();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& problem) {  // of libsdformat
+    throw BadFile(file, fmt::format("is not valid SDF ({})", problem.what()));
+  }
 }
 
 }  // namespace musclesim

@@ -217,6 +217,11 @@ void mergeFixedBodies(SourceRobot& robot) {
   }
 }
 
+void requireMechanics(const SourceRobot& robot, const SourceJoint& joint) {
+  for (const auto& [name, value] : {std::pair("friction", joint.friction), {"damping", joint.damping}, {"stiffness", joint.stiffness}})
+    if (!(value >= 0)) throw BadFile(robot.file, fmt::format("joint {}: its {} {:g} must not be negative", joint.name, name, value));
+}
+
 void requireMass(const SourceRobot& robot, const SourceBody& body) {
   if (!(body.mass.mass_kg > 0))
     throw BadFile(robot.file, fmt::format("body {}: it can move and has no mass; give it a mass and an inertia", body.name));
@@ -358,7 +363,7 @@ void prepare(SourceRobot& robot) {
   nameAll(robot, robot.springs, "spring", {});
   mergeFixedBodies(robot);
   giveCarriersMass(robot);
-  for (SourceJoint& joint : robot.joints) fitLimits(robot, joint);
+  for (SourceJoint& joint : robot.joints) requireMechanics(robot, joint), fitLimits(robot, joint);
   for (std::size_t body = 1; body < robot.bodies.size(); ++body)
     if (!robot.bodies[body].gone && !robot.bodies[body].fixed) makePossible(robot, robot.bodies[body]);
 }

@@ -97,8 +97,9 @@ class UrdfReader {
     if (properties.mass_kg < 0) refuse(*mass, robot_.file, fmt::format("value = {}: must not be negative", properties.mass_kg));
     if (inertia) {
       const auto moment = [&](const char* name) { return numberOf(*inertia, name, 0, robot_.file); };
+      const double xx = moment("ixx"), yy = moment("iyy"), zz = moment("izz");
       const double xy = moment("ixy"), xz = moment("ixz"), yz = moment("iyz");
-      properties.inertia_kg_m2 << moment("ixx"), xy, xz, xy, moment("iyy"), yz, xz, yz, moment("izz");
+      properties.inertia_kg_m2 << xx, xy, xz, xy, yy, yz, xz, yz, zz;
     }
     return properties.seenFrom(originOf(inertial));
   }

@@ -89,11 +89,19 @@ TEST_F(SdfImport, RefusesWhatItCannotRead) {
   EXPECT_TRUE(contains(refusal(model(link("a", "") + joint("s", "revolute", "world", "b", about_y))), "b"));
 }
 
+TEST_F(SdfImport, RefusesShapesWithoutSize) {
+  const std::string visual = "<visual name=\"v\"><geometry><sphere><radius>-1</radius></sphere></geometry></visual>";
+  EXPECT_TRUE(contains(refusal(model(link("a", "", visual))), "body a: the sizes of v must be positive"));
+}
+
 TEST_F(SdfImport, PrintsNothing) {
   testing::internal::CaptureStderr();
   testing::internal::CaptureStdout();
   refusal(model(link("a", "") + joint("s", "revolute", "world", "b", about_y)));
   import(model(link("a", "", "<unheard_of>1</unheard_of>")));
+  EXPECT_TRUE(hasNote("<unheard_of>"));
+  for (const char* text : {"<sdf version=\"1.9\"><model name=\"m\"></sdf>", "<sdf version=\"none\"/>", "<sdf/>"})
+    EXPECT_TRUE(contains(refusal(text), "not valid SDF")) << text;
   EXPECT_EQ(testing::internal::GetCapturedStderr() + testing::internal::GetCapturedStdout(), "");
 }
 

@@ -150,6 +150,7 @@ TEST_F(UrdfImport, RefusesWhatItCannotRead) {
   EXPECT_TRUE(contains(refusal(twoLinks("type=\"revolute\">")), "must have a <limit>"));
   EXPECT_TRUE(contains(refusal(twoLinks("type=\"continuous\"><axis xyz=\"0 1\"/>")), "xyz = \"0 1\": must be 3 numbers"));
   EXPECT_TRUE(contains(refusal(twoLinks("type=\"continuous\"><axis xyz=\"0 1 nan\"/>")), "must be finite numbers"));
+  EXPECT_TRUE(contains(refusal(twoLinks("type=\"continuous\"><axis xyz=\"0 1 0\"/><dynamics friction=\"-1\"/>")), "must not be negative"));
   const std::string from_lower = R"(<joint name="back" type="fixed"><parent link="lower"/><child link=")";
   EXPECT_TRUE(contains(refusal(twoLinks(hinge, from_lower + "upper\"/></joint>")), "\"upper\" is the child of two joints"));
   EXPECT_TRUE(contains(refusal(twoLinks(hinge, from_lower + "base\"/></joint>")), "is its own ancestor"));
