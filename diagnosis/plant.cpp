@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <map>
 
 #include "../effect/components.h"
 #include "data_checks.h"
@@ -22,15 +23,40 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* hinge_friction = "muscle.hinge_friction_Nm";
 constexpr const char* nominal_names[] = {"muscle.slider_friction_N", hinge_friction, "force_law.b"};
 
+/// Whether an entry of "varies" means this member of robot_parameters: the robot's name before it is optional.
+bool means(const std::string& listed, const std::string& parameter) {
+  return listed == parameter || listed.ends_with("." + parameter) || parameter.ends_with("." + listed);
+}
+
+/// The parameters that all recordings of one plant must share.
+std::map<std::string, Parameter::Value> sharedParameters(const RecordingInfo& info, const std::vector<std::string>& varies) {
+  auto shared = info.robot_parameters;
+  std::erase_if(shared, [&](const auto& entry) {
+    return std::ranges::any_of(varies, [&](const std::string& listed) { return means(listed, entry.first); });
+  });
+  return shared;
+}
+
+std::vector<std::string> allThatVaries(const std::vector<Recording>& recordings) {
+  std::vector<std::string> all;
+  for (const Recording& recording : recordings) all.insert(all.end(), recording.info.varies.begin(), recording.info.varies.end());
+  return all;
+}
+
 void requireDiagnosable(const std::vector<Recording>& recordings) {
   if (recordings.empty()) throw BadParameter("diagnosis: there is no recording");
   const Recording& first = recordings.front();
+  const std::vector<std::string> varies = allThatVaries(recordings);
   for (const Recording& recording : recordings) {
     if (recording.info.robot != first.info.robot)
       throw BadFile(recording.file,
                     fmt::format("its robot is {}, but that of {} is {}", recording.info.robot, first.file, first.info.robot));
-    if (recording.info.robot_parameters != first.info.robot_parameters)
-      throw BadFile(recording.file, fmt::format("its robot_parameters are not those of {}: one plant is diagnosed at a time", first.file));
+    if (sharedParameters(recording.info, varies) != sharedParameters(first.info, varies))
+      throw BadFile(
+          recording.file,
+          fmt::format("its robot_parameters are not those of {}: one plant is diagnosed at a time. Write \"varies\": [\"NAME\"] into "
+                      "its sidecar for a number that was measured anew for each recording, for example a load",
+                      first.file));
     if (recording.muscleCount() == 0)
       throw BadFile(recording.file, "it has no columns command_0, command_1, ...: without them nothing can be simulated");
   }
@@ -97,7 +123,11 @@ Plant::Plant(std::vector<Recording> recordings, const DiagnosisOptions& options)
   reference_->build(info.robot);
   reference_->parameters().requireAllKnown();
   if (std::string note = otherDescriptionNote(info, reference_->robot()); !note.empty()) notes_.push_back(std::move(note));
-  for (const std::string& name : options.tune) tuned_.push_back(numberNamed(name));
+  for (const std::string& name : options.tune) {
+    for (const std::string& listed : allThatVaries(recordings_))
+      if (means(listed, name)) throw BadParameter("--tune", name, "not name a parameter that varies between the recordings");
+    tuned_.push_back(numberNamed(name));
+  }
   const bool has_hinges =
       std::ranges::any_of(reference_->world().actuators(), [](const auto& actuator) { return !actuator->hinges().empty(); });
   for (const Parameter& parameter : reference_->parameters().declared())

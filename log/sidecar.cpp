@@ -32,6 +32,7 @@ const std::vector<std::string>& knownMembers() {
                                                  "command_full_scale_V",
                                                  "noise_std",
                                                  "active_effects",
+                                                 "varies",
                                                  "repeat_of",
                                                  "seed",
                                                  "step_s",
@@ -70,6 +71,7 @@ class SidecarReader {
   }
   void requireFormat() const;
   std::string text(const std::string& member, bool required = false) const;
+  std::vector<std::string> texts(const std::string& member) const;
   std::optional<std::string> choice(const std::string& member, const std::vector<std::string>& allowed) const;
   std::optional<double> positive(const std::string& member, const std::string& unit) const;
   std::optional<std::uint64_t> seed() const;
@@ -93,6 +95,7 @@ RecordingInfo SidecarReader::read(std::vector<std::string>& notes) {
   info.physics = choice("physics", {"si", "original", "scaled"});
   info.initial_state = choice("initial_state", {"settled", "built"});
   if (const json* values = document_.find("robot_parameters")) readRobotParameters(*values, "", info.robot_parameters);
+  info.varies = texts("varies");
   info.description = text("description");
   info.trial = text("trial");
   info.repeat_of = text("repeat_of");
@@ -125,6 +128,14 @@ std::string SidecarReader::text(const std::string& member, bool required) const 
   auto word = value->get<std::string>();
   if (required && word.empty()) refuse(member, member, *value, "not be empty");
   return word;
+}
+
+std::vector<std::string> SidecarReader::texts(const std::string& member) const {
+  const json* value = document_.find(member);
+  if (!value) return {};
+  const bool fine = value->is_array() && std::ranges::all_of(*value, [](const json& entry) { return entry.is_string(); });
+  if (!fine) refuse(member, member, *value, "be a list of names");
+  return value->get<std::vector<std::string>>();
 }
 
 std::optional<std::string> SidecarReader::choice(const std::string& member, const std::vector<std::string>& allowed) const {

@@ -42,6 +42,7 @@ OrderedJson sidecarJson(const RecordingInfo& info) {
   addText(object, "initial_state", info.initial_state.value_or(""));
   for (const auto& [name, value] : info.robot_parameters)
     object["robot_parameters"][name] = parameterJson("robot_parameters." + name, value);
+  if (!info.varies.empty()) object["varies"] = info.varies;
   addText(object, "description", info.description);
   addText(object, "trial", info.trial);
   addText(object, "repeat_of", info.repeat_of);

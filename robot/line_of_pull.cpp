@@ -107,6 +107,13 @@ Pulley LineOfPull::inWorld(const MountedPulley& mounted) {
   return pulley;
 }
 
+std::vector<Pulley> LineOfPull::pulleys() const {
+  std::vector<Pulley> all;
+  for (const auto& mounted : pulleys_)
+    if (mounted) all.push_back(inWorld(*mounted));
+  return all;
+}
+
 void LineOfPull::requirePointsOutside(const std::string& muscle_name) const {
   for (std::size_t i = 0; i < pulleys_.size(); ++i) {
     if (!pulleys_[i]) continue;

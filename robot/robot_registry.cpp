@@ -6,12 +6,8 @@
 #include <mutex>
 
 #include "musclesim/base/error.h"
-#include "musclesim/robot/elbow.h"
-#include "musclesim/robot/rig.h"
 #include "musclesim/robot/robot_file.h"
 #include "musclesim/robot/robotic_arm.h"
-#include "musclesim/robot/spring_bench.h"
-#include "musclesim/robot/wrist.h"
 
 namespace musclesim {
 
@@ -22,19 +18,19 @@ struct RegisteredRobot {
   RobotFactory build;
 };
 
-template <class RobotType>
-RegisteredRobot builtIn(const std::string& description) {
-  return {description, [](World& world) { return std::make_unique<RobotType>(world); }};
+std::map<std::string, RegisteredRobot> builtIn() {
+  std::map<std::string, RegisteredRobot> robots = {
+      {"arm",
+       {"the paper's RoboticArm: shoulder, elbow, wrist and ten muscles (up to 30)",
+        [](World& world) { return std::make_unique<RoboticArm>(world); }}},
+  };
+  for (const ShippedRobot& shipped : shippedRobots())
+    robots[shipped.name] = {shipped.description, [name = shipped.name](World& world) { return makeShippedRobot(name, world); }};
+  return robots;
 }
 
 std::map<std::string, RegisteredRobot>& robotRegistry() {
-  static std::map<std::string, RegisteredRobot> robots = {
-      {"arm", builtIn<RoboticArm>("the paper's RoboticArm: shoulder, elbow, wrist and ten muscles (up to 30)")},
-      {"rig", builtIn<Rig>("the paper's load frame: one hanging muscle with a load")},
-      {"elbow", builtIn<Elbow>("an antagonistic pair of muscles on one hinge")},
-      {"wrist", builtIn<Wrist>("an antagonistic wrist between two stops")},
-      {"spring_bench", builtIn<SpringBench>("one muscle that pulls a carriage against a spring")},
-  };
+  static std::map<std::string, RegisteredRobot> robots = builtIn();
   return robots;
 }
 

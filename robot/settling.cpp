@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "equilibrium.h"
@@ -25,14 +26,15 @@ using Eigen::VectorXd;
 
 constexpr double lever_mm = 100;  ///< turns angles into millimetres: about the size of the robots here
 constexpr double full_turn_rad = 2 * std::numbers::pi;
-constexpr double difference_mm = 1e-4;       ///< of central differences: their errors of order 2 and those of rounding are about equal
+constexpr double difference_mm = 1e-6;       ///< of central differences: less than a chain yields in its stop; leaves K seven digits
 constexpr double rest_energy_ratio = 1e-22;  ///< of typical force times lever: (1e-11)^2, as the energy is quadratic about its minimum
 constexpr double longest_step_mm = 25;       ///< a quarter of the lever: less than the way over which muscles turn their lines around
 constexpr double push_back_ratio = 0.5;      ///< at 1 the energy along a step of constant stiffness would stay the same
+constexpr double still_pushing_ratio = 0.5;  ///< of the push along a step: Newton's step would leave none
 constexpr double soft_ratio = 1e-9;          ///< stiffness added where there is none, above the rounding of central differences
 constexpr double least_stiffness_N_per_mm = 1e-100;  ///< not 0 where nothing acts
-constexpr double first_levenberg_ratio = 1e-3;
-constexpr int step_limit = 500;  ///< some ten suffice; ways of metres take a hundred
+constexpr double first_levenberg_ratio = 1e-3;       ///< of the stiffness; then four times more until it suffices
+constexpr int step_limit = 500;                      ///< some ten suffice; ways of metres take a hundred
 constexpr int halving_limit = 40;
 constexpr double stop_accuracy_mm = 1e-9;  ///< of the length of a chain at its stop: its beads' positions have about that many digits
 constexpr int correction_limit = 40;       ///< some five suffice
@@ -72,14 +74,20 @@ class Settling {
   const std::vector<Coordinate>& coordinates() const { return skeleton_.coordinates(); }
   const Coordinate& at(Eigen::Index i) const { return coordinates()[static_cast<std::size_t>(i)]; }
 
-  /// Coordinates after a step; it is shortened where it would go beyond a stop.
-  VectorXd moved(const VectorXd& q, VectorXd& step) const {
-    VectorXd clipped = step;
-    for (Eigen::Index i = 0; i < q.size(); ++i) clipped[i] = std::clamp(step[i], at(i).low - q[i], at(i).high - q[i]);
-    VectorXd there = skeleton_.displaced(q, clipped);
-    for (Eigen::Index i = 0; i < q.size(); ++i)
-      if (clipped[i] != step[i]) there[i] = step[i] < 0 ? at(i).low : at(i).high;  // the last bit counts
-    step = clipped;
+  /// Shortens a step that would lead beyond a stop.
+  void endAtStops(const VectorXd& q, VectorXd& step) const {
+    double share = 1;
+    for (const Eigen::Index i : movable_) {
+      const double way = (step[i] < 0 ? at(i).low : at(i).high) - q[i];
+      if (std::abs(share * step[i]) > std::abs(way)) share = way / step[i];
+    }
+    step *= share;
+  }
+
+  /// Coordinates after a step that ends at stops; rounding does not lead beyond them.
+  VectorXd moved(const VectorXd& q, const VectorXd& step) const {
+    VectorXd there = skeleton_.displaced(q, step);
+    for (const Eigen::Index i : movable_) there[i] = std::clamp(there[i], at(i).low, at(i).high);
     return there;
   }
 
@@ -96,24 +104,30 @@ class Settling {
     const double way = coordinate.turns ? full_turn_rad : dInfinity;
     q[i] = restFrom(back, built_[i], std::max(coordinate.low, -way), std::min(coordinate.high, way));
     const bool at_stop = q[i] == coordinate.low || q[i] == coordinate.high;
-    if (!std::isfinite(q[i]) || (!at_stop && std::abs(q[i]) == way)) throwUnbalanced();
+    if (!std::isfinite(q[i]) || (!at_stop && std::abs(q[i]) == way)) throwUnbalanced(q);
     return q;
   }
 
   VectorXd restOfSeveral(VectorXd q) {
+    double stretch = 1;  // steps that added stiffness has made too short grow until they have an effect
     forces_.at(q, force_);
     for (int i = 0; i < step_limit; ++i) {
       VectorXd step = newtonStep(q);
       if (force_.dot(step) <= rest_energy_ratio * forces_.typicalForceN() * lever_mm) return moved(q, step);
+      step *= stretch;
       const double length_mm = step.cwiseQuotient(scale_).norm();
       if (length_mm > longest_step_mm) step *= longest_step_mm / length_mm;
-      if (!goDownhill(q, step)) break;
+      endAtStops(q, step);
+      const std::optional<double> left = goDownhill(q, step);
+      if (!left) break;
+      stretch = *left > still_pushing_ratio ? 2 * stretch : 1;
     }
-    throwUnbalanced();
+    throwUnbalanced(q);
   }
 
-  /// Goes the step, or a half, a quarter, ... of it. Returns false where the forces push back even after the shortest.
-  bool goDownhill(VectorXd& q, VectorXd step) {
+  /// Goes the step, or a half, a quarter, ... of it. Returns which share of the push along it is left at its end; nothing where the forces
+  /// push back even after the shortest.
+  std::optional<double> goDownhill(VectorXd& q, VectorXd step) {
     for (int i = 0; i < halving_limit; ++i, step /= 2) {
       const VectorXd there = moved(q, step);
       forces_.at(there, force_there_);
@@ -121,9 +135,9 @@ class Settling {
       if (!(push > 0 && push_there >= -push_back_ratio * push)) continue;
       q = there;
       force_ = force_there_;
-      return true;
+      return push_there / push;
     }
-    return false;
+    return std::nullopt;
   }
 
   bool pressesIntoStop(Eigen::Index i, double position, double push) const {
@@ -190,13 +204,13 @@ class Settling {
     }
   }
 
-  [[noreturn]] void throwUnbalanced() const {
-    Eigen::Index worst = movable_.front();
-    for (const Eigen::Index i : movable_)
-      if (std::abs(force_[i] * scale_[i]) > std::abs(force_[worst] * scale_[worst])) worst = i;
+  [[noreturn]] void throwUnbalanced(const VectorXd& q) const {
+    const auto size = [&](Eigen::Index i) { return pressesIntoStop(i, q[i], force_[i]) ? 0 : std::abs(force_[i] * scale_[i]); };
+    const Eigen::Index worst = *std::ranges::max_element(movable_, {}, size);
     const Coordinate& coordinate = at(worst);
     throw BadParameter(
-        fmt::format("no equilibrium is found on the way from the pose as built; the last pose is pushed out of balance by "
+        fmt::format("no equilibrium is found on the way from the pose as "
+                    "built; the last pose is pushed out of balance by "
                     "{:.3g} {} at {}",
                     coordinate.turns ? force_[worst] / mm_per_m : force_[worst], coordinate.turns ? "N m" : "N", coordinate.name()));
   }

@@ -1,5 +1,6 @@
 #include "snapshot.h"
 
+#include <Eigen/Geometry>
 #include <limits>
 
 #include "../robot/ode_vector.h"
@@ -26,6 +27,20 @@ DrawnPart partOf(const Primitive& primitive) {
   rotation << r[0], r[1], r[2], r[4], r[5], r[6], r[8], r[9], r[10];
   return {primitive.shape().kind, primitive.shape().size_mm.cast<float>(), poseFrom(fromOde(dGeomGetPosition(geom)), rotation),
           primitive.color()};
+}
+
+/// A drum as wide as the line that it carries needs; cylinders have no ends in the model.
+DrawnPart partOf(const Pulley& pulley) {
+  constexpr float drum_width_mm = 5 * line_radius_mm;
+  const Color color{0.45, 0.45, 0.5, ""};
+  const auto radius_mm = static_cast<float>(pulley.radius_mm);
+  if (pulley.axis.isZero(0))
+    return {Shape::Kind::sphere, {radius_mm, 0, 0}, poseFrom(pulley.center_mm, Eigen::Matrix3d::Identity()), color};
+  Eigen::Matrix3d turn;
+  turn.col(2) = pulley.axis.normalized();
+  turn.col(0) = turn.col(2).unitOrthogonal();
+  turn.col(1) = turn.col(2).cross(turn.col(0));
+  return {Shape::Kind::cylinder, {radius_mm, drum_width_mm, 0}, poseFrom(pulley.center_mm, turn), color};
 }
 
 /// The chain's ends lie one radius beyond the first and the last bead.
@@ -123,6 +138,9 @@ Snapshot SnapshotTaker::take(const State& state) {
   if (const Controller* controller = simulation_.controller()) snapshot.activity = controller->activity();
   for (const auto& primitive : simulation_.world().primitives())
     if (primitive->isVisible()) snapshot.parts.push_back(partOf(*primitive));
+  for (const auto& actuator : simulation_.world().actuators())
+    if (actuator->line())
+      for (const Pulley& pulley : actuator->line()->pulleys()) snapshot.parts.push_back(partOf(pulley));
   const auto& muscles = simulation_.robot().actuators();
   for (std::size_t i = 0; i < muscles.size(); ++i) snapshot.hoses.push_back(hoseOf(*muscles[i], muscle_colors_[i]));
   snapshot.frames = framesOf(simulation_);

@@ -1,10 +1,12 @@
 #include "options.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 
 #include "musclesim/base/error.h"
 #include "musclesim/effect/effects_file.h"
+#include "plugin.h"
 
 namespace musclesim::program {
 
@@ -22,9 +24,17 @@ std::pair<std::string, std::string> splitAssignment(const std::string& option, c
 void addModelOptions(CLI::App& command, ModelOptions& options) {
   const std::string model = "Model";
   command
-      .add_option("--robot", options.robot,
-                  "Robot: arm, rig, elbow, wrist, spring_bench or a registered name (default: the recording's, else arm)")
+      .add_option(
+          "--robot", options.robot,
+          "Robot: a file NAME.toml, or arm, rig, elbow, wrist, spring_bench or a plugin's robot (default: the recording's, else arm)")
       ->group(model);
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--plugin", [](const std::vector<std::string>& files) { std::ranges::for_each(files, loadPlugin); },
+          "Shared library with robots, controllers or effects in C++: LIBRARY.so; may be repeated")
+      ->group(model)
+      ->take_all()
+      ->trigger_on_parse();
   command
       .add_option("--physics", options.physics,
                   "si: true seconds; original: the published program's units; scaled: its constants in true units (default: the "

@@ -93,9 +93,9 @@ int begin(const std::string& name, const std::optional<std::string>& out) {
 
 int exportRobot(const std::string& name, const std::optional<std::string>& out) {
   std::vector<std::string> known = {"arm"};
-  for (const auto& [shipped, text] : shippedRobotFiles()) {
-    known.push_back(shipped);
-    if (shipped == name) return write(out, text), done;
+  for (const ShippedRobot& shipped : shippedRobots()) {
+    known.push_back(shipped.name);
+    if (shipped.name == name) return write(out, shipped.text), done;
   }
   if (name != "arm") throw BadParameter("robot", name, fmt::format("be one of {}", fmt::join(known, ", ")));
   write(out, roboticArmFile());

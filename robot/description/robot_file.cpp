@@ -5,7 +5,9 @@
 #include <mutex>
 
 #include "file_robot.h"
+#include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
+#include "shipped.h"
 
 namespace musclesim {
 
@@ -53,6 +55,34 @@ std::unique_ptr<Robot> build(std::shared_ptr<const Description> description, con
 }
 
 }  // namespace
+
+const std::vector<ShippedRobot>& shippedRobots() {
+  static const std::vector<ShippedRobot> robots = [] {
+    std::vector<ShippedRobot> read;
+    for (const auto& [name, text] : description::shippedFiles())
+      read.push_back({name, text, description::readDescription(text, name + ".toml").summary});
+    return read;
+  }();
+  return robots;
+}
+
+std::unique_ptr<Robot> makeShippedRobot(const std::string& name, World& world) {
+  static const std::map<std::string, std::shared_ptr<const Description>> descriptions = [] {
+    std::map<std::string, std::shared_ptr<const Description>> read;
+    for (const ShippedRobot& robot : shippedRobots())
+      read[robot.name] = std::make_shared<const Description>(description::readDescription(robot.text, robot.name + ".toml"));
+    return read;
+  }();
+  const auto found = descriptions.find(name);
+  if (found == descriptions.end()) throw BadParameter("there is no robot \"" + name + "\" that comes with the program");
+  try {
+    auto robot = std::make_unique<description::FileRobot>(world, found->second);
+    robot->setName(name);
+    return robot;
+  } catch (const BadFile& problem) {
+    throw BadParameter(std::string("parameters of ") + problem.what());  // the file is right, so what overrides its numbers is wrong
+  }
+}
 
 bool isRobotFile(const std::string& robot) {
   return robot.ends_with(".toml");

@@ -11,6 +11,7 @@
 #include "musclesim/base/parameters.h"
 #include "musclesim/effect/effects_file.h"
 #include "musclesim/log/recording.h"
+#include "musclesim/robot/robot_file.h"
 #include "src/command_line.h"
 #include "sweep/plan.h"
 #include "sweep/sweep.h"
@@ -46,6 +47,10 @@ void requireSame(const std::string& first, const std::string& again) {
 
 void recordingCsv(const std::string& bytes) {
   read([&] { parseRecording(bytes, "r.csv", plain_sidecar, "r.json"); });
+}
+
+void robotToml(const std::string& bytes) {
+  read([&] { checkRobotText(bytes, "robot.toml"); });
 }
 
 void sidecarJson(const std::string& bytes) {
@@ -124,7 +129,7 @@ const std::vector<std::pair<std::string, FuzzTarget>>& fuzzTargets() {
   static const std::vector<std::pair<std::string, FuzzTarget>> targets = {
       {"recording_csv", recordingCsv}, {"sidecar_json", sidecarJson},     {"configuration_toml", configurationToml},
       {"effects_json", effectsJson},   {"sweep_manifest", sweepManifest}, {"sweep_plan", sweepPlan},
-      {"command_line", commandLine},
+      {"command_line", commandLine},   {"robot_toml", robotToml},
   };
   return targets;
 }

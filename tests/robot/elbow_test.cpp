@@ -1,5 +1,3 @@
-#include "musclesim/robot/elbow.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>

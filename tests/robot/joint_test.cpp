@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -278,6 +281,70 @@ TEST(Joint, APrimitiveCannotBeAttachedToItselfOrToAnotherSimulation) {
     EXPECT_THROW(pair.body->attachUniversal(wrong, o, x, z), BadParameter);
     EXPECT_THROW(pair.body->attachSlider(wrong, z), BadParameter);
   }
+}
+
+/// Reports of others: hinge limits near 180 degrees in ODE let bodies through or explode.
+TEST(Joint, LimitsThatTheEngineCannotHoldAreRefused) {
+  Pair pair;
+  Primitive* bar = pair.body;
+  const Vector o = Vector::Zero(), x = Vector::UnitX(), z = Vector::UnitZ();
+  for (const Limits& wrong : {Limits{-200, 45}, Limits{0, 270}, Limits{-150, 180}, Limits{-180, 170}, Limits{-720, 720}}) {
+    EXPECT_THROW(bar->attachHinge(nullptr, o, z, wrong.low_deg, wrong.high_deg), BadParameter);
+    EXPECT_THROW(bar->attachUniversal(nullptr, o, x, z, {-10, 10}, wrong), BadParameter);
+  }
+  EXPECT_THROW(bar->attachBall(nullptr, o, x, z, {-10, 10}, {-90, 90}, {-10, 10}), BadParameter) << "the middle Euler angle";
+  const auto message = messageOf<BadParameter>([&] { bar->attachHinge(nullptr, o, z, -200, 45); });
+  EXPECT_TRUE(contains(message, "-175 .. 175 deg")) << message;
+}
+
+TEST(Joint, LimitsWithoutThePoseAsBuiltAreRefused) {
+  Pair pair;
+  for (const Limits& wrong : {Limits{-175, -170}, Limits{10, 60}, Limits{30, 30}}) {
+    const auto message =
+        messageOf<BadParameter>([&] { pair.body->attachHinge(nullptr, Vector::Zero(), Vector::UnitZ(), wrong.low_deg, wrong.high_deg); });
+    EXPECT_TRUE(contains(message, "contain 0 deg")) << message;
+  }
+}
+
+/// A bar on a hinge without gravity, 100 mm from its centre.
+class Spinner : public Robot {
+ public:
+  explicit Spinner(World& world, double rad_per_s = 6, std::optional<Limits> limits = {}) : Robot(world) {
+    Box& bar = addBox({.mass_g = 400, .center_mm = {100, 0, 0}, .size_mm = {200, 20, 20}});
+    reportAngle("spinner", bar.hingeToWorld({.anchor_mm = Vector(0, 0, 0), .limits_deg = limits}));
+    dBodySetAngularVel(bar.body().id, 0, 0, rad_per_s);
+    dBodySetLinearVel(bar.body().id, 0, rad_per_s * 100, 0);
+  }
+};
+
+SimulationOptions weightless() {
+  SimulationOptions options;
+  options.parameters.setFromText("physics.gravity_m_per_s2=0", "test");
+  return options;
+}
+
+TEST(Joint, AnglesCountOnBeyondHalfATurn) {
+  for (const double rad_per_s : {6., -6., 50.}) {
+    Simulation simulation(weightless());
+    const Robot& robot = simulation.build([&](World& world) { return std::make_unique<Spinner>(world, rad_per_s); });
+    for (int i = 0; i < 150; ++i) simulation.step();
+    EXPECT_NEAR(robot.getState().angle_deg[0], 1.5 * rad_per_s * deg_per_rad, 1.0 * std::abs(rad_per_s));
+  }
+}
+
+TEST(Joint, AFastBarIsStoppedNearTheFarthestLimit) {
+  Simulation simulation(weightless());
+  const Robot& robot = simulation.build([&](World& world) { return std::make_unique<Spinner>(world, 30, Limits{-170, 175}); });
+  double highest_deg = 0, lowest_deg = 0;
+  for (int i = 0; i < 200; ++i) {
+    simulation.step();
+    const double angle_deg = robot.getState().angle_deg[0];
+    highest_deg = std::max(highest_deg, angle_deg);
+    lowest_deg = std::min(lowest_deg, angle_deg);
+  }
+  EXPECT_LT(highest_deg, 180);
+  EXPECT_GT(highest_deg, 174);
+  EXPECT_GT(lowest_deg, -180);
 }
 
 }  // namespace

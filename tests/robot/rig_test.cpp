@@ -1,5 +1,3 @@
-#include "musclesim/robot/rig.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -2,10 +2,13 @@
 #include "musclesim/robot/robot_file.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
+#include "../../robot/robotic_arm_file.h"
 #include "musclesim/base/error.h"
 #include "musclesim/robot/line_of_pull.h"
 #include "musclesim/robot/robot_registry.h"
@@ -198,6 +201,138 @@ INSTANTIATE_TEST_SUITE_P(RobotFile, WrongDescription, testing::ValuesIn(wrongDes
 
 TEST(RobotFile, ThereAreAtLeastThirtyWrongDescriptions) {
   EXPECT_GE(wrongDescriptions().size(), 30U);
+}
+
+/// All bodies and beads after some steps, to the bit.
+std::vector<double> poses(const std::function<Robot&(Simulation&)>& build, PhysicsKind physics, const std::string& muscle) {
+  SimulationOptions options;
+  options.physics = physics;
+  options.parameters.setFromText("muscle.model=" + muscle, "test");
+  Simulation simulation(std::move(options));
+  Robot& robot = build(simulation);
+  const auto count = static_cast<std::size_t>(robot.actuatorCount());
+  simulation.start(robot.initialState(), Action(count, 0.3));
+  Action action(count);
+  for (std::size_t i = 0; i < count; ++i) action[i] = 0.1 * static_cast<double>(1 + i % 9);
+  robot.step(action);
+  for (int i = 0; i < 20; ++i) simulation.step();
+  std::vector<double> all = robot.signalValues(robot.getState());
+  for (const auto& body : simulation.world().bodies())
+    for (int i = 0; i < 3; ++i) all.push_back(dBodyGetPosition(body->id)[i]);
+  return all;
+}
+
+TEST(RobotFile, TheArmsFileBuildsTheSameArm) {
+  for (const PhysicsKind physics : {PhysicsKind::si, PhysicsKind::original})
+    for (const char* muscle : {"chain", "line"}) {
+      const auto written = [](Simulation& s) -> Robot& {
+        return s.build([](World& world) { return makeRobotFromText(roboticArmFile(), "arm.toml", world); });
+      };
+      EXPECT_EQ(poses([](Simulation& s) -> Robot& { return s.build("arm"); }, physics, muscle), poses(written, physics, muscle)) << muscle;
+    }
+}
+
+TEST(RobotFile, ShippedRobotsCanBeReadFromTheirTexts) {
+  EXPECT_EQ(shippedRobots().size(), 4U);
+  for (const ShippedRobot& robot : shippedRobots()) {
+    EXPECT_FALSE(robot.description.empty()) << robot.name;
+    const auto fromText = [&](Simulation& s) -> Robot& {
+      return s.build([&](World& world) { return makeRobotFromText(robot.text, robot.name + ".toml", world); });
+    };
+    EXPECT_EQ(poses([&](Simulation& s) -> Robot& { return s.build(robot.name); }, PhysicsKind::si, "chain"),
+              poses(fromText, PhysicsKind::si, "chain"))
+        << robot.name;
+  }
+}
+
+TEST(RobotFile, ParametersOfShippedRobotsThatCannotBeAreTheCallersMistake) {
+  SimulationOptions options;
+  options.parameters.setFromText("elbow.forearm_inertia_kgm2=1e-6", "test");
+  Simulation simulation(std::move(options));
+  const auto message = messageOf<BadParameter>([&] { simulation.build("elbow"); });
+  EXPECT_TRUE(contains(message, "moments of inertia of forearm")) << message;
+}
+
+TEST(RobotFile, IsReadAgainWhenItHasChanged) {
+  const std::string file =
+      (std::filesystem::temp_directory_path() / ("musclesim_robot_file_test_" + std::to_string(getpid()) + ".toml")).string();
+  const auto massOf = [&](const std::string& text) {
+    std::ofstream(file) << text;
+    Simulation simulation;
+    return simulation.build(file).hand()->massG();
+  };
+  EXPECT_NEAR(massOf(lever), 400, 1e-9);
+  EXPECT_NEAR(massOf(replaced("mass_g = 400", "mass_g = 1400")), 1400, 1e-9);
+  EXPECT_EQ(nameOfRobotFile(file), "lever");
+  Simulation simulation;
+  const Robot& robot = simulation.build(file);
+  EXPECT_EQ(robot.name(), "lever");
+  EXPECT_EQ(robot.descriptionFile(), file);
+  EXPECT_EQ(robot.descriptionHash().size(), 16U);
+  std::filesystem::remove(file);
+}
+
+TEST(RobotFile, AFileThatIsNotThereIsAnInputOutputError) {
+  Simulation simulation;
+  EXPECT_THROW(simulation.build("nowhere/lever.toml"), IoError);
+}
+
+TEST(RobotFile, FixedJointsMakeOneBody) {
+  Built built(replaced("[[pulley]]", R"([[body]]
+name = "weight"
+at_mm = [100, 0, 0]
+shape = { type = "cylinder", radius_mm = 10, length_mm = 40 }
+density_g_per_mm3 = 0.0078
+
+[[joint]]
+name = "weld"
+type = "fixed"
+body = "weight"
+to = "bar"
+
+[[pulley]])"));
+  EXPECT_EQ(built.simulation.world().bodies().size(), 1U);
+  dMass mass;
+  dBodyGetMass(built.robot->hand()->body().id, &mass);
+  EXPECT_NEAR(mass.mass, 400 + 0.0078 * 3.14159265 * 100 * 40, 1e-3);
+}
+
+TEST(RobotFile, InertiaAndCentreOfMassCanBeGiven) {
+  Built built(replaced("mass_g = 400", "mass_g = 400\ninertia_g_mm2 = [2e4, 1e6, 1e6, 10, 20, 30]\ncenter_of_mass_mm = [10, 0, 0]"));
+  dMass mass;
+  dBodyGetMass(built.robot->hand()->body().id, &mass);
+  EXPECT_NEAR(mass.I[0], 2e4, 1e-9);
+  EXPECT_NEAR(mass.I[1], 10, 1e-9);
+  EXPECT_NEAR(mass.I[2], 20, 1e-9);
+  EXPECT_NEAR(mass.I[6], 30, 1e-9);
+  EXPECT_NEAR(built.robot->hand()->getPosition().x(), 10, 1e-9);
+  EXPECT_NEAR(dGeomGetPosition(built.robot->hand()->geom())[0], 0, 1e-9) << "the shape stays";
+  EXPECT_NEAR(built.robot->getState().hand_mm->x(), 100, 1e-9);
+}
+
+TEST(RobotFile, MusclesHaveLawsPathsAndTendonsOfTheirOwn) {
+  Built built(replaced("length_mm = [150, 320]\nmodel = \"line\"",
+                       "length_mm = [100, 320]\nmodel = \"line\"\npath = [{ pulley = \"drum\", side_mm = [20, -100, 0] }]\ntendon_mm = 50\n"
+                       "force_law = { name = \"chou-hannaford\", bore_N = 700 }"));
+  const Actuator& right = *built.robot->actuators()[0];
+  EXPECT_EQ(right.forceLaw().name(), "chou-hannaford");
+  EXPECT_EQ(built.robot->actuators()[1]->forceLaw().name(), "braun");
+  // From (80, -260) around the left side of a drum of radius 10 about (40, -100) to (80, -10).
+  const double lower = std::sqrt(40. * 40 + 160 * 160 - 100), upper = std::sqrt(40. * 40 + 90 * 90 - 100);
+  const double turn = std::atan2(40, 160) + std::atan2(40, 90) + std::asin(10 / std::hypot(40., 160)) + std::asin(10 / std::hypot(40., 90));
+  EXPECT_NEAR(right.lengthMm(), lower + upper + 10 * turn - 50, 1e-6);
+}
+
+TEST(RobotFile, LinearActuatorsPullByAnExpression) {
+  Built built(replaced("[hand]", R"toml([[actuator]]
+from = { body = "world", at_mm = [0, 250, 0] }
+to = { body = "bar", at_mm = [50, 10, 0] }
+length_mm = [0, 500]
+force_N = "10 * p + 0.5 * max(0, l_mm - lever_mm)"
+
+[hand])toml"));
+  const Actuator& actuator = *built.robot->actuators()[2];
+  EXPECT_NEAR(actuator.calculateForce(0.5, 180), 5 + 50, 1e-12);
 }
 
 }  // namespace

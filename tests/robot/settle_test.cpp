@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "musclesim/base/error.h"
+#include "musclesim/base/random.h"
 #include "musclesim/base/units.h"
 #include "musclesim/robot/muscle.h"
 #include "musclesim/robot/robot.h"
@@ -223,11 +224,8 @@ class Row : public Robot {
     Box& inner = addBox({.mass_g = 300, .center_mm = {50, 0, 0}, .size_mm = {100, 10, 10}});
     Box& outer = addBox({.mass_g = 300, .center_mm = {150, 0, 0}, .size_mm = {100, 10, 10}});
     reportAngle("inner", inner.hingeToWorld({.anchor_mm = Vector(0, 0, 0), .limits_deg = Limits{-25, 10}}));
-    reportAngle("outer", outer.hingeTo(inner, {.anchor_mm = Vector(100, 0, 0), .limits_deg = limits(world)}));
-  }
-  Limits limits(World& world) {
-    return {-parameter("row.outer_deg", 40, "deg", 0, 170, "lower stop of the outer hinge"),
-            world.physics().gravity_mm_per_s2 > 0 ? 30 : 1.0};
+    const double low_deg = -parameter("row.outer_deg", 40, "deg", 0, 170, "lower stop of the outer hinge");
+    reportAngle("outer", outer.hingeTo(inner, {.anchor_mm = Vector(100, 0, 0), .limits_deg = Limits{low_deg, 30}}));
   }
 };
 
@@ -371,6 +369,69 @@ TEST(Settle, AMuscleWithALooseEndIsRefused) {
   Simulation simulation;
   simulation.build<Loose>();
   EXPECT_TRUE(contains(messageOf<BadParameter>([&] { simulation.settle({0.5}); }), "the end of muscle_0 is not connected"));
+}
+
+/// One to four rods on joints of all kinds, with up to three muscles each.
+class RandomTree : public Robot {
+ public:
+  explicit RandomTree(World& world) : Robot(world), random_(world.seed(), "tree") {
+    std::vector<Rod> rods = {{nullptr, Vector::Zero(), Vector::Zero()}};
+    const int count = static_cast<int>(between(1, 5));
+    for (int i = 0; i < count; ++i) {
+      const Rod parent = rods[static_cast<std::size_t>(between(0, i + 0.999))];
+      const Vector direction = anywhere().normalized(), to = parent.to + between(80, 200) * direction;
+      auto* rod = new CappedCylinder(world, nullptr, (parent.to + to) / 2, between(50, 1500), 0, 8, (to - parent.to).norm());
+      join(*rod, parent, direction.unitOrthogonal());
+      const int muscles = static_cast<int>(between(0, 4));
+      for (int m = 0; m < muscles; ++m) {
+        const Vector from = (parent.from + parent.to) / 2 + 50 * anywhere(), end = (parent.to + 2 * to) / 3 + 30 * anywhere();
+        const double length_mm = (end - from).norm();
+        if (length_mm > 60)
+          addMuscle({.from = {parent.body, from}, .to = rod->at(end), .length_mm = {length_mm * 0.7, length_mm * between(1.1, 1.6)}});
+      }
+      rods.push_back({rod, parent.to, to});
+    }
+  }
+
+ private:
+  struct Rod {
+    Primitive* body;
+    Vector from, to;
+  };
+  double between(double low, double high) { return low + (high - low) * random_.uniform(); }
+  Vector anywhere() { return {between(-1, 1), between(-1, 1), between(-1, 1)}; }
+  void join(Primitive& rod, const Rod& parent, const Vector& across) {
+    const Limits limits = {-between(20, 90), between(20, 90)}, others = {-between(20, 80), between(20, 80)};
+    const double kind = between(0, 4);
+    if (kind < 1)
+      rod.attachBall(parent.body, parent.to);
+    else if (kind < 2)
+      rod.attachUniversal(parent.body, parent.to, across, across.unitOrthogonal(), limits, others);
+    else if (kind < 3 && parent.body)
+      parent.body->attachHinge(&rod, parent.to, across, limits.low_deg, limits.high_deg);
+    else
+      rod.attachHinge(parent.body, parent.to, across, limits.low_deg, limits.high_deg);
+  }
+
+  RandomStream random_;
+};
+
+TEST(Settle, RandomTreesStayWhereTheySettle) {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    SimulationOptions options = withText({"muscle.model=line", "physics.contacts=off"});
+    options.seed = seed;
+    Simulation simulation(options);
+    Robot& robot = simulation.build<RandomTree>();
+    Action pressure;
+    for (int i = 0; i < robot.actuatorCount(); ++i) pressure.push_back(0.1 * static_cast<double>((seed + 3 * i) % 11));
+    ASSERT_NO_THROW(simulation.settle(pressure)) << seed;
+    std::vector<Vector> settled;
+    for (const Primitive* part : simulation.world().primitives()) settled.push_back(part->getPosition());
+    robot.step(pressure);
+    simulation.advance(0.2);
+    for (std::size_t i = 0; i < settled.size(); ++i)
+      EXPECT_LT((simulation.world().primitives()[i]->getPosition() - settled[i]).norm(), 2) << "mm, rod " << i << " of tree " << seed;
+  }
 }
 
 // The skeleton's poses against ODE's joints.

@@ -1,5 +1,3 @@
-#include "musclesim/robot/spring_bench.h"
-
 #include <gtest/gtest.h>
 
 #include "musclesim/simulation/simulation.h"

@@ -1,5 +1,3 @@
-#include "musclesim/robot/wrist.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -52,6 +52,9 @@ class LineOfPull {
   /// Start, via points and end in the world frame, with points on each pulley where the thread lies on it.
   std::vector<Vector> pointsMm() const;
 
+  /// The pulleys in the world frame, for drawing.
+  std::vector<Pulley> pulleys() const;
+
   /// Adds the forces of the thread to the bodies, which must not have moved since the last lengthMm(). The thread's force in N is the
   /// tension plus friction and a stop:
   ///     F + F_f tanh(v / v_0) + k max(0, l - l_max),   dry friction; F_f v / v_1 in place of the second term, viscous friction

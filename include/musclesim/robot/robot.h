@@ -36,8 +36,10 @@ class Robot {
   /// Diverged for one that is not finite.
   virtual void step(const Action& action);
 
-  /// Puts the robot at rest at its frictionless equilibrium under the pressures that are in its muscles. The default throws BadParameter:
-  /// not every robot can.
+  /// Puts the robot at rest at the frictionless equilibrium that it reaches from the pose as built under the pressures that are in its
+  /// muscles. The default does it for every robot whose joints form a tree, with straight chains, without contacts, and without the stops
+  /// of ball joints and of the second axis of two-axis hinges. It throws BadParameter, with the name of the part, for loops of joints,
+  /// bodies that no joint holds, chains that run in a curve or have a loose end, and where there is no equilibrium.
   virtual void settle();
   /// How runs begin unless told otherwise: "built" or "settled".
   virtual std::string initialState() const { return "built"; }

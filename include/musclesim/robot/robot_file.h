@@ -26,7 +26,13 @@ std::unique_ptr<Robot> makeRobotFromText(const std::string& text, const std::str
 /// Checks what does not depend on numbers: syntax, keys, types, names and references. Throws BadFile.
 void checkRobotText(const std::string& text, const std::string& file);
 
-/// The robots that this program describes by files: name and text.
-const std::vector<std::pair<std::string, std::string>>& shippedRobotFiles();
+/// A robot that comes with the program: the files in robots/.
+struct ShippedRobot {
+  std::string name, text, description;
+};
+const std::vector<ShippedRobot>& shippedRobots();
+
+/// Throws BadParameter if none has that name.
+std::unique_ptr<Robot> makeShippedRobot(const std::string& name, World& world);
 
 }  // namespace musclesim

@@ -1,0 +1,123 @@
+/// The command `robot`.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "program.h"
+#include "support/support.h"
+
+namespace musclesim {
+namespace {
+
+namespace fs = std::filesystem;
+
+class RobotCommand : public testing::Test {
+ protected:
+  RobotCommand() {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  ~RobotCommand() override { fs::remove_all(folder_); }
+
+  ProgramResult run(const std::vector<std::string>& arguments) { return runProgram(arguments, folder_); }
+  std::string text(const std::string& name) const {
+    std::ostringstream all;
+    all << std::ifstream(folder_ / name).rdbuf();
+    return all.str();
+  }
+  void change(const std::string& name, const std::string& from, const std::string& to) {
+    std::string all = text(name);
+    const auto place = all.find(from);
+    ASSERT_NE(place, std::string::npos) << from;
+    std::ofstream(folder_ / name) << all.replace(place, from.size(), to);
+  }
+
+  fs::path folder_ = fs::temp_directory_path() / ("musclesim_robot_test_" + std::to_string(getpid()));
+};
+
+TEST_F(RobotCommand, NewWritesAFileThatRuns) {
+  ASSERT_EQ(run({"robot", "new", "lever"}).status, 0);
+  const auto checked = run({"robot", "check", "lever.toml"});
+  EXPECT_EQ(checked.status, 0) << checked.err;
+  EXPECT_TRUE(contains(checked.out, "1 bodies, 1 joints with a reported angle, 2 muscles")) << checked.out;
+  EXPECT_TRUE(contains(checked.out, "nothing odd found")) << checked.out;
+  const auto ran = run({"run", "--simple", "--robot", "lever.toml", "--duration", "0.5", "--record", "data/lever.csv"});
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  EXPECT_TRUE(contains(text("data/lever.json"), "\"robot\": \"../lever.toml\""));
+  const auto replayed = run({"replay", "data/lever.csv"});
+  EXPECT_EQ(replayed.status, 0) << replayed.err;
+  EXPECT_FALSE(contains(replayed.err, "its text has changed")) << replayed.err;
+  change("lever.toml", "a lever between two muscles", "another lever");
+  EXPECT_TRUE(contains(run({"replay", "data/lever.csv"}).err, "its text has changed"));
+}
+
+TEST_F(RobotCommand, NewDoesNotWriteOverAFile) {
+  ASSERT_EQ(run({"robot", "new", "lever"}).status, 0);
+  const auto again = run({"robot", "new", "lever"});
+  EXPECT_EQ(again.status, 2);
+  EXPECT_TRUE(contains(again.err, "lever.toml")) << again.err;
+  EXPECT_EQ(run({"robot", "new", "muscle"}).status, 2) << "a group of the program's parameters";
+}
+
+TEST_F(RobotCommand, CheckSaysWhatIsOdd) {
+  ASSERT_EQ(run({"robot", "new", "lever"}).status, 0);
+  change("lever.toml", "length_mm = [150, 320]", "length_mm = [150, 260]");
+  change("lever.toml", "[hand]", R"([[body]]
+name = "block"
+at_mm = [0, 15, 0]
+shape = { type = "box", size_mm = [20, 20, 20] }
+mass_g = 10
+fixed = true
+
+[hand])");
+  const auto checked = run({"robot", "check", "lever.toml"});
+  EXPECT_EQ(checked.status, 0) << checked.err;
+  EXPECT_TRUE(contains(checked.out, "odd: right would be")) << checked.out;
+  EXPECT_TRUE(contains(checked.out, "longer than its longest length, 260 mm")) << checked.out;
+  EXPECT_TRUE(contains(checked.out, "odd: bar and block overlap by 5 mm")) << checked.out;
+}
+
+TEST_F(RobotCommand, CheckEndsWithStatus3AndTheLineOfWhatIsWrong) {
+  ASSERT_EQ(run({"robot", "new", "lever"}).status, 0);
+  change("lever.toml", "type = \"hinge\"", "type = \"hnige\"");
+  const auto checked = run({"robot", "check", "lever.toml"});
+  EXPECT_EQ(checked.status, 3);
+  EXPECT_TRUE(contains(checked.err, "lever.toml:")) << checked.err;
+  EXPECT_TRUE(contains(checked.err, "did you mean \"hinge\"")) << checked.err;
+}
+
+TEST_F(RobotCommand, ShowPrintsTheTreeAndDrawsMomentArms) {
+  const auto shown = run({"robot", "show", "elbow", "--out", "picture"});
+  if (contains(shown.err, "cannot draw") || contains(shown.err, "OSMesa")) GTEST_SKIP() << shown.err;
+  EXPECT_EQ(shown.status, 0) << shown.err;
+  EXPECT_TRUE(contains(shown.out, "forearm (hinge elbow, -70 .. 70 deg)")) << shown.out;
+  EXPECT_TRUE(contains(shown.out, "600 g")) << shown.out;
+  EXPECT_TRUE(fs::exists(folder_ / "picture.png"));
+  EXPECT_TRUE(contains(text("picture-moment-arms.svg"), "moment arm [mm]"));
+}
+
+TEST_F(RobotCommand, ExportedRobotsCanBeUsed) {
+  for (const std::string name : {"arm", "rig", "elbow", "wrist", "spring_bench"}) {
+    const auto exported = run({"robot", "export", name, "-o", name + ".toml"});
+    EXPECT_EQ(exported.status, 0) << exported.err;
+    const auto checked = run({"robot", "check", name + ".toml"});
+    EXPECT_EQ(checked.status, 0) << checked.err;
+  }
+  EXPECT_EQ(run({"robot", "export", "nobody"}).status, 2);
+}
+
+TEST_F(RobotCommand, PluginsBringRobots) {
+  const auto ran = run({"run", "--plugin", MUSCLESIM_PLUGIN, "--simple", "--robot", "pendulum", "--duration", "0.5", "--record", "p.csv"});
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  EXPECT_TRUE(contains(text("p.csv"), "angle_pendulum_deg"));
+  std::ofstream(folder_ / "nothing.so") << "no library";
+  const auto broken = run({"run", "--plugin", "nothing.so", "--simple"});
+  EXPECT_EQ(broken.status, 3) << broken.err;
+  EXPECT_TRUE(contains(broken.err, "nothing.so")) << broken.err;
+}
+
+}  // namespace
+}  // namespace musclesim
