@@ -71,6 +71,32 @@ TEST_F(SdfImport, TwoAxesMakeAUniversalJoint) {
   expectNear(u, "limits2_deg", {-180 / M_PI, 180 / M_PI});
 }
 
+TEST_F(SdfImport, AJointWhoseChildIsFixedHoldsItsParent) {
+  import(model(link("a", "<pose>0 0 -1 0 0 0</pose>") + link("b", "") + joint("f", "fixed", "world", "b", "") +
+               joint("j", "revolute", "a", "b", "<axis><xyz>0 1 0</xyz><limit><lower>-1</lower><upper>2</upper></limit></axis>")));
+  const auto j = find("joint", "j");
+  EXPECT_EQ(text(j, "body"), "a");
+  EXPECT_EQ(text(j, "to"), "world");
+  expectNear(j, "axis", {0, 0, 1});
+  expectNear(j, "limits_deg", {-180 / M_PI, 360 / M_PI});
+  EXPECT_FALSE(find("body", "a")["free"].value_or(false));
+}
+
+TEST_F(SdfImport, LoopsCannotBeMovedIntoTheirLimits) {
+  const auto loop = [&](const std::string& limit) {
+    return model(link("a", "") + link("b", "") + joint("i", "revolute", "world", "a", "<axis><xyz>0 1 0</xyz></axis>") +
+                 joint("j", "revolute", "a", "b", "<axis><xyz>0 1 0</xyz></axis>") +
+                 joint("k", "revolute", "world", "b", "<axis><xyz>0 1 0</xyz>" + limit + "</axis>"));
+  };
+  import(loop("<limit><lower>-0.5</lower><upper>1</upper></limit>"));
+  EXPECT_EQ(count("joint"), 3U);
+  EXPECT_TRUE(contains(refusal(loop("<limit><lower>0.5</lower><upper>1</upper></limit>")),
+                       "joint k: its limits exclude 0, and it belongs to a closed loop"));
+  EXPECT_TRUE(contains(refusal(model(link("a", "") + link("b", "") + joint("f", "fixed", "a", "b", "") +
+                                     joint("j", "revolute", "a", "b", "<axis><xyz>0 1 0</xyz></axis>"))),
+                       "joint j: fixed joints hold both of its bodies together"));
+}
+
 TEST_F(SdfImport, WorldsHaveFixedAndFreeModels) {
   import(
       "<sdf version=\"1.9\"><world name=\"w\"><gravity>0 0 -1.6</gravity><model name=\"post\"><static>true</static><pose>1 0 0 0 0 "
