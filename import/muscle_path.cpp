@@ -124,7 +124,7 @@ void removeWhatMovesNothing(SourceRobot& robot) {
   });
 }
 
-/// A pose at random within the limits of hinges and sliders, as a copy of the robot.
+/// A pose at random within the limits of hinges and sliders, as a copy of the robot. Joints of closed loops stay.
 SourceRobot posed(const SourceRobot& robot, RandomStream& random) {
   SourceRobot result = robot;
   for (const SourceJoint& joint : robot.joints)
@@ -143,6 +143,8 @@ double lengthM(const SourceRobot& robot, const SourceMuscle& muscle) {
 }
 
 void giveRanges(SourceRobot& robot) {
+  if (std::all_of(robot.muscles.begin(), robot.muscles.end(), [](const SourceMuscle& muscle) { return muscle.length_m.has_value(); }))
+    return;
   std::vector<SourceRange> ranges;
   for (const SourceMuscle& muscle : robot.muscles) ranges.push_back({lengthM(robot, muscle), lengthM(robot, muscle)});
   constexpr int pose_count = 400;

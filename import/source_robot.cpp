@@ -121,7 +121,7 @@ void SourceRobot::join(std::size_t parent, std::size_t child, std::vector<Source
   }
 }
 
-void SourceRobot::move(const SourceJoint& joint, double amount) {
+bool SourceRobot::move(const SourceJoint& joint, double amount) {
   const Pose& pose = bodies[joint.body].pose;
   const Eigen::Vector3d anchor = pose * joint.anchor_m, axis = (pose.linear() * joint.axis).normalized();
   Pose change = Pose::Identity();
@@ -142,12 +142,10 @@ void SourceRobot::move(const SourceJoint& joint, double amount) {
       moved[next] = true;
     }
   }
-  if (moved[joint.to])
-    throw BadFile(file, fmt::format("joint {}: its limits exclude 0, and it belongs to a closed loop, so that the robot cannot be built "
-                                    "within them; give it limits that contain 0",
-                                    joint.name));
+  if (moved[joint.to]) return false;
   for (std::size_t body = 0; body < bodies.size(); ++body)
     if (moved[body]) bodies[body].pose = change * bodies[body].pose;
+  return true;
 }
 
 namespace {
@@ -268,7 +266,11 @@ void fitLimits(SourceRobot& robot, SourceJoint& joint) {
     robot.notes.push_back(fmt::format("joint {}: 0 lies outside of its limits {} .. {}; it is built at {}, from where positions count",
                                       joint.name, quantity(joint, joint.limits->low), quantity(joint, joint.limits->high),
                                       quantity(joint, amount)));
-    robot.move(joint, amount);
+    if (!robot.move(joint, amount))
+      throw BadFile(robot.file,
+                    fmt::format("joint {}: its limits exclude 0, and it belongs to a closed loop, so that the robot cannot be built "
+                                "within them; give it limits that contain 0",
+                                joint.name));
     shift(joint, amount);
   }
   for (auto* limits : {&joint.limits, &joint.limits2}) {

@@ -96,8 +96,8 @@ struct SourceRobot {
   void join(std::size_t parent, std::size_t child, std::vector<SourceJoint> series);
 
   /// Turns or moves everything that hangs on a hinge or slider, in its positive direction: the new pose is the pose as built.
-  /// Throws BadFile if the joint belongs to a closed loop.
-  void move(const SourceJoint& joint, double amount);
+  /// Does nothing and returns false if the joint belongs to a closed loop.
+  bool move(const SourceJoint& joint, double amount);
 
   Eigen::Vector3d inWorld(const SourcePoint& point) const { return bodies[point.body].pose * point.position_m; }
 };

@@ -36,7 +36,6 @@ build_packages=(
 )
 test_packages=(
   "libgtest-dev           test framework"
-  "libmujoco-dev          what imported robots are compared with"
   "python3                the test of scripts/check_layers.py"
   "gnuplot-nox            draws figures from recordings"
   "librsvg2-bin           checks that figures can be rendered"

@@ -1,3 +1,6 @@
+#include <Eigen/Geometry>
+#include <cmath>
+
 #include "import_fixture.h"
 
 namespace musclesim {

@@ -230,8 +230,8 @@ std::string fourJoints(std::string text) {
   return replaced(without(without(text, "solreffriction"), "solimpfriction"), "density=\"1.2\"", "density=\"0\"");
 }
 
-// It starts upright and folds up near the axis of its first joint, which makes much of small differences: 0.25 degrees would be left of
-// 0.1 ms steps.
+// It starts upright and folds up near the axis of its first joint, which makes much of small differences: half a degree would be left
+// with 0.1 ms steps.
 constexpr int fine_substeps = 400;
 
 TEST_F(MujocoComparison, TheFallOfTheFourJointArmAgrees) {
