@@ -280,7 +280,6 @@ class BodyReader {
     if (!types.contains(type))
       element.refuse(fmt::format("type = {}: must be plane, hfield, sphere, capsule, ellipsoid, cylinder, box or mesh", inQuotes(type)));
     auto size = element.numbers("size", 0, 3);
-    const std::size_t given = size.size();
     size.resize(3, 0);
     const auto ends = element.numbers("fromto", 6, 6);
     const bool round = type == "capsule" || type == "cylinder";
@@ -288,7 +287,7 @@ class BodyReader {
       if (type == "sphere") element.refuse("a sphere has no fromto");
       const double half_m = placeBetween(element, Eigen::Vector3d(ends.data()), Eigen::Vector3d(ends.data() + 3), body, shape.pose);
       if (round) size[1] = half_m;
-      if (!round) size[1] = given > 1 ? size[1] : size[0], size[2] = half_m;
+      if (!round) size[1] = size[0], size[2] = half_m;  // across they are square or round
     }
     const std::size_t needed = type == "sphere" ? 1 : round ? 2 : 3;
     for (std::size_t i = 0; i < needed; ++i)

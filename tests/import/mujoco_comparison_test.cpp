@@ -1,7 +1,9 @@
 /// Robots that were imported from MJCF against MuJoCo itself: lengths and moment arms of muscles, and falls.
 #include <mujoco/mujoco.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "fall.h"
@@ -255,6 +257,69 @@ TEST_F(MujocoComparison, TheFallOfTheFourJointArmAgreesWithLittleFriction) {
     text = replaced(text, given, little);
   EXPECT_LT(fallDifferenceDeg(withHardFriction(text), fine_substeps, hard), 0.2);
   EXPECT_GT(widest_deg_, 20);
+}
+
+/// Bodies of every shape, one with a part beside it, under compilers that change masses.
+class MassComparison : public MujocoComparison, public testing::WithParamInterface<const char*> {
+ protected:
+  void SetUp() override { ImportedRobotTest::SetUp(); }
+};
+
+TEST_P(MassComparison, MassesAndMomentsAgree) {
+  const char* const geoms[] = {R"(type="sphere" size="0.1")",
+                               R"(type="capsule" size="0.05" fromto="0 0 0 0.3 0.1 0.2" density="300")",
+                               R"(type="capsule" size="0.05 0.2" euler="10 20 30")",
+                               R"(type="cylinder" size="0.1 0.05" mass="2" axisangle="1 2 3 40")",
+                               R"(type="cylinder" size="0.1" fromto="0.1 0 0 0.3 0.1 0.2")",
+                               R"(type="box" size="0.1 0.2 0.3" pos="1 2 3" xyaxes="1 1 0 0 0 1")",
+                               R"(type="box" size="0.1 0.2" fromto="0 0 0 0.3 0.1 0.2")",
+                               R"(type="box" size="0.1" fromto="0 0 0 0.3 0.1 0.2")",
+                               R"(type="ellipsoid" size="0.1 0.2 0.3" zaxis="1 2 3")",
+                               R"(type="ellipsoid" size="0.1 0.05" fromto="0 0 0 0.3 0.1 0.2")",
+                               R"(type="box" size="0.1 0.2 0.3"/><geom type="sphere" size="0.1" pos="0.5 0.5 0" group="3")",
+                               R"(size="0.05"/><inertial pos="0.1 0.2 0.3" mass="2" diaginertia="0.01 0.02 0.025" euler="10 20 30")"};
+  std::string bodies;
+  for (std::size_t i = 0; i < std::size(geoms); ++i)
+    bodies += "<body name=\"b" + std::to_string(i) + "\" pos=\"0.1 0.2 0.3\" euler=\"5 6 7\"><freejoint/><geom " + geoms[i] + "/></body>";
+  const std::string file =
+      write("masses.xml", std::string("<mujoco><compiler ") + GetParam() + "/><worldbody>" + bodies + "</worldbody></mujoco>");
+  importFile(file);
+  Mujoco mujoco(file);
+  for (std::size_t i = 0; i < std::size(geoms); ++i) {
+    const std::string name = "b" + std::to_string(i);
+    const int body = mj_name2id(&mujoco.model(), mjOBJ_BODY, name.c_str());
+    const auto entry = find("body", name);
+    EXPECT_NEAR(number(entry, "mass_g") / (g_per_kg * mujoco.model().body_mass[body]), 1, 1e-9) << geoms[i];
+    const Vector center_mm = centerMm(mujoco.data(), body);
+    expectNear(entry, entry.contains("center_of_mass_mm") ? "center_of_mass_mm" : "at_mm", {center_mm.x(), center_mm.y(), center_mm.z()});
+    auto m = numbers(entry, "inertia_g_mm2");
+    m.resize(6, 0);
+    Eigen::Matrix3d inertia;
+    inertia << m[0], m[3], m[4], m[3], m[1], m[5], m[4], m[5], m[2];
+    const Eigen::Vector3d moments = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia).eigenvalues();
+    Eigen::Vector3d there = g_mm2_per_kg_m2 * Eigen::Vector3d(mujoco.model().body_inertia + 3 * body);
+    std::sort(there.data(), there.data() + 3);
+    EXPECT_LT((moments - there).norm(), 1e-6 * there.norm()) << geoms[i] << "\n" << moments.transpose() << "\n" << there.transpose();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Compilers, MassComparison,
+                         testing::Values("", "inertiagrouprange=\"0 2\"", "boundmass=\"30\" boundinertia=\"0.5\"", "settotalmass=\"7\"",
+                                         "inertiafromgeom=\"true\"", "coordinate=\"global\"", "eulerseq=\"ZYx\"",
+                                         "angle=\"radian\" balanceinertia=\"true\""));
+
+TEST_F(MujocoComparison, LimitsApplyInTheSameCases) {
+  for (const char* compiler : {"", "<compiler autolimits=\"true\"/>", "<compiler angle=\"radian\"/>"})
+    for (const char* joint :
+         {"range=\"-1 2\"", "limited=\"true\" range=\"-1 2\"", "limited=\"false\" range=\"-1 2\"", "limited=\"auto\" range=\"-1 2\"", ""}) {
+      const std::string file = write("limits.xml", std::string("<mujoco>") + compiler + "<worldbody><body><joint name=\"j\" " + joint +
+                                                       "/><geom size=\"0.1\"/></body></worldbody></mujoco>");
+      importFile(file);
+      Mujoco mujoco(file);
+      const auto limits = numbers(find("joint", "j"), "limits_deg");
+      ASSERT_EQ(limits.size(), mujoco.model().jnt_limited[0] ? 2U : 0U) << compiler << joint;
+      for (std::size_t i = 0; i < limits.size(); ++i) EXPECT_NEAR(limits[i], mujoco.model().jnt_range[i] * deg_per_rad, 1e-9);
+    }
 }
 
 /// A rod whose centre of mass lies off all axes, on several joints.
