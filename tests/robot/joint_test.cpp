@@ -317,17 +317,11 @@ class Spinner : public Robot {
   }
 };
 
-SimulationOptions weightless() {
-  SimulationOptions options;
-  options.parameters.setFromText("physics.gravity_m_per_s2=0", "test");
-  return options;
-}
-
 TEST(Joint, AnglesCountOnBeyondHalfATurn) {
   for (const double rad_per_s : {6., -6., 50.}) {
     Simulation simulation(weightless());
     const Robot& robot = simulation.build([&](World& world) { return std::make_unique<Spinner>(world, rad_per_s); });
-    for (int i = 0; i < 150; ++i) simulation.step();
+    simulation.advance(1.5);
     EXPECT_NEAR(robot.getState().angle_deg[0], 1.5 * rad_per_s * deg_per_rad, 1.0 * std::abs(rad_per_s));
   }
 }
@@ -337,7 +331,7 @@ TEST(Joint, AFastBarIsStoppedNearTheFarthestLimit) {
   const Robot& robot = simulation.build([&](World& world) { return std::make_unique<Spinner>(world, 30, Limits{-170, 175}); });
   double highest_deg = 0, lowest_deg = 0;
   for (int i = 0; i < 200; ++i) {
-    simulation.step();
+    simulation.advance(0.01);
     const double angle_deg = robot.getState().angle_deg[0];
     highest_deg = std::max(highest_deg, angle_deg);
     lowest_deg = std::min(lowest_deg, angle_deg);
