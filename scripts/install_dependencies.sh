@@ -25,6 +25,8 @@ build_packages=(
   "libcli11-dev           command line"
   "libceres-dev           fits of force laws"
   "nettle-dev             fingerprints of sealed files"
+  "libtinyxml2-dev        import of URDF and MuJoCo files"
+  "libsdformat-dev        import of SDF files"
   "libgl-dev              drawing"
   "libosmesa6-dev         pictures without a display"
   "libpng-dev             pictures as files"
