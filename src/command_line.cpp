@@ -41,7 +41,7 @@ CommandLine::CommandLine()
   };
   add("replay", "Simulates a recording's commands and compares the result with its measurements",
       [&](CLI::App& command) { return addReplay(command, model_); });
-  add("robot", "Checks, shows, begins or exports a robot file", [&](CLI::App& command) { return addRobot(command, model_); });
+  add("robot", "Checks, shows, begins, exports or imports a robot file", [&](CLI::App& command) { return addRobot(command, model_); });
   add("import", "Turns a table of measurements into a recording", addImport);
   add("effects", "Lists the effects that can be added to the model, or describes one", addEffects);
   add("fit", "Fits force laws to measured static points", addFit);

@@ -29,7 +29,7 @@ Action addReplay(CLI::App& command, ModelOptions& model);
 Action addDiagnose(CLI::App& command, ModelOptions& model);
 /// `effects`: the catalogue of effects.
 Action addEffects(CLI::App& command);
-/// `robot`: checks, shows, begins and exports robot files.
+/// `robot`: checks, shows, begins, exports and imports robot files.
 Action addRobot(CLI::App& command, ModelOptions& model);
 /// `import`: turns measured tables into recordings.
 Action addImport(CLI::App& command);

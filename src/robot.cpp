@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "../import/import.h"
 #include "../robot/inspection.h"
 #include "../robot/robotic_arm_file.h"
 #include "commands.h"
@@ -102,6 +103,14 @@ int exportRobot(const std::string& name, const std::optional<std::string>& out) 
   return done;
 }
 
+int import(const std::string& file, const std::optional<std::string>& out) {
+  const ImportedRobot robot = importRobot(file);
+  const std::string target = out.value_or(fs::path(file).stem().string() + ".toml");
+  write(target, robot.toml);
+  for (const std::string& note : robot.notes) fmt::print("note: {}\n", note);
+  return done;
+}
+
 }  // namespace
 
 Action addRobot(CLI::App& command, ModelOptions& model) {
@@ -134,6 +143,10 @@ Action addRobot(CLI::App& command, ModelOptions& model) {
   exports->add_option("name", *name, "arm, rig, elbow, wrist or spring_bench")->required();
   exports->add_option("-o,--out", *out, "File to write (default: standard output)");
   exports->callback([=] { *action = [=] { return exportRobot(*name, *out); }; });
+  CLI::App* imports = sub("import", "Turns a robot description of another program (URDF, SDF, MJCF) into a robot file");
+  imports->add_option("file", *name, "Description to read: FILE.urdf, FILE.sdf or FILE.xml")->required();
+  imports->add_option("-o,--out", *out, "File to write (default: the same name with .toml, in this folder)");
+  imports->callback([=] { *action = [=] { return import(*name, *out); }; });
   return [action] { return (*action)(); };
 }
 

@@ -109,6 +109,20 @@ TEST_F(RobotCommand, ExportedRobotsCanBeUsed) {
   EXPECT_EQ(run({"robot", "export", "nobody"}).status, 2);
 }
 
+TEST_F(RobotCommand, ImportsAnArmThatFalls) {
+  std::ofstream(folder_ / "arm.urdf") << R"(<robot name="arm"><link name="base"/>
+<link name="upper"><inertial><origin xyz="0 0 -0.1"/><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.001" ixy="0" ixz="0" iyz="0"/>
+</inertial></link><joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/><axis xyz="0 1 0"/>
+<limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>)";
+  const auto imported = run({"robot", "import", "arm.urdf"});
+  if (contains(imported.err, "built without")) GTEST_SKIP() << imported.err;
+  ASSERT_EQ(imported.status, 0) << imported.err;
+  const auto checked = run({"robot", "check", "arm.toml"});
+  EXPECT_EQ(checked.status, 0) << checked.err;
+  EXPECT_TRUE(contains(checked.out, "odd: there is no muscle")) << checked.out;
+  EXPECT_EQ(run({"robot", "import", "nothing.urdf"}).status, 5);
+}
+
 TEST_F(RobotCommand, PluginsBringRobots) {
   const auto ran = run({"run", "--plugin", MUSCLESIM_PLUGIN, "--simple", "--robot", "pendulum", "--duration", "0.5", "--record", "p.csv"});
   EXPECT_EQ(ran.status, 0) << ran.err;
