@@ -170,6 +170,7 @@ End readEnd(TableReader table) {
   end.body = table.text("body");
   end.at_mm = table.vector("at_mm");
   end.lever = table.optionalVector("lever");
+  end.may_be_off = table.flag("may_be_off", true);
   table.requireNoOthers();
   return end;
 }

@@ -64,6 +64,7 @@ struct End {
   std::string body;
   QuantityVector at_mm;
   std::optional<QuantityVector> lever;  ///< direction in which the effect attachment_offset moves the end
+  bool may_be_off;                      ///< whether that effect may move it
   FilePlace place;
 };
 

@@ -240,8 +240,9 @@ std::unique_ptr<ForceLaw> FileRobot::forceLaw(const MuscleEntry& entry, double s
 
 Actuator* FileRobot::buildMuscle(const MuscleEntry& entry) {
   const auto [shortest_mm, longest_mm] = value_(entry.length_mm);
-  const Vector end_mm = mountedEnd(value_(entry.to.at_mm), leverOf(entry, entry.to));
-  const Vector start_mm = mountedStart(value_(entry.from.at_mm), leverOf(entry, entry.from));
+  const Vector given_end_mm = value_(entry.to.at_mm), given_start_mm = value_(entry.from.at_mm);
+  const Vector end_mm = entry.to.may_be_off ? mountedEnd(given_end_mm, leverOf(entry, entry.to)) : given_end_mm;
+  const Vector start_mm = entry.from.may_be_off ? mountedStart(given_start_mm, leverOf(entry, entry.from)) : given_start_mm;
   Vector control_mm[2] = {start_mm + (end_mm - start_mm) / 3, start_mm + (end_mm - start_mm) * 2 / 3};
   for (std::size_t i = 0; i < entry.control_mm.size(); ++i) control_mm[i] = value_(entry.control_mm[i]);
   const MuscleModel model = entry.model == "chain"  ? MuscleModel::chain

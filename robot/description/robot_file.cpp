@@ -80,6 +80,7 @@ std::unique_ptr<Robot> makeShippedRobot(const std::string& name, World& world) {
     robot->setName(name);
     return robot;
   } catch (const BadFile& problem) {
+    if (problem.file() != found->second->file) throw;
     throw BadParameter(std::string("parameters of ") + problem.what());  // the file is right, so what overrides its numbers is wrong
   }
 }
