@@ -41,8 +41,8 @@ int check(const ModelOptions& model, const std::string& robot) {
   const Robot& made = simulation->robot();
   fmt::print("{}: {} bodies, {} joints with a reported angle, {} muscles; starts {}\n", robot, simulation->world().bodies().size(),
              made.angles().size(), made.actuatorCount(), made.initialState());
+  const auto found = oddities(simulation->world(), made);
   if (made.initialState() == "settled") simulation->settle(musclesim::Action(static_cast<std::size_t>(made.actuatorCount()), 0.0));
-  const auto found = oddities(simulation->world(), made);  // moves the bodies: the last thing to do
   printOddities(found);
   if (found.empty()) fmt::print("nothing odd found\n");
   return done;
