@@ -195,6 +195,8 @@ class BodyReader {
       joint.damping = joint.friction = joint.stiffness = 0;
       return;
     }
+    if (!limited && !range.empty() && element.text("limited") != "false")
+      note(fmt::format("joint {}: its range is no limit, since neither limited nor autolimits says so", joint.name));
     if (!limited) return;
     if (range[0] > range[1]) element.refuse(fmt::format("range = {} {}: must be in order", range[0], range[1]));
     joint.limits = SourceRange{unit * range[0] - ref, unit * range[1] - ref};

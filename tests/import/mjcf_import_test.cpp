@@ -108,6 +108,7 @@ TEST_F(MjcfImport, LimitsCountFromTheReferencePosition) {
   EXPECT_NEAR(number(find("joint", "j"), "rest_deg"), 20, 1e-9);
   import(world(box("<joint name=\"j\" range=\"20 60\"/>")));
   EXPECT_FALSE(find("joint", "j").contains("limits_deg"));
+  EXPECT_TRUE(hasNote("joint j: its range is no limit"));
   import(world(box("<joint name=\"j\" range=\"-20 60\"/>"), "<compiler autolimits=\"true\"/>"));
   expectNear(find("joint", "j"), "limits_deg", {-20, 60});
 }

@@ -309,17 +309,19 @@ INSTANTIATE_TEST_SUITE_P(Compilers, MassComparison,
                                          "angle=\"radian\" balanceinertia=\"true\""));
 
 TEST_F(MujocoComparison, LimitsApplyInTheSameCases) {
-  for (const char* compiler : {"", "<compiler autolimits=\"true\"/>", "<compiler angle=\"radian\"/>"})
-    for (const char* joint :
-         {"range=\"-1 2\"", "limited=\"true\" range=\"-1 2\"", "limited=\"false\" range=\"-1 2\"", "limited=\"auto\" range=\"-1 2\"", ""}) {
-      const std::string file = write("limits.xml", std::string("<mujoco>") + compiler + "<worldbody><body><joint name=\"j\" " + joint +
-                                                       "/><geom size=\"0.1\"/></body></worldbody></mujoco>");
-      importFile(file);
-      Mujoco mujoco(file);
-      const auto limits = numbers(find("joint", "j"), "limits_deg");
-      ASSERT_EQ(limits.size(), mujoco.model().jnt_limited[0] ? 2U : 0U) << compiler << joint;
-      for (std::size_t i = 0; i < limits.size(); ++i) EXPECT_NEAR(limits[i], mujoco.model().jnt_range[i] * deg_per_rad, 1e-9);
-    }
+  const auto compare = [&](const std::string& compiler, const std::string& joint) {
+    const std::string file = write("limits.xml", "<mujoco>" + compiler + "<worldbody><body><joint name=\"j\" " + joint +
+                                                     "/><geom size=\"0.1\"/></body></worldbody></mujoco>");
+    importFile(file);
+    Mujoco mujoco(file);
+    const auto limits = numbers(find("joint", "j"), "limits_deg");
+    ASSERT_EQ(limits.size(), mujoco.model().jnt_limited[0] ? 2U : 0U) << compiler << joint;
+    for (std::size_t i = 0; i < limits.size(); ++i) EXPECT_NEAR(limits[i], mujoco.model().jnt_range[i] * deg_per_rad, 1e-9);
+  };
+  const std::string automatic = "<compiler autolimits=\"true\"/>";
+  for (const std::string& compiler : {std::string(), automatic, std::string("<compiler angle=\"radian\"/>")})
+    for (const char* joint : {"limited=\"true\" range=\"-1 2\"", "limited=\"false\" range=\"-1 2\"", ""}) compare(compiler, joint);
+  for (const char* joint : {"range=\"-1 2\"", "limited=\"auto\" range=\"-1 2\""}) compare(automatic, joint);
 }
 
 /// A rod whose centre of mass lies off all axes, on several joints.
