@@ -14,8 +14,8 @@ namespace {
 constexpr double enough = 0.01;  ///< a decrease of logMisfit that does not justify another round
 constexpr double normal_95 = 1.96;
 /// Differences for derivatives, in coordinates. Wide ones first: dry friction hides small changes, so that the tangent is flatter than the
-/// secant. Each is a quarter of the one before, down to FitProblem::finest_difference.
-constexpr double wide = 0.2, refinement = 4;
+/// secant.
+constexpr double wide = 0.2, narrow = 0.05;
 
 /// z with one coordinate moved by `difference` times its size, or times 1 if that is larger.
 Eigen::VectorXd movedBy(Eigen::VectorXd z, Eigen::Index coordinate, double difference) {
@@ -155,9 +155,9 @@ FitResult fit(const Comparison& comparison, const FitProblem& problem, int round
     const Point before = best;
     const bool down = stepDown(comparison, problem, jacobian, damping, best);
     const bool settled = best.log_misfit > before.log_misfit - enough;
-    if ((settled && fresh && difference <= problem.finest_difference) || round + 1 == round_count) break;
+    if ((settled && fresh && difference == narrow) || round + 1 == round_count) break;
     if (settled) {
-      if (fresh) difference = std::max(problem.finest_difference, difference / refinement);
+      if (fresh) difference = narrow;
       jacobian = derivatives(comparison, problem, best, difference);
     } else if (down) {
       update(jacobian, before, best);

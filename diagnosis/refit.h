@@ -15,7 +15,6 @@ struct FitProblem {
   Predicted predicted;
   std::function<Eigen::VectorXd(const Eigen::VectorXd&)> clamped;
   Eigen::VectorXd start;
-  double finest_difference = 0.05;  ///< smallest difference for derivatives, in coordinates
 };
 
 struct FitResult {

@@ -14,9 +14,6 @@ namespace musclesim {
 namespace {
 
 constexpr int tuning_round_count = 20;
-/// Masses and lengths are weighed and measured to half a percent or so, and a machine's angles show it; dry friction hides such changes only
-/// of the few numbers that are friction.
-constexpr double tuning_difference = 0.005;
 
 }  // namespace
 
@@ -28,7 +25,6 @@ Tuning tune(const std::vector<Recording>& recordings, DiagnosisOptions& options)
   FitProblem problem;
   problem.start = Eigen::VectorXd::Zero(plant.tunedCount());
   problem.clamped = Plant::clampedTuning;
-  problem.finest_difference = tuning_difference;
   problem.predicted = [&](const Eigen::VectorXd& z) {
     {
       const std::lock_guard lock(mutex);

@@ -23,6 +23,10 @@ int linkCount(dWorldID world, double minimum_length_mm) {
   return std::max(2, static_cast<int>(std::lround(std::clamp(minimum_length_mm / shortestLinkMm(world), 0.0, 1e4))));
 }
 
+bool isLine(dWorldID world, MuscleModel model) {
+  return MuscleSettings(World::of(world).parameters(), model).line;
+}
+
 std::vector<Vector> pointsAlong(const Vector& start, const Vector& start_control, const Vector& end_control, const Vector& end, int count) {
   std::vector<Vector> points;
   for (int i = 0; i <= count; ++i) points.push_back(bezierPoint(start, start_control, end_control, end, static_cast<double>(i) / count));
@@ -34,6 +38,6 @@ std::vector<Vector> pointsAlong(const Vector& start, const Vector& start_control
 Muscle::Muscle(dWorldID world, dSpaceID space, const Vector& start, const Vector& start_control, const Vector& end_control,
                const Vector& end, double minimum_length, double maximum_length, MuscleModel model)
     : Actuator(world, space, pointsAlong(start, start_control, end_control, end, linkCount(world, minimum_length)), minimum_length,
-               linkCount(world, minimum_length) * shortestLinkMm(world), maximum_length, model) {}
+               isLine(world, model) ? minimum_length : linkCount(world, minimum_length) * shortestLinkMm(world), maximum_length, model) {}
 
 }  // namespace musclesim

@@ -1,5 +1,7 @@
 #include "internal_step.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -7,6 +9,7 @@
 
 #include "../robot/actuator_step.h"
 #include "bone_mobility.h"
+#include "musclesim/base/error.h"
 #include "musclesim/base/units.h"
 #include "musclesim/robot/line_of_pull.h"
 
@@ -124,7 +127,12 @@ int automaticSubsteps(double step_s, const PhysicsSettings& physics, const std::
   if (!std::isfinite(physics.longest_internal_step_s)) return 1;
   const double longest_s = std::min({physics.longest_internal_step_s, physics.stability_margin_ratio * longestChainStepS(actuators),
                                      line_margin_ratio * longestLineStepS(physics, joints, actuators)});
-  return static_cast<int>(std::max(1.0, std::ceil(step_s / longest_s - 1e-9)));
+  const double count = std::max(1.0, std::ceil(step_s / longest_s - 1e-9));
+  constexpr double most = 1e6;  // as for --substeps
+  if (!(longest_s > 0) || !(count <= most))
+    throw BadParameter("internal steps per step", fmt::format("{}", count),
+                       "be at most 1000000: the force of a muscle or an actuator grows too steeply with its length");
+  return static_cast<int>(count);
 }
 
 void adaptJoints(double h_s, double before, const PhysicsSettings& physics, const std::vector<std::unique_ptr<Joint>>& joints,

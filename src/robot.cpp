@@ -23,6 +23,7 @@ namespace fs = std::filesystem;
 
 /// A simulation with the robot as built, to look at.
 std::unique_ptr<Simulation> built(const ModelOptions& model, const std::string& robot) {
+  if (model.robot) throw BadParameter("--robot", *model.robot, "be left out: the robot is the argument after the sub-command");
   const ReplayOptions options = replayOptionsFrom(model);
   RecordingInfo plant;
   plant.robot = robot;
@@ -59,7 +60,7 @@ int show(const ModelOptions& model, const ShowArguments& arguments) {
   fmt::print("{}", describeRobot(simulation->world(), simulation->robot()));
   const fs::path stem = arguments.out.value_or(simulation->robot().name());
   PictureOptions pictures = arguments.pictures;
-  pictures.screenshot = stem.string() + ".png";
+  if (!pictures.screenshot) pictures.screenshot = stem.string() + ".png";
   const auto painter = makePictures(pictures, *simulation);
   painter->see(simulation->robot().getState());
   painter->finish();

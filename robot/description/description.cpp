@@ -41,7 +41,7 @@ void requireName(const FilePlace& place, const std::string& name) {
 ParameterEntry readParameter(TableReader table, const std::string& name) {
   ParameterEntry entry{.name = name, .unit = {}, .meaning = {}, .value = table.number("value"), .minimum = 0, .maximum = 0};
   const bool is_word = std::ranges::all_of(name, [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; });
-  if (!is_word || std::isdigit(static_cast<unsigned char>(name[0])))
+  if (name.empty() || !is_word || !std::isalpha(static_cast<unsigned char>(name[0])))
     table.place().refuse("the name of a parameter must consist of letters, digits and _ and begin with a letter");
   std::tie(entry.minimum, entry.maximum) = table.range("range");
   if (!(entry.value >= entry.minimum && entry.value <= entry.maximum))
@@ -82,6 +82,8 @@ BodyEntry readBody(TableReader table) {
   body.inertia_g_mm2 = table.quantities("inertia_g_mm2");
   if (const std::size_t count = body.inertia_g_mm2.size(); count != 0 && count != 3 && count != 6)
     table.place("inertia_g_mm2").refuse(fmt::format("has {} numbers: must have 3 (xx, yy, zz) or 6 (xx, yy, zz, xy, xz, yz)", count));
+  if (!body.inertia_g_mm2.empty() && !body.parts.front().mass_g)
+    table.place("inertia_g_mm2").refuse("needs mass_g, the mass of the whole body, and not a density");
   body.center_of_mass_mm = table.optionalVector("center_of_mass_mm");
   const bool massless_parts = !body.inertia_g_mm2.empty();
   if (body.center_of_mass_mm && !massless_parts) table.place("center_of_mass_mm").refuse("needs inertia_g_mm2, which is about that point");
@@ -124,10 +126,10 @@ JointEntry readJoint(TableReader table) {
   const bool two_axes = joint.type == "hinge2" || joint.type == "universal", ball = joint.type == "ball";
   const bool one_axis = slider || joint.type == "hinge" || joint.type == "universal1";
   if (turns) joint.at_mm = table.vector("at_mm");
-  if (ball) joint.axis = table.optionalVector("axis");
-  if (one_axis || two_axes) joint.axis = table.vector("axis");
-  if (two_axes) joint.axis2 = table.vector("axis2");
-  if (ball && joint.axis) joint.axis3 = table.vector("axis3");
+  if (ball) joint.axis = table.optionalDirection("axis");
+  if (one_axis || two_axes) joint.axis = table.direction("axis");
+  if (two_axes) joint.axis2 = table.direction("axis2");
+  if (ball && joint.axis) joint.axis3 = table.direction("axis3");
   if (slider) joint.limits = table.optionalPair("limits_mm");
   if (turns && (!ball || joint.axis)) joint.limits = table.optionalPair("limits_deg");
   if (two_axes || (ball && joint.axis)) joint.limits2 = table.optionalPair("limits2_deg");
@@ -158,7 +160,7 @@ PulleyEntry readPulley(TableReader table) {
   pulley.place = table.place();
   pulley.body = table.optionalText("body").value_or(world);
   pulley.at_mm = table.vector("at_mm");
-  pulley.axis = table.optionalVector("axis");
+  pulley.axis = table.optionalDirection("axis");
   pulley.radius_mm = table.quantity("radius_mm");
   table.requireNoOthers();
   return pulley;
@@ -169,7 +171,7 @@ End readEnd(TableReader table) {
   end.place = table.place();
   end.body = table.text("body");
   end.at_mm = table.vector("at_mm");
-  end.lever = table.optionalVector("lever");
+  end.lever = table.optionalDirection("lever");
   end.may_be_off = table.flag("may_be_off", true);
   table.requireNoOthers();
   return end;
@@ -274,7 +276,7 @@ WallEntry readWall(TableReader table) {
   wall.place = table.place();
   wall.body = table.optionalText("body").value_or("");
   wall.at_mm = table.vector("at_mm");
-  wall.normal = table.vector("normal");
+  wall.normal = table.direction("normal");
   wall.stiffness_N_per_mm = table.quantity("stiffness_N_per_mm");
   table.requireNoOthers();
   return wall;
@@ -366,6 +368,11 @@ void requireHeld(const Description& d) {
     if (joint.type == "fixed" && !join(fixed_to, joint.body, joint.to))
       joint.place.refuse("closes a cycle of fixed joints: what it fixes is fixed already");
   }
+  const auto holdsFixedBody = [&](const JointEntry& joint) {
+    return std::ranges::any_of(d.bodies, [&](const BodyEntry& b) { return b.fixed && b.name == joint.body && joint.to == world; });
+  };
+  for (const JointEntry& joint : d.joints)
+    if (holdsFixedBody(joint)) joint.place.refuse("joins \"" + joint.body + "\" to the world, to which fixed = true fixes it already");
   for (const BodyEntry& body : d.bodies) {
     if (body.fixed && body.free) body.place.refuse("cannot be both fixed and free");
     if (body.fixed || body.free) join(held_by, body.name, world);

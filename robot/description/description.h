@@ -20,7 +20,7 @@ struct ParameterEntry {
 /// One rigid shape.
 struct Part {
   std::string name;  ///< of a part beside the first; empty: the body's name with a number
-  std::string type;  ///< box, sphere, capsule, none
+  std::string type;  ///< box, sphere, capsule, cylinder, none
   QuantityVector size_mm;
   Quantity radius_mm, length_mm;
   QuantityVector at_mm;

@@ -11,8 +11,6 @@
 
 namespace musclesim::description {
 
-namespace {
-
 /// muParser's messages speak of tokens and offsets; these say what a reader of the file can do.
 std::string problemOf(const mu::Parser::exception_type& error, const std::map<std::string, double>& names) {
   if (error.GetCode() != mu::ecUNASSIGNABLE_TOKEN) return error.GetMsg();
@@ -23,8 +21,6 @@ std::string problemOf(const mu::Parser::exception_type& error, const std::map<st
                      nearest.empty() ? "" : ", did you mean \"" + nearest + "\"?", fmt::join(known, ", "));
 }
 
-}  // namespace
-
 double Expressions::operator()(const Quantity& quantity) const {
   if (quantity.expression.empty()) return quantity.number;
   double value = 0;
@@ -33,7 +29,9 @@ double Expressions::operator()(const Quantity& quantity) const {
     parser.DefineConst("pi", std::numbers::pi);
     for (const auto& [name, number] : names_) parser.DefineConst(name, number);
     parser.SetExpr(quantity.expression);
-    value = parser.Eval();
+    int value_count = 0;
+    value = *parser.Eval(value_count);
+    if (value_count != 1) quantity.place.refuse("\"" + quantity.expression + "\" must be one number");
   } catch (const mu::Parser::exception_type& error) {
     quantity.place.refuse("\"" + quantity.expression + "\": " + problemOf(error, names_));
   }

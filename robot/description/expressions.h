@@ -1,6 +1,8 @@
 /// Values of expressions over named numbers.
 #pragma once
 
+#include <muParser.h>
+
 #include <array>
 #include <map>
 #include <string>
@@ -9,6 +11,9 @@
 #include "table_reader.h"
 
 namespace musclesim::description {
+
+/// What a reader of the file can do about an error of muParser.
+std::string problemOf(const mu::ParserError& error, const std::map<std::string, double>& names);
 
 /// Evaluates quantities with muParser: + - * / ^, parentheses, sqrt, sin, cos (radians) and its like, the constant pi, and the names given.
 class Expressions {

@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "../springs.h"
 #include "musclesim/base/error.h"
@@ -21,19 +22,22 @@ namespace {
 /// A linear actuator whose tension is an expression over p, l_mm and the file's parameters.
 class ExpressionActuator final : public LinearActuator {
  public:
-  ExpressionActuator(World& world, dSpaceID space, const Vector& start, const Vector& end, double longest_mm, const Quantity& force_N,
-                     const Expressions& names)
-      : LinearActuator(world, space, start, end, 0, longest_mm), place_(force_N.place) {
+  ExpressionActuator(World& world, dSpaceID space, const Vector& start, const Vector& end, const std::array<double, 2>& length_mm,
+                     const Quantity& force_N, const Expressions& names)
+      : LinearActuator(world, space, start, end, length_mm[0], length_mm[1]), place_(force_N.place) {
     parser_.EnableOptimizer(false);  // it rearranges sums, which changes the last digits
-    for (const auto& [name, number] : names.names()) parser_.DefineConst(name, number);
-    parser_.DefineVar("p", &pressure_);
-    parser_.DefineVar("l_mm", &length_mm_);
-    parser_.SetExpr(force_N.expression);
-    setPressure(0);
     try {
-      parser_.Eval();
+      parser_.DefineConst("pi", std::numbers::pi);
+      for (const auto& [name, number] : names.names()) parser_.DefineConst(name, number);
+      parser_.DefineVar("p", &pressure_);
+      parser_.DefineVar("l_mm", &length_mm_);
+      parser_.SetExpr(force_N.expression);
+      int value_count = 0;
+      parser_.Eval(value_count);
+      if (value_count != 1) place_.refuse("\"" + force_N.expression + "\" must be one number");
     } catch (const mu::Parser::exception_type& error) {
-      place_.refuse("\"" + force_N.expression + "\": " + error.GetMsg());
+      place_.refuse("force_N = \"" + force_N.expression + "\": " + problemOf(error, names.names()) +
+                    "; p and l_mm are the pressure and the length");
     }
     ready_ = true;
   }
@@ -77,6 +81,9 @@ FileRobot::FileRobot(World& world, std::shared_ptr<const Description> descriptio
   for (const BodyEntry& body : description_->bodies)
     if (body.fixed) at(body.place, [&] { bodies_.at(body.name)->fix(); });
   buildJoints(false);
+  for (const PulleyEntry& pulley : description_->pulleys)
+    if (const double radius_mm = value_(pulley.radius_mm); !(radius_mm > 0))
+      pulley.radius_mm.place.refuse(fmt::format("{} must be positive", radius_mm));
   for (const MuscleEntry& muscle : description_->muscles) addActuator(at(muscle.place, [&] { return buildMuscle(muscle); }));
   for (const MuscleEntry& entry : description_->actuators) {
     Actuator* actuator = at(entry.place, [&] { return buildActuator(entry); });
@@ -274,14 +281,15 @@ Actuator* FileRobot::buildActuator(const MuscleEntry& entry) {
   if (entry.force_N.empty())
     actuator = new LinearActuator(world(), space(), start_mm, end_mm, shortest_mm, longest_mm);
   else
-    actuator = new ExpressionActuator(world(), space(), start_mm, end_mm, longest_mm, {0, entry.force_N, entry.place}, value_);
+    actuator =
+        new ExpressionActuator(world(), space(), start_mm, end_mm, {shortest_mm, longest_mm}, {0, entry.force_N, entry.place}, value_);
   finish(entry, *actuator);
   return actuator;
 }
 
 void FileRobot::finish(const MuscleEntry& entry, Actuator& actuator) {
   actuator.setName(entry.name);
-  if (auto law = forceLaw(entry, value_(entry.length_mm)[0], value_(entry.length_mm)[1])) actuator.setForceLaw(std::move(law));
+  if (auto law = forceLaw(entry, actuator.minimumLengthMm(), actuator.maximumLengthMm())) actuator.setForceLaw(std::move(law));
   if (entry.color) {
     const Vector color = value_(*entry.color);
     actuator.setColor(color.x(), color.y(), color.z(), entry.color_name);

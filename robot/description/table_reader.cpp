@@ -144,7 +144,15 @@ QuantityVector TableReader::axisOf(const toml::node& node, const std::string& ke
 }
 
 QuantityVector TableReader::vector(const std::string& key) {
-  return axisOf(need(key, "a vector of three numbers or expressions"), key);
+  return listOf<3>(need(key, "a vector of three numbers or expressions"), key);
+}
+
+QuantityVector TableReader::direction(const std::string& key) {
+  return axisOf(need(key, "\"x\", \"y\", \"z\" or a vector of three numbers or expressions"), key);
+}
+
+std::optional<QuantityVector> TableReader::optionalDirection(const std::string& key) {
+  return find(key) ? std::optional(direction(key)) : std::nullopt;
 }
 
 std::optional<QuantityVector> TableReader::optionalVector(const std::string& key) {

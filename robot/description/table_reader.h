@@ -45,6 +45,9 @@ class TableReader {
   std::optional<Quantity> optionalQuantity(const std::string& key);
   QuantityVector vector(const std::string& key);
   std::optional<QuantityVector> optionalVector(const std::string& key);
+  /// A vector, or "x", "y" or "z".
+  QuantityVector direction(const std::string& key);
+  std::optional<QuantityVector> optionalDirection(const std::string& key);
   std::vector<QuantityVector> vectors(const std::string& key);
   std::optional<std::array<Quantity, 2>> optionalPair(const std::string& key);
   /// A list of numbers or expressions, with any number of entries; empty if there is none.
