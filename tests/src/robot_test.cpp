@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "program.h"
@@ -107,6 +108,75 @@ TEST_F(RobotCommand, ExportedRobotsCanBeUsed) {
     EXPECT_EQ(checked.status, 0) << checked.err;
   }
   EXPECT_EQ(run({"robot", "export", "nobody"}).status, 2);
+}
+
+/// A tenth too heavy, damped so that the misfit has one valley: the number is found within its interval, and nothing is left to explain.
+TEST_F(RobotCommand, DiagnoseTunesANumberOfAFile) {
+  ASSERT_EQ(run({"robot", "new", "lever"}).status, 0);
+  change("lever.toml", "at_mm = [0, 0, 0]      ", "at_mm = [60, 0, 0]      ");
+  change("lever.toml", "# damping_Nms_per_rad = 0.01", "damping_Nms_per_rad = 0.3");
+  for (const std::string seed : {"1", "2"}) {
+    const auto ran =
+        run({"run", "--simple", "--quiet", "--robot", "lever.toml", "--muscle", "line", "--controller", "random", "--decision-interval",
+             "0.5", "--duration", "3", "--seed", seed, "--set", "lever.bar_kg=0.44", "--record", "r" + seed + ".csv"});
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    std::ofstream(folder_ / ("r" + seed + ".json")) << R"({"format": "musclesim-recording-1", "robot": "lever.toml"})";
+  }
+  const auto found = run({"diagnose", "r1.csv", "r2.csv", "--muscle", "line", "--tune", "lever.bar_kg", "--out", "answer", "--quiet"});
+  ASSERT_EQ(found.status, 0) << found.err;
+  const auto answer = nlohmann::json::parse(text("answer/diagnosis.json"));
+  EXPECT_EQ(answer.at("verdict"), "no_gap") << found.out;
+  const auto& tuned = answer.at("tuned").at(0);
+  EXPECT_EQ(tuned.at("name"), "lever.bar_kg");
+  EXPECT_NEAR(tuned.at("value").get<double>(), 0.44, 1e-4);
+  EXPECT_LE(tuned.at("ci95").at(0).get<double>(), 0.44);
+  EXPECT_GE(tuned.at("ci95").at(1).get<double>(), 0.44);
+}
+
+/// Three known loads, one lagging valve: "varies" allows to diagnose them together.
+TEST_F(RobotCommand, RecordingsUnderDifferentKnownLoadsAreDiagnosedTogether) {
+  std::ofstream(folder_ / "lag.json") << R"({"format": "musclesim-effects-1", "effects": [{"id": "valve_lag", "component": "all",
+    "parameters": {"fill_time_constant_s": 0.05, "vent_time_constant_s": 0.1}}]})";
+  const auto writeSidecar = [&](const std::string& load, const std::string& more) {
+    std::ofstream(folder_ / ("r" + load + ".json"))
+        << R"({"format": "musclesim-recording-1", "robot": "rig", "robot_parameters": {"load_kg": )" << load << "}" << more << "}";
+  };
+  for (const std::string load : {"1", "2", "3"}) {
+    const auto ran = run({"run",
+                          "--simple",
+                          "--quiet",
+                          "--robot",
+                          "rig",
+                          "--muscle",
+                          "line",
+                          "--controller",
+                          "random",
+                          "--decision-interval",
+                          "0.5",
+                          "--duration",
+                          "3",
+                          "--seed",
+                          load,
+                          "--effects",
+                          "lag.json",
+                          "--set",
+                          "rig.load_kg=" + load,
+                          "--record",
+                          "r" + load + ".csv"});
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    writeSidecar(load, "");
+  }
+  const std::vector<std::string> diagnose = {"diagnose", "r1.csv", "r2.csv", "r3.csv", "--muscle", "line", "--out", "answer", "--quiet"};
+  const auto refused = run(diagnose);
+  EXPECT_EQ(refused.status, 3);
+  EXPECT_TRUE(contains(refused.err, "varies")) << refused.err;
+  for (const std::string load : {"1", "2", "3"}) writeSidecar(load, R"(, "varies": ["load_kg"])");
+  const auto found = run(diagnose);
+  ASSERT_EQ(found.status, 0) << found.err;
+  EXPECT_TRUE(contains(found.out, "valve_lag@muscle_0")) << found.out;
+  std::vector<std::string> tuned = diagnose;
+  tuned.insert(tuned.end(), {"--tune", "rig.load_kg"});
+  EXPECT_EQ(run(tuned).status, 2) << "a number that varies cannot be tuned";
 }
 
 TEST_F(RobotCommand, ImportsAnArmThatFalls) {
