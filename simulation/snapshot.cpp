@@ -158,7 +158,9 @@ Bounds boundsOf(const Snapshot& snapshot) {
   };
   for (const DrawnPart& part : snapshot.parts) {
     const Eigen::Vector3f center = part.pose.topRightCorner<3, 1>();
-    const Eigen::Vector3f axis = part.pose.block<3, 1>(0, 2) * (part.kind == Shape::Kind::capped_cylinder || part.kind == Shape::Kind::cylinder ? part.size_mm.y() / 2 : 0);
+    const Eigen::Vector3f axis =
+        part.pose.block<3, 1>(0, 2) *
+        (part.kind == Shape::Kind::capped_cylinder || part.kind == Shape::Kind::cylinder ? part.size_mm.y() / 2 : 0);
     const float margin = part.kind == Shape::Kind::box ? part.size_mm.norm() / 2 : part.size_mm.x();
     add(center + axis, margin);
     add(center - axis, margin);

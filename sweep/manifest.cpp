@@ -4,12 +4,12 @@
 #include <cmath>
 #include <filesystem>
 
-#include "robots_hash.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
 #include "musclesim/base/json_document.h"
 #include "musclesim/log/csv.h"
 #include "musclesim/version.h"
+#include "robots_hash.h"
 #include "sweep.h"
 
 namespace musclesim {

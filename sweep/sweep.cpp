@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <set>
 
-#include "musclesim/base/hash.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
+#include "musclesim/base/hash.h"
 #include "musclesim/log/recording.h"
 
 namespace musclesim {

@@ -12,12 +12,12 @@
 #include <thread>
 
 #include "claims.h"
-#include "musclesim/base/hash.h"
-#include "robots_hash.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
+#include "musclesim/base/hash.h"
 #include "musclesim/version.h"
 #include "result.h"
+#include "robots_hash.h"
 #include "sweep.h"
 
 namespace musclesim {

@@ -4,10 +4,10 @@
 #include <set>
 #include <thread>
 
+#include "musclesim/base/hash.h"
 #include "musclesim/base/random.h"
 #include "musclesim/simulation/simulation.h"
 #include "support/support.h"
-#include "musclesim/base/hash.h"
 
 namespace musclesim {
 namespace {

@@ -114,7 +114,6 @@ class Actuator : public WorldPart {
   /// Tension at the present length without effects, N: calculateForce, but a line muscle never pushes.
   double cleanTensionN(double pressure_ratio) const;
 
-
  protected:
   /// `points` are the chain's link ends, link count + 1 of them. `given_minimum_length_mm` is what the user asked for.
   /// Throws BadParameter if a point is not finite and, for a chain, if the length along the points is not between the given minimum and the

@@ -12,7 +12,8 @@ namespace musclesim {
 Vector bezierPoint(const Vector& start, const Vector& start_control, const Vector& end_control, const Vector& end, double t);
 
 /// The number of links is round(minimum_length / (2 bead radii)), at least 2. The minimum length becomes the number of links times a bead's
-/// diameter; a line muscle keeps the given one. Link i runs between the curve's points at t = i / n and (i + 1) / n, n the number of links. Source: Braun 2007, Section 3.1.
+/// diameter; a line muscle keeps the given one. Link i runs between the curve's points at t = i / n and (i + 1) / n, n the number of links.
+/// Source: Braun 2007, Section 3.1.
 class Muscle : public Actuator {
  public:
   /// Points in mm, world frame; lengths in mm. Throws BadParameter if the curve's chain is shorter than `minimum_length` or longer than
