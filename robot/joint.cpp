@@ -81,16 +81,20 @@ int Joint::angleCount() const {
   return kind_ == Kind::hinge2 || kind_ == Kind::universal ? 2 : 0;
 }
 
+/// The number of turns that brings an angle between -180 and 180 degrees nearest to the one counted last.
+double Joint::turnsAt(double wrapped_deg, int axis) const {
+  return std::round((counted_deg_[axis] - wrapped_deg) / 360);
+}
+
 double Joint::angleDeg(int axis) const {
-  const double wrapped = wrappedAngleDeg(axis), since_deg = counted_deg_[axis] - (wrapped + 360 * turns_[axis]);
-  return wrapped + 360 * (turns_[axis] + std::round(since_deg / 360));
+  const double wrapped_deg = wrappedAngleDeg(axis);
+  return wrapped_deg + 360 * turnsAt(wrapped_deg, axis);
 }
 
 void Joint::countTurns(bool from_zero) {
   for (int axis = 0; axis < angleCount(); ++axis) {
-    const double wrapped = wrappedAngleDeg(axis);
-    turns_[axis] = from_zero ? 0 : static_cast<int>(std::lround((angleDeg(axis) - wrapped) / 360));
-    counted_deg_[axis] = wrapped + 360 * turns_[axis];
+    const double wrapped_deg = wrappedAngleDeg(axis);
+    counted_deg_[axis] = wrapped_deg + (from_zero ? 0 : 360 * turnsAt(wrapped_deg, axis));
   }
 }
 

@@ -8,7 +8,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "../joint_limits.h"
 #include "../springs.h"
+#include "../vector_checks.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/units.h"
 #include "musclesim/robot/force_law_choice.h"
@@ -113,10 +115,14 @@ Primitive* FileRobot::buildPart(const Part& part, bool massless, bool collides) 
   const double density = part.density_g_per_mm3 ? value_(*part.density_g_per_mm3) : 0;
   const dSpaceID touching = collides && part.type != "none" ? space() : nullptr;
   Primitive* made = nullptr;
-  const auto size = [&](const Quantity& quantity) { return value_(quantity); };
-  if (part.mass_g && !(mass_g > 0)) throw BadParameter("mass_g", fmt::format("{}", mass_g), "be positive");
+  const auto size = [&](const Quantity& quantity) {
+    const double number = value_(quantity);
+    if (!(number > 0)) quantity.place.refuse(fmt::format("{} must be positive", number));
+    return number;
+  };
+  if (part.mass_g) size(*part.mass_g);
   if (part.type == "box") {
-    const Vector edges_mm = value_(part.size_mm);
+    const Vector edges_mm(size(part.size_mm[0]), size(part.size_mm[1]), size(part.size_mm[2]));
     made = new Box(world(), touching, center_mm, mass_g, density, edges_mm.x(), edges_mm.y(), edges_mm.z());
   } else if (part.type == "capsule") {
     made = new CappedCylinder(world(), touching, center_mm, mass_g, density, size(part.radius_mm), size(part.length_mm));
@@ -129,7 +135,7 @@ Primitive* FileRobot::buildPart(const Part& part, bool massless, bool collides) 
   }
   if (part.color) {
     const Vector color = value_(*part.color);
-    made->setColor(color.x(), color.y(), color.z());
+    at(part.color->front().place, [&] { made->setColor(color.x(), color.y(), color.z()); });
   }
   return made;
 }
@@ -164,26 +170,35 @@ void FileRobot::setMassProperties(const BodyEntry& entry, Primitive& body) const
 Joint* FileRobot::attach(const JointEntry& entry, Primitive& body, Primitive* other) const {
   const auto limits = [&](const std::optional<std::array<Quantity, 2>>& pair) {
     const auto [low, high] = value_(pair.value());
+    const bool middle = entry.type == "ball" && &pair == &entry.limits2;
+    at(pair->front().place, [&] {
+      requireLimits("joint " + entry.name, {low, high}, middle ? farthest_middle_stop_deg : farthest_stop_deg);
+    });
     return Limits{low, high};
   };
+  const auto direction = [&](const std::optional<QuantityVector>& axis) {
+    const Vector vector = value_(axis.value());
+    at(axis->front().place, [&] { requireDirection("axis of joint " + entry.name, vector); });
+    return vector;
+  };
   if (entry.type == "slider") {
-    Joint* slider = body.attachSlider(other, value_(*entry.axis));
+    Joint* slider = body.attachSlider(other, direction(entry.axis));
     if (entry.limits) slider->setSliderStopsMm(value_(*entry.limits)[0], value_(*entry.limits)[1]);
     return slider;
   }
   const Vector anchor_mm = value_(entry.at_mm);
   if (entry.type == "ball" && entry.axis)
-    return body.attachBall(other, anchor_mm, value_(*entry.axis), value_(*entry.axis3), limits(entry.limits), limits(entry.limits2),
+    return body.attachBall(other, anchor_mm, direction(entry.axis), direction(entry.axis3), limits(entry.limits), limits(entry.limits2),
                            limits(entry.limits3));
   if (entry.type == "ball") return body.attachBall(other, anchor_mm);
-  const Vector axis = value_(*entry.axis);
+  const Vector axis = direction(entry.axis);
   if (entry.type == "hinge" && entry.limits)
     return body.attachHinge(other, anchor_mm, axis, limits(entry.limits).low_deg, limits(entry.limits).high_deg);
   if (entry.type == "hinge") return body.attachHinge(other, anchor_mm, axis);
   if (entry.type == "universal1" && entry.limits)
     return body.attachUniversal(other, anchor_mm, axis, limits(entry.limits).low_deg, limits(entry.limits).high_deg);
   if (entry.type == "universal1") return body.attachUniversal(other, anchor_mm, axis);
-  const Vector axis2 = value_(*entry.axis2);
+  const Vector axis2 = direction(entry.axis2);
   if (entry.type == "hinge2")
     return entry.limits ? body.attachHinge(other, anchor_mm, axis, axis2, limits(entry.limits), limits(entry.limits2))
                         : body.attachHinge(other, anchor_mm, axis, axis2);
@@ -255,7 +270,9 @@ Actuator* FileRobot::buildMuscle(const MuscleEntry& entry) {
   const MuscleModel model = entry.model == "chain"  ? MuscleModel::chain
                             : entry.model == "line" ? MuscleModel::line
                                                     : MuscleModel::by_parameter;
-  auto* muscle = new Muscle(world(), space(), start_mm, control_mm[0], control_mm[1], end_mm, shortest_mm, longest_mm, model);
+  auto* muscle = at(entry.length_mm[0].place, [&] {
+    return new Muscle(world(), space(), start_mm, control_mm[0], control_mm[1], end_mm, shortest_mm, longest_mm, model);
+  });
   finish(entry, *muscle);
   buildPath(entry, *muscle);
   return muscle;
@@ -271,7 +288,7 @@ void FileRobot::buildPath(const MuscleEntry& entry, Actuator& muscle) const {
       muscle.addPulley(find(pulley->body), value_(pulley->at_mm), axis, value_(pulley->radius_mm), side_mm);
     });
   if (entry.tendon_mm) muscle.setTendonMm(value_(*entry.tendon_mm));
-  muscle.finishPath();
+  at(entry.length_mm[0].place, [&] { muscle.finishPath(); });
 }
 
 Actuator* FileRobot::buildActuator(const MuscleEntry& entry) {

@@ -56,12 +56,12 @@ class Joint {
   Vector separation() const;
   int angleCount() const;
   double wrappedAngleDeg(int axis) const;
+  double turnsAt(double wrapped_deg, int axis) const;
 
   Kind kind_;
   dJointID id_;
   std::string name_;
   JointReference reference_pose_;
-  int turns_[2] = {};           ///< full turns about each axis, to be added to ODE's angle
   double counted_deg_[2] = {};  ///< angle when the turns were counted last
   Vector reference_;  ///< sliders and fixed joints: position of the second body (or environment) relative to the first, in the first's
                       ///< frame, mm
