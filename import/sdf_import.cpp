@@ -269,7 +269,7 @@ class SdfReader {
     if (!ignored.empty()) note(fmt::format("joint {}: limits of {} are not taken over", joint.name, fmt::join(ignored, " and ")));
   }
 
-  void setLimits(SourceJoint& joint, const sdf::JointAxis& axis, bool both) {
+  void setLimits(SourceJoint& joint, const sdf::JointAxis& axis, bool both) const {
     if (both && axis.Lower() > axis.Upper())
       throw BadFile(robot_.file, fmt::format("joint {}: lower = {}: must not be above upper = {}", joint.name, axis.Lower(), axis.Upper()));
     joint.limits = SourceRange{axis.Lower(), axis.Upper()};

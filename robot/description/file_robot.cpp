@@ -169,12 +169,12 @@ void FileRobot::setMassProperties(const BodyEntry& entry, Primitive& body) const
 
 Joint* FileRobot::attach(const JointEntry& entry, Primitive& body, Primitive* other) const {
   const auto limits = [&](const std::optional<std::array<Quantity, 2>>& pair) {
-    const auto [low, high] = value_(pair.value());
+    const std::array<double, 2> values = value_(pair.value());
+    const Limits limits_deg{values[0], values[1]};
     const bool middle = entry.type == "ball" && &pair == &entry.limits2;
-    at(pair->front().place, [&] {
-      requireLimits("joint " + entry.name, {low, high}, middle ? farthest_middle_stop_deg : farthest_stop_deg);
-    });
-    return Limits{low, high};
+    at(pair->front().place,
+       [&] { requireLimits("joint " + entry.name, limits_deg, middle ? farthest_middle_stop_deg : farthest_stop_deg); });
+    return limits_deg;
   };
   const auto direction = [&](const std::optional<QuantityVector>& axis) {
     const Vector vector = value_(axis.value());
@@ -261,7 +261,7 @@ std::unique_ptr<ForceLaw> FileRobot::forceLaw(const MuscleEntry& entry, double s
 }
 
 Actuator* FileRobot::buildMuscle(const MuscleEntry& entry) {
-  const auto [shortest_mm, longest_mm] = value_(entry.length_mm);
+  const std::array<double, 2> length_mm = value_(entry.length_mm);
   const Vector given_end_mm = value_(entry.to.at_mm), given_start_mm = value_(entry.from.at_mm);
   const Vector end_mm = entry.to.may_be_off ? mountedEnd(given_end_mm, leverOf(entry, entry.to)) : given_end_mm;
   const Vector start_mm = entry.from.may_be_off ? mountedStart(given_start_mm, leverOf(entry, entry.from)) : given_start_mm;
@@ -271,7 +271,7 @@ Actuator* FileRobot::buildMuscle(const MuscleEntry& entry) {
                             : entry.model == "line" ? MuscleModel::line
                                                     : MuscleModel::by_parameter;
   auto* muscle = at(entry.length_mm[0].place, [&] {
-    return new Muscle(world(), space(), start_mm, control_mm[0], control_mm[1], end_mm, shortest_mm, longest_mm, model);
+    return new Muscle(world(), space(), start_mm, control_mm[0], control_mm[1], end_mm, length_mm[0], length_mm[1], model);
   });
   finish(entry, *muscle);
   buildPath(entry, *muscle);

@@ -30,7 +30,7 @@ class FileRobot final : public Robot {
   Actuator* buildMuscle(const MuscleEntry& entry);
   Actuator* buildActuator(const MuscleEntry& entry);
   void finish(const MuscleEntry& entry, Actuator& actuator);
-  void buildPath(const MuscleEntry& entry, Actuator& actuator) const;
+  void buildPath(const MuscleEntry& entry, Actuator& muscle) const;
   std::unique_ptr<ForceLaw> forceLaw(const MuscleEntry& entry, double shortest_mm, double longest_mm) const;
   void buildSpring(const SpringEntry& entry) const;
   void buildWall(const WallEntry& entry) const;
