@@ -87,8 +87,8 @@ double Joint::turnsAt(double wrapped_deg, int axis) const {
 }
 
 double Joint::angleDeg(int axis) const {
-  const double wrapped_deg = wrappedAngleDeg(axis);
-  return wrapped_deg + 360 * turnsAt(wrapped_deg, axis);
+  const double wrapped_deg = wrappedAngleDeg(axis), turns = turnsAt(wrapped_deg, axis);
+  return turns == 0 ? wrapped_deg : wrapped_deg + 360 * turns;  // -0 stays -0
 }
 
 void Joint::countTurns(bool from_zero) {
