@@ -11,7 +11,7 @@ root=$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")
 source "$root/scripts/common.sh"
 cd "$root"
 
-say "This takes about 12 minutes from nothing on two idle cores, and 3 minutes if all is built."
+say "This takes about 14 minutes from nothing on two idle cores, and 6 minutes if all is built."
 scripts/install_dependencies.sh --test
 installed=$SECONDS
 # scripts/run.sh builds without tests.
