@@ -219,8 +219,8 @@ std::vector<std::string> oddities(World& world, const Robot& robot) {
   findOverlaps(world, found);
   try {
     if (!robot.actuators().empty()) findMotions(momentArms(world, robot), robot, found);
-  } catch (const BadParameter&) {
-    // Closed loops: the ranges of muscles over the joints are not looked at.
+  } catch (const BadParameter& problem) {
+    found.push_back(fmt::format("not checked whether the joints take muscles out of their ranges: {}", problem.what()));
   }
   return found;
 }

@@ -391,7 +391,6 @@ Description readDescription(const std::string& text, const std::string& file) {
     table.place("format").refuse(fmt::format("\"{}\" must be \"{}\"", format, format_name));
   Description d;
   d.file = file;
-  d.text = text;
   Hash hash;
   hash.add(text);
   d.hash = hash.text();

@@ -122,7 +122,7 @@ struct HandEntry {
 };
 
 struct Description {
-  std::string file, name, text, hash, summary, start_state;
+  std::string file, name, hash, summary, start_state;
   std::vector<ParameterEntry> parameters;
   std::vector<BodyEntry> bodies;
   std::vector<JointEntry> joints;

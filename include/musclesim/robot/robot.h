@@ -77,7 +77,7 @@ class Robot {
   const std::string& name() const { return name_; }
 
   void setName(const std::string& name) { name_ = name; }
-  /// The file that describes this robot, and a hash of its text; empty for robots in C++ and, the file, for those that come with the
+  /// The file that describes this robot, and a hash of the file's text. Both are empty for robots in C++ and for those that come with the
   /// program.
   const std::string& descriptionFile() const { return description_file_; }
   const std::string& descriptionHash() const { return description_hash_; }
