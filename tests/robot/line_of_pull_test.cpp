@@ -296,53 +296,6 @@ TEST(MuscleOverPulley, PullsAPulleyAtItsTwoTangentPoints) {
   EXPECT_LT(torque.norm(), 1e-12);
 }
 
-/// A cable under constant tension.
-class Cable : public LinearActuator {
- public:
-  using LinearActuator::LinearActuator;
-  double calculateForce(double, double) const override { return tension_N; }
-  static constexpr double tension_N = 5;
-};
-
-/// Largest change of kinetic and potential energy of a pendulum and a cable that a constant tension pulls over a pulley, relative to the
-/// largest kinetic energy. The pulley is on the pendulum, off its axis, or on the environment.
-double energyErrorRatio(bool on_pendulum, double step_s) {
-  SimulationOptions options = lineOptions("muscle.slider_friction_N=0");
-  options.step_s = step_s;
-  options.substeps = 1;
-  Simulation simulation(std::move(options));
-  auto* rod = new Box(simulation.world(), nullptr, {0, -150, 0}, 2000, 0, 20, 300, 20);
-  rod->attachHinge(nullptr, {0, 0, 0}, {0, 0, 1});
-  const Vector start = on_pendulum ? Vector(260, -60, 0) : Vector(200, -80, 0),
-               end = on_pendulum ? Vector(260, -300, 20) : Vector(0, -250, 20);
-  auto* cable = new Cable(simulation.world(), simulation.space(), start, end, 10, 1000);
-  cable->connectStartTo(nullptr);
-  cable->connectEndTo(on_pendulum ? nullptr : rod);
-  on_pendulum ? cable->addPulley(rod, {0, -200, 0}, {0, 0, 1}, 25, Vector(-40, -200, 0))
-              : cable->addPulley(nullptr, {60, -120, 0}, {0, 0, 1}, 25, Vector(60, -80, 0));
-  const auto energyJ = [&] { return simulation.mechanicalEnergyJ() + Cable::tension_N * cable->lengthMm() / mm_per_m; };
-  const double start_J = energyJ(), start_mechanical_J = simulation.mechanicalEnergyJ();
-  double error_J = 0, gain_J = 0;
-  bool wound = false;
-  while (simulation.time_s() < 2) {
-    simulation.step();
-    error_J = std::max(error_J, std::abs(energyJ() - start_J));
-    gain_J = std::max(gain_J, std::abs(simulation.mechanicalEnergyJ() - start_mechanical_J));
-    wound = wound || cable->line()->pointsMm().size() > 2;
-  }
-  EXPECT_TRUE(wound);
-  return error_J / gain_J;
-}
-
-TEST(MuscleOverPulley, ConservesTheEnergyOfAPendulum) {
-  for (const bool on_pendulum : {false, true}) {
-    const double coarse = energyErrorRatio(on_pendulum, 2e-3), fine = energyErrorRatio(on_pendulum, 5e-4);
-    EXPECT_LT(fine, 0.002) << on_pendulum;
-
-    EXPECT_LT(fine, 0.4 * coarse) << "the error is that of the step";
-  }
-}
-
 /// Two bones in a row on hinges, with a flexor and an extensor each over pulleys on the hinges.
 class ArmWithPulleys : public Robot {
  public:

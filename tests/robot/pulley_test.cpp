@@ -3,11 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
 #include "musclesim/base/random.h"
+#include "musclesim/base/units.h"
+#include "musclesim/robot/line_of_pull.h"
+#include "musclesim/robot/linear_actuator.h"
+#include "musclesim/simulation/simulation.h"
 
 namespace musclesim {
 namespace {
@@ -216,6 +221,54 @@ TEST(WayPast, IsDrawnOnTheSurface) {
     EXPECT_LE(drawn_mm, way.length_mm);
     EXPECT_LT(((points.front() - a).normalized() - way.start_direction).norm(), 1e-9) << "the drawn way begins along the tangent";
     EXPECT_LT(((b - points.back()).normalized() - way.end_direction).norm(), 1e-9);
+  }
+}
+
+/// A cable under constant tension.
+class Cable : public LinearActuator {
+ public:
+  using LinearActuator::LinearActuator;
+  double calculateForce(double, double) const override { return tension_N; }
+  static constexpr double tension_N = 5;
+};
+
+/// Largest change of kinetic and potential energy of a pendulum and a cable that a constant tension pulls over a pulley, relative to the
+/// largest kinetic energy. The pulley is on the pendulum, off its axis, or on the environment.
+double energyErrorRatio(bool on_pendulum, double step_s) {
+  SimulationOptions options;
+  options.parameters.setFromText("muscle.model=line", "test");
+  options.parameters.setFromText("muscle.slider_friction_N=0", "test");
+  options.step_s = step_s;
+  options.substeps = 1;
+  Simulation simulation(std::move(options));
+  auto* rod = new Box(simulation.world(), nullptr, {0, -150, 0}, 2000, 0, 20, 300, 20);
+  rod->attachHinge(nullptr, {0, 0, 0}, {0, 0, 1});
+  const Vector start = on_pendulum ? Vector(260, -60, 0) : Vector(200, -80, 0),
+               end = on_pendulum ? Vector(260, -300, 20) : Vector(0, -250, 20);
+  auto* cable = new Cable(simulation.world(), simulation.space(), start, end, 10, 1000);
+  cable->connectStartTo(nullptr);
+  cable->connectEndTo(on_pendulum ? nullptr : rod);
+  on_pendulum ? cable->addPulley(rod, {0, -200, 0}, {0, 0, 1}, 25, Vector(-40, -200, 0))
+              : cable->addPulley(nullptr, {60, -120, 0}, {0, 0, 1}, 25, Vector(60, -80, 0));
+  const auto energyJ = [&] { return simulation.mechanicalEnergyJ() + Cable::tension_N * cable->lengthMm() / mm_per_m; };
+  const double start_J = energyJ(), start_mechanical_J = simulation.mechanicalEnergyJ();
+  double error_J = 0, gain_J = 0;
+  bool wound = false;
+  while (simulation.time_s() < 2) {
+    simulation.step();
+    error_J = std::max(error_J, std::abs(energyJ() - start_J));
+    gain_J = std::max(gain_J, std::abs(simulation.mechanicalEnergyJ() - start_mechanical_J));
+    wound = wound || cable->line()->pointsMm().size() > 2;
+  }
+  EXPECT_TRUE(wound);
+  return error_J / gain_J;
+}
+
+TEST(CableOverPulley, ConservesTheEnergyOfAPendulum) {
+  for (const bool on_pendulum : {false, true}) {
+    const double coarse = energyErrorRatio(on_pendulum, 2e-3), fine = energyErrorRatio(on_pendulum, 5e-4);
+    EXPECT_LT(fine, 0.002) << on_pendulum;
+    EXPECT_LT(fine, 0.4 * coarse) << "the error is that of the step";
   }
 }
 
