@@ -11,6 +11,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "log/log_fixture.h"
 #include "musclesim/base/random.h"
 #include "musclesim/base/units.h"
 #include "musclesim/robot/pulley.h"
@@ -41,11 +42,11 @@ enum Tendon { over_cylinder, over_sphere, over_cylinder_with_side };
 class MujocoTendons : public ::testing::Test {
  protected:
   MujocoTendons() {
-    const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "musclesim_pulley_test.xml";
+    const TemporaryFolder folder;  // of this process alone: tests run side by side
+    const std::string file = folder.file("tendons.xml");
     std::ofstream(file) << model_xml;
     std::array<char, 500> error{};
     model.reset(mj_loadXML(file.c_str(), nullptr, error.data(), static_cast<int>(error.size())));
-    std::filesystem::remove(file);
     if (!model) throw std::runtime_error(error.data());
     data.reset(mj_makeData(model.get()));
   }
