@@ -179,16 +179,27 @@ std::string Parameters::choice(const std::string& name, const std::string& defau
   return std::get<std::string>(declare({name, {}, default_value, "", 0, 0, choices, false, description}).value);
 }
 
-void Parameters::requireAllKnown() const {
+std::string Parameters::unknownText(const std::string& name) const {
   std::vector<std::string> names;
   for (const auto& parameter : declared_) names.push_back(parameter.name);
-  for (const auto& given : overrides_) {
-    if (find(given.name)) continue;
-    const std::string nearest = nearestName(given.name, names);
-    refuse(given,
-           fmt::format("there is no parameter \"{}\" in this run{} (musclesim --print-config lists all; add --robot for another robot)",
-                       given.name, nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?"));
-  }
+  const std::string nearest = nearestName(name, names);
+  return fmt::format("there is no parameter \"{}\" in this run{} (musclesim --print-config lists all; add --robot for another robot)", name,
+                     nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?");
+}
+
+void Parameters::requireAllKnown() const {
+  for (const auto& given : overrides_)
+    if (!find(given.name)) refuse(given, unknownText(given.name));
+}
+
+void Parameters::requireScalable(const std::string& name) const {
+  const Parameter* parameter = find(name);
+  if (!parameter) throw BadParameter("tolerance: " + unknownText(name));
+  if (!parameter->choices.empty() || parameter->integer)
+    throw BadParameter(fmt::format("{} = {}: must be a number that can be off by a share of itself to have a tolerance, not {}", name,
+                                   text(parameter->value), parameter->integer ? "a whole number" : "a choice"));
+  if (std::get<double>(parameter->value) == 0)
+    throw BadParameter(fmt::format("{} = 0: must not be 0 to have a tolerance, which is a share of it", name));
 }
 
 std::string Parameters::toToml() const {

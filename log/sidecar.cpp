@@ -33,6 +33,7 @@ const std::vector<std::string>& knownMembers() {
                                                  "noise_std",
                                                  "active_effects",
                                                  "varies",
+                                                 "parameter_tolerance",
                                                  "repeat_of",
                                                  "seed",
                                                  "step_s",
@@ -77,6 +78,7 @@ class SidecarReader {
   std::optional<std::uint64_t> seed() const;
   std::optional<bool> complete() const;
   void readRobotParameters(const json& values, const std::string& prefix, std::map<std::string, Parameter::Value>& parameters) const;
+  void readTolerances(const json& values, const std::string& prefix, std::map<std::string, double>& tolerances) const;
   void readNoise(RecordingInfo& info) const;
   std::vector<ActiveEffect> effects() const;
   void keepFurtherMembers(RecordingInfo& info, std::vector<std::string>& notes) const;
@@ -96,6 +98,7 @@ RecordingInfo SidecarReader::read(std::vector<std::string>& notes) {
   info.initial_state = choice("initial_state", {"settled", "built"});
   if (const json* values = document_.find("robot_parameters")) readRobotParameters(*values, "", info.robot_parameters);
   info.varies = texts("varies");
+  if (const json* values = document_.find("parameter_tolerance")) readTolerances(*values, "", info.parameter_tolerance);
   info.description = text("description");
   info.trial = text("trial");
   info.repeat_of = text("repeat_of");
@@ -183,6 +186,23 @@ void SidecarReader::readRobotParameters(const json& values, const std::string& p
     const Parameter::Value parameter =
         value.is_number() ? Parameter::Value(value.get<double>()) : Parameter::Value(value.get<std::string>());
     if (!parameters.emplace(name, parameter).second) refuse("robot_parameters", path, value, "be given once");
+  }
+}
+
+void SidecarReader::readTolerances(const json& values, const std::string& prefix, std::map<std::string, double>& tolerances) const {
+  const std::string member = "parameter_tolerance";
+  if (!values.is_object()) refuse(member, member, values, "be an object: {\"name\": number, ...}");
+  for (const auto& [key, value] : values.items()) {
+    const std::string name = prefix + key;
+    const std::string path = member + "." + name;
+    if (key.empty()) refuse(member, path, value, "have a name");
+    if (value.is_object()) {
+      readTolerances(value, name + ".", tolerances);
+      continue;
+    }
+    if (!value.is_number() || !isTolerance(value.get<double>()))
+      refuse(member, path, value, fmt::format("be a number above 0 and at most {}, a share of the parameter", largest_tolerance));
+    if (!tolerances.emplace(name, value.get<double>()).second) refuse(member, path, value, "be given once");
   }
 }
 

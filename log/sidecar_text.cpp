@@ -43,6 +43,7 @@ OrderedJson sidecarJson(const RecordingInfo& info) {
   for (const auto& [name, value] : info.robot_parameters)
     object["robot_parameters"][name] = parameterJson("robot_parameters." + name, value);
   if (!info.varies.empty()) object["varies"] = info.varies;
+  for (const auto& [name, value] : info.parameter_tolerance) addNumber(object["parameter_tolerance"], name, value);
   addText(object, "description", info.description);
   addText(object, "trial", info.trial);
   addText(object, "repeat_of", info.repeat_of);

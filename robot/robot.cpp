@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -28,6 +29,17 @@ void Robot::setActiveRobot(Robot* robot) {
 double Robot::parameter(const std::string& name, double default_value, const std::string& unit, double minimum, double maximum,
                         const std::string& description) const {
   return world_.parameters().number(name, default_value, unit, minimum, maximum, description);
+}
+
+void Robot::requireTolerances() const {
+  for (const auto& [name, tolerance] : parameterTolerances()) requireTolerance(name);
+}
+
+void Robot::requireTolerance(const std::string& name) const {
+  const auto isOfTheRun = [&](const Parameter& p) { return p.name == "force_law.name" && p.value == p.default_value; };
+  const bool default_law = std::ranges::any_of(world_.parameters().declared(), isOfTheRun);
+  if (name.starts_with("force_law.") && !default_law) return;
+  world_.parameters().requireScalable(name);
 }
 
 namespace {

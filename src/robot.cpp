@@ -40,6 +40,7 @@ void printOddities(const std::vector<std::string>& found) {
 int check(const ModelOptions& model, const std::string& robot) {
   const auto simulation = built(model, robot);
   const Robot& made = simulation->robot();
+  made.requireTolerances();
   fmt::print("{}: {} bodies, {} joints with a reported angle, {} muscles; starts {}\n", robot, simulation->world().bodies().size(),
              made.angles().size(), made.actuatorCount(), made.initialState());
   const auto found = oddities(simulation->world(), made);

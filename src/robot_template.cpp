@@ -32,6 +32,7 @@ meaning = "distance of the muscles' ends from the hinge"
 value = 0.4
 range = [0.01, 10]
 meaning = "mass of the bar"
+# tolerance = 0.02                                     # what the scales are off, as a share: a diagnosis leaves the mass that much room
 
 # A rigid body. Weigh it, or estimate its mass; the moments of inertia are those of the shape unless inertia_g_mm2 gives them.
 [[body]]

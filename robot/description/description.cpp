@@ -38,7 +38,14 @@ void requireName(const FilePlace& place, const std::string& name) {
   if (name == world) place.refuse("\"world\" is the environment and cannot be the name of anything else");
 }
 
-ParameterEntry readParameter(TableReader table, const std::string& name) {
+double readTolerance(TableReader& table, const std::string& key) {
+  const double tolerance = table.number(key);
+  if (!isTolerance(tolerance))
+    table.place(key).refuse(fmt::format("{} must be above 0 and at most {}, a share of the parameter", tolerance, largest_tolerance));
+  return tolerance;
+}
+
+void readParameter(TableReader table, const std::string& name, Description& d) {
   ParameterEntry entry{.name = name, .unit = {}, .meaning = {}, .value = table.number("value"), .minimum = 0, .maximum = 0};
   const bool is_word = std::ranges::all_of(name, [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; });
   if (name.empty() || !is_word || !std::isalpha(static_cast<unsigned char>(name[0])))
@@ -48,8 +55,26 @@ ParameterEntry readParameter(TableReader table, const std::string& name) {
     table.place("value").refuse(fmt::format("{} must lie in its range {} .. {}", entry.value, entry.minimum, entry.maximum));
   entry.meaning = table.optionalText("meaning").value_or("");
   entry.unit = table.optionalText("unit").value_or(unitFromSuffix(name));
+  if (table.has("tolerance")) d.tolerances.push_back({d.name + "." + name, readTolerance(table, "tolerance"), table.place("tolerance")});
   table.requireNoOthers();
-  return entry;
+  d.parameters.push_back(entry);
+}
+
+/// [parameter_tolerance]; groups may be tables within it.
+void readTolerances(TableReader table, const std::string& group, Description& d) {
+  for (const std::string& key : table.keys()) {
+    const std::string name = group + key;
+    if (table.isTable(key)) {
+      readTolerances(table.table(key), name + ".", d);
+      continue;
+    }
+    const auto isGiven = [&](const ToleranceEntry& entry) { return entry.name == name; };
+    if (name.starts_with(d.name + "."))
+      table.place(key).refuse(
+          fmt::format("is a parameter of this robot: write tolerance into [parameter.{}]", name.substr(d.name.size() + 1)));
+    if (std::ranges::any_of(d.tolerances, isGiven)) table.place(key).refuse("must be given once");
+    d.tolerances.push_back({name, readTolerance(table, key), table.place(key)});
+  }
 }
 
 Part readPart(TableReader& table) {
@@ -400,7 +425,8 @@ Description readDescription(const std::string& text, const std::string& file) {
     table.place("name").refuse("\"" + d.name + "\" is a group of parameters of the program: choose another name");
   d.summary = table.optionalText("description").value_or("");
   if (auto parameters = table.optionalTable("parameter"))
-    for (const std::string& name : parameters->keys()) d.parameters.push_back(readParameter(parameters->table(name), name));
+    for (const std::string& name : parameters->keys()) readParameter(parameters->table(name), name, d);
+  if (auto tolerances = table.optionalTable("parameter_tolerance")) readTolerances(*tolerances, "", d);
   for (TableReader& body : table.tables("body")) d.bodies.push_back(readBody(body));
   for (TableReader& joint : table.tables("joint")) d.joints.push_back(readJoint(joint));
   for (TableReader& pulley : table.tables("pulley")) d.pulleys.push_back(readPulley(pulley));

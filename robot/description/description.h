@@ -17,6 +17,13 @@ struct ParameterEntry {
   double value, minimum, maximum;
 };
 
+/// What is known of a number of the model.
+struct ToleranceEntry {
+  std::string name;  ///< of the parameter, with its group
+  double tolerance;  ///< relative standard deviation
+  FilePlace place;
+};
+
 /// One rigid shape.
 struct Part {
   std::string name;  ///< of a part beside the first; empty: the body's name with a number
@@ -124,6 +131,7 @@ struct HandEntry {
 struct Description {
   std::string file, name, hash, summary, start_state;
   std::vector<ParameterEntry> parameters;
+  std::vector<ToleranceEntry> tolerances;
   std::vector<BodyEntry> bodies;
   std::vector<JointEntry> joints;
   std::vector<PulleyEntry> pulleys;

@@ -96,6 +96,16 @@ FileRobot::FileRobot(World& world, std::shared_ptr<const Description> descriptio
   for (const WallEntry& wall : description_->walls) at(wall.place, [&] { buildWall(wall); });
 }
 
+std::map<std::string, double> FileRobot::parameterTolerances() const {
+  std::map<std::string, double> tolerances;
+  for (const ToleranceEntry& entry : description_->tolerances) tolerances[entry.name] = entry.tolerance;
+  return tolerances;
+}
+
+void FileRobot::requireTolerances() const {
+  for (const ToleranceEntry& entry : description_->tolerances) at(entry.place, [&] { requireTolerance(entry.name); });
+}
+
 Expressions FileRobot::declareParameters() const {
   std::map<std::string, double> values;
   for (const ParameterEntry& p : description_->parameters)

@@ -17,6 +17,8 @@ class FileRobot final : public Robot {
  public:
   FileRobot(World& world, std::shared_ptr<const Description> description);
   std::string initialState() const override { return description_->start_state; }
+  std::map<std::string, double> parameterTolerances() const override;
+  void requireTolerances() const override;
   const Description& description() const { return *description_; }
 
  private:

@@ -57,6 +57,11 @@ bool TableReader::has(const std::string& key) {
   return find(key) != nullptr;
 }
 
+bool TableReader::isTable(const std::string& key) const {
+  const toml::node* node = table_->get(key);
+  return node && node->is_table();
+}
+
 std::string TableReader::text(const std::string& key) {
   const toml::node& node = need(key, "a text");
   const auto text = node.value_exact<std::string>();

@@ -35,6 +35,7 @@ class TableReader {
   TableReader(const toml::table& table, std::string file, std::string what);
 
   bool has(const std::string& key);
+  bool isTable(const std::string& key) const;
   std::string text(const std::string& key);
   std::optional<std::string> optionalText(const std::string& key);
   std::string choice(const std::string& key, const std::string& default_value, const std::vector<std::string>& allowed);

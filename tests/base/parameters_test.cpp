@@ -49,6 +49,20 @@ TEST(Parameters, UnknownNameSuggestsTheNearest) {
   EXPECT_NE(message.find("did you mean \"muscle.bead_mass_g\"?"), std::string::npos) << message;
 }
 
+TEST(Parameters, OnlyNumbersThatAreNotZeroHaveATolerance) {
+  Parameters parameters;
+  beadMass(parameters);
+  parameters.number("muscle.play_mm", 0, "mm", 0, 1, "no play");
+  parameters.integer("muscle.count", 2, 1, 3, "whole number");
+  parameters.choice("muscle.model", "chain", {"chain", "line"}, "choice");
+  EXPECT_NO_THROW(parameters.requireScalable("muscle.bead_mass_g"));
+  const auto refusal = [&](const std::string& name) { return messageOf<BadParameter>([&] { parameters.requireScalable(name); }); };
+  EXPECT_TRUE(contains(refusal("bead_mass_g"), "did you mean \"muscle.bead_mass_g\"?"));
+  EXPECT_TRUE(contains(refusal("muscle.play_mm"), "muscle.play_mm = 0: must not be 0"));
+  EXPECT_TRUE(contains(refusal("muscle.count"), "muscle.count = 2: must be a number"));
+  EXPECT_TRUE(contains(refusal("muscle.model"), "muscle.model = chain: must be a number"));
+}
+
 TEST(Parameters, AssignmentNeedsAnEqualsSign) {
   Parameters parameters;
   EXPECT_THROW(parameters.setFromText("muscle.bead_mass_g", "--set"), BadParameter);

@@ -21,6 +21,7 @@ std::string with(const std::string& member_and_value) {
 
 TEST(Sidecar, ReadsEveryMember) {
   const auto info = parse(R"({"format": "musclesim-recording-1", "robot": "rig", "physics": "si", "initial_state": "settled",
+    "parameter_tolerance": {"load_kg": 0.05, "elbow.forearm_kg": 2, "muscle": {"slider_friction_N": 0.5}},
     "robot_parameters": {"load_kg": 2.0, "force_law": {"name": "sarosi", "a": {"b": 1}}}, "description": "free", "trial": "slow",
     "pressure_full_scale_kPa": 600, "command_full_scale_V": 10, "noise_std": {"length_0_cm": 0.005, "pressure_0_bar": 0.06},
     "repeat_of": "other", "active_effects": [{"id": "valve_lag", "parameters": {"fill_time_constant_s": 0.08, "limit": "inf"}},
@@ -31,6 +32,8 @@ TEST(Sidecar, ReadsEveryMember) {
   EXPECT_EQ(std::get<double>(info.robot_parameters.at("load_kg")), 2);
   EXPECT_EQ(std::get<std::string>(info.robot_parameters.at("force_law.name")), "sarosi");
   EXPECT_EQ(std::get<double>(info.robot_parameters.at("force_law.a.b")), 1);
+  const std::map<std::string, double> tolerances = {{"load_kg", 0.05}, {"elbow.forearm_kg", 2}, {"muscle.slider_friction_N", 0.5}};
+  EXPECT_EQ(info.parameter_tolerance, tolerances);
   EXPECT_EQ(info.description, "free");
   EXPECT_EQ(info.trial, "slow");
   EXPECT_EQ(info.repeat_of, "other");
@@ -87,6 +90,13 @@ TEST(Sidecar, WrongTypesAndValuesAreRefusedAtTheirPlace) {
       {R"("robot_parameters": {"law": {"a": [1]}})", {"robot_parameters.law.a"}},
       {R"("robot_parameters": {"law.a": 1, "law": {"a": 2}})", {"robot_parameters.law.a", "once"}},
       {R"("robot_parameters": {"": 1})", {"have a name"}},
+      {R"("parameter_tolerance": 0.1)", {"parameter_tolerance = 0.1", "object"}},
+      {R"("parameter_tolerance": {"load_kg": 0})", {"parameter_tolerance.load_kg = 0", "above 0 and at most 2"}},
+      {R"("parameter_tolerance": {"load_kg": -0.1})", {"parameter_tolerance.load_kg = -0.1", "above 0 and at most 2"}},
+      {R"("parameter_tolerance": {"elbow": {"forearm_kg": 2.1}})", {"parameter_tolerance.elbow.forearm_kg = 2.1", "at most 2"}},
+      {R"("parameter_tolerance": {"load_kg": "5 %"})", {"parameter_tolerance.load_kg = \"5 %\"", "number"}},
+      {R"("parameter_tolerance": {"law.a": 0.1, "law": {"a": 0.2}})", {"parameter_tolerance.law.a", "once"}},
+      {R"("parameter_tolerance": {"": 0.1})", {"have a name"}},
       {R"("active_effects": {"id": "valve_lag"})", {"active_effects = {...}", "list"}},
       {R"("active_effects": ["valve_lag"])", {"active_effects[0]", "object"}},
       {R"("active_effects": [{"component": "all"}])", {"active_effects[0]", "\"id\""}},
@@ -123,6 +133,7 @@ TEST(Sidecar, TextReadsBackToTheSame) {
   info.initial_state = "built";
   info.robot_parameters = {{"forearm_kg", 0.1 + 0.2}, {"force_law", std::string("braun")}, {"force_law.a", -1e-300}};
   info.description = "\"quotes\", \u00FCml\u00E4ute\nand a line break";
+  info.parameter_tolerance = {{"forearm_kg", 0.02}, {"muscle.slider_friction_N", 0.5}};
   info.noise_std = {{"angle_elbow_deg", 1.0 / 3}};
   info.active_effects = {{"stop", "elbow", {{"stiffness", std::numeric_limits<double>::infinity()}, {"gap_mm", 0.5}, {"axis", "y"}}}};
   info.seed = std::numeric_limits<std::uint64_t>::max();
@@ -133,6 +144,7 @@ TEST(Sidecar, TextReadsBackToTheSame) {
   EXPECT_EQ(sidecarText(parse(text)), text);
   const auto again = parse(text);
   EXPECT_EQ(again.robot_parameters, info.robot_parameters);
+  EXPECT_EQ(again.parameter_tolerance, info.parameter_tolerance);
   EXPECT_EQ(again.noise_std, info.noise_std);
   EXPECT_EQ(again.description, info.description);
   EXPECT_EQ(again.seed, info.seed);
@@ -147,6 +159,9 @@ TEST(Sidecar, TextRefusesWhatCouldNotBeRead) {
   info.step_s = std::nan("");
   EXPECT_TRUE(hasWords(messageOf<BadParameter>([&] { sidecarText(info); }), {"step_s", "finite"}));
   info.step_s = 0.01;
+  info.parameter_tolerance = {{"load_kg", 0}};
+  EXPECT_TRUE(hasWords(messageOf<BadParameter>([&] { sidecarText(info); }), {"parameter_tolerance.load_kg", "above 0"}));
+  info.parameter_tolerance.clear();
   info.extra_json = "[1]";
   EXPECT_THROW(sidecarText(info), BadParameter);
   info.extra_json = "";

@@ -103,6 +103,51 @@ TEST(RobotFile, ParametersMoveWhatTheyDescribe) {
   EXPECT_THROW(Built(lever, std::move(wrong)), BadParameter);
 }
 
+TEST(RobotFile, HasTolerancesOfItsOwnParametersAndOfTheModels) {
+  std::string text = replaced("range = [20, 200]", "range = [20, 200]\ntolerance = 0.02");
+  text += "[parameter_tolerance]\n\"muscle.slider_friction_N\" = 0.5\nforce_law.c_kgf = 0.05\n";
+  const Built built(text);
+  const std::map<std::string, double> tolerances = {{"lever.lever_mm", 0.02}, {"muscle.slider_friction_N", 0.5}, {"force_law.c_kgf", 0.05}};
+  EXPECT_EQ(built.robot->parameterTolerances(), tolerances);
+  EXPECT_NO_THROW(built.robot->requireTolerances());
+  EXPECT_TRUE(Built(lever).robot->parameterTolerances().empty());
+  Simulation arm;
+  EXPECT_TRUE(arm.build("arm").parameterTolerances().empty());
+}
+
+/// The error of requireTolerances for one entry of [parameter_tolerance].
+std::string toleranceError(const std::string& entry, SimulationOptions options = {}) {
+  const Built built(lever + "[parameter_tolerance]\n" + entry + "\n", std::move(options));
+  return messageOf<BadFile>([&] { built.robot->requireTolerances(); });
+}
+
+TEST(RobotFile, RefusesTolerancesOfWhatNoFactorChanges) {
+  const std::string unknown = toleranceError("\"muscle.slider_fricton_N\" = 0.5");
+  EXPECT_TRUE(contains(unknown, "lever.toml:47:")) << unknown;
+  EXPECT_TRUE(contains(unknown, "did you mean \"muscle.slider_friction_N\"")) << unknown;
+  EXPECT_TRUE(contains(toleranceError("\"force_law.rest_length_mm\" = 0.1"), "force_law.rest_length_mm = 0: must not be 0"));
+  EXPECT_TRUE(contains(toleranceError("\"force_law.name\" = 0.1"), "not a choice"));
+}
+
+TEST(RobotFile, MayHaveTolerancesOfTheDefaultForceLawUnderAnother) {
+  SimulationOptions options;
+  options.parameters.setFromText("force_law.name=sarosi", "test");
+  const Built built(lever + "[parameter_tolerance]\n\"force_law.c_kgf\" = 0.05\n", std::move(options));
+  EXPECT_NO_THROW(built.robot->requireTolerances());
+}
+
+TEST(RobotFile, ShippedRobotsHaveTolerancesThatTheirModelsKnow) {
+  for (const ShippedRobot& shipped : shippedRobots()) {
+    Simulation simulation;
+    const Robot& robot = simulation.build(shipped.name);
+    EXPECT_NO_THROW(robot.requireTolerances()) << shipped.name;
+    const auto tolerances = robot.parameterTolerances();
+    EXPECT_GE(tolerances.size(), 3U) << shipped.name;
+    EXPECT_LE(tolerances.size(), 6U) << shipped.name << ": each costs a diagnosis simulations";
+    EXPECT_EQ(tolerances.at("force_law.c_kgf"), 0.05) << shipped.name;
+  }
+}
+
 struct Wrong {
   const char* name;
   std::string from, to;
@@ -179,6 +224,14 @@ const std::vector<Wrong>& wrongDescriptions() {
       {"pulley without radius that no muscle uses", "radius_mm = 10", "radius_mm = 0", "must be positive", 27},
       {"density of a body with inertia", "mass_g = 400", "density_g_per_mm3 = 0.001\ninertia_g_mm2 = [1, 1, 1]", "needs mass_g", 14},
       {"two values in one expression", "\"lever_mm\", -260", "\"lever_mm, 2\", -260", "must be one number", 31},
+      {"tolerance of nothing", "range = [20, 200]", "range = [20, 200]\ntolerance = 0", "0 must be above 0 and at most 2", 7},
+      {"tolerance above its range", "range = [20, 200]", "range = [20, 200]\ntolerance = 2.5", "2.5 must be above 0 and at most 2", 7},
+      {"tolerance that is no number", "range = [20, 200]", "range = [20, 200]\ntolerance = \"lever_mm\"", "plain number", 7},
+      {"tolerance of the model above its range", "[hand]", "[parameter_tolerance]\n\"force_law.c_kgf\" = -1\n[hand]", "-1 must be above 0",
+       44},
+      {"tolerance of the robot's own in the wrong place", "[hand]", "[parameter_tolerance]\n\"lever.lever_mm\" = 0.1\n[hand]",
+       "write tolerance into [parameter.lever_mm]", 44},
+      {"two tolerances of one name", "[hand]", "[parameter_tolerance]\n\"force_law.a\" = 0.1\nforce_law.a = 0.2\n[hand]", "given once"},
       {"start of another kind", "[hand]", "[start]\nstate = \"hanging\"\n[hand]", "built, settled"},
   };
   return all;

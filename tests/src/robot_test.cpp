@@ -90,6 +90,16 @@ TEST_F(RobotCommand, CheckEndsWithStatus3AndTheLineOfWhatIsWrong) {
   EXPECT_TRUE(contains(checked.err, "did you mean \"hinge\"")) << checked.err;
 }
 
+TEST_F(RobotCommand, CheckRefusesATolerancesNameThatTheModelDoesNotHave) {
+  ASSERT_EQ(run({"robot", "new", "lever"}).status, 0);
+  change("lever.toml", "[hand]", "[parameter_tolerance]\n\"muscle.slider_friktion_N\" = 0.5\n\n[hand]");
+  const auto checked = run({"robot", "check", "lever.toml"});
+  EXPECT_EQ(checked.status, 3);
+  EXPECT_TRUE(contains(checked.err, "did you mean \"muscle.slider_friction_N\"")) << checked.err;
+  change("lever.toml", "slider_friktion_N", "slider_friction_N");
+  EXPECT_EQ(run({"robot", "check", "lever.toml"}).status, 0);
+}
+
 TEST_F(RobotCommand, ShowPrintsTheTreeAndDrawsMomentArms) {
   const auto shown = run({"robot", "show", "elbow", "--out", "picture"});
   if (contains(shown.err, "cannot draw") || contains(shown.err, "OSMesa")) GTEST_SKIP() << shown.err;

@@ -20,6 +20,15 @@ struct Parameter {
   std::string description;
 };
 
+/// Largest tolerance of a parameter, the relative standard deviation of what is known about it. Of a number that is 2 times its own size
+/// off not even the order of magnitude is known.
+inline constexpr double largest_tolerance = 2;
+
+/// Whether 0 < tolerance <= largest_tolerance.
+inline bool isTolerance(double tolerance) {
+  return tolerance > 0 && tolerance <= largest_tolerance;
+}
+
 /// A set of overrides (from --set, --config, a recording's sidecar) and the record of all parameters declared so far.
 ///
 /// A component declares and reads in one call, so name, unit, default, range and meaning stand in exactly one place:
@@ -50,6 +59,9 @@ class Parameters {
   const std::vector<Parameter>& declared() const { return declared_; }
   /// Throws BadParameter if an override has no declared parameter; the message gives its name and the nearest declared name.
   void requireAllKnown() const;
+  /// Throws BadParameter if a relative tolerance of this parameter has no meaning: it is not declared (the message gives the nearest
+  /// declared name), a choice or a whole number, or 0, which no factor changes.
+  void requireScalable(const std::string& name) const;
   /// The declared parameters as a TOML file that readToml accepts, with unit, range and meaning as comments.
   std::string toToml() const;
 
@@ -63,6 +75,7 @@ class Parameters {
   };
   void add(Override given);
   [[noreturn]] static void refuse(const Override& given, const std::string& what);
+  std::string unknownText(const std::string& name) const;
   const Parameter* find(const std::string& name) const;
   const Override* overrideOf(const std::string& name) const;
   static bool allows(const Parameter& parameter, const Parameter::Value& value);

@@ -20,6 +20,7 @@ struct RecordingInfo {
   std::optional<std::string> initial_state;                  ///< "settled" or "built"
   std::map<std::string, Parameter::Value> robot_parameters;  ///< nested objects are flattened with a dot
   std::vector<std::string> varies;                           ///< robot parameters that may differ between the recordings of one plant
+  std::map<std::string, double> parameter_tolerance;         ///< relative standard deviation of what is known of a number; names as above
   std::string description, trial, repeat_of, program;
   std::optional<double> pressure_full_scale_kPa, command_full_scale_V;
   std::map<std::string, double> noise_std;

@@ -1,6 +1,7 @@
 /// Robots: primitives and actuators that report a state and take an action.
 #pragma once
 
+#include <map>
 #include <set>
 #include <string>
 #include <utility>
@@ -43,6 +44,13 @@ class Robot {
   virtual void settle();
   /// How runs begin unless told otherwise: "built" or "settled".
   virtual std::string initialState() const { return "built"; }
+
+  /// What is known of numbers of the model that were measured with an error: relative standard deviation by the full name of the parameter
+  /// ("rig.load_kg"). A run may lack some of them, for example constants of a force law that was not chosen. The default: none.
+  virtual std::map<std::string, double> parameterTolerances() const { return {}; }
+  /// Throws BadParameter if one of these names no parameter of the world, a choice, a whole number, or a number that is 0; a robot from a
+  /// file throws BadFile with the line.
+  virtual void requireTolerances() const;
 
   const std::vector<Actuator*>& actuators() const { return actuators_; }
   int actuatorCount() const { return static_cast<int>(actuators_.size()); }
@@ -111,6 +119,8 @@ class Robot {
   Muscle& addMuscle(const MuscleOptions& options);
   /// The same as addAngle.
   void reportAngle(const std::string& name, Joint& joint, int axis = 0) { addAngle(name, &joint, axis); }
+  /// One name of requireTolerances. Constants of a force law that is not the default may be missing.
+  void requireTolerance(const std::string& name) const;
 
   /// Actuators in the order of the action's entries.
   void addActuator(Actuator* actuator);
