@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "equilibrium.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/units.h"
 
@@ -12,6 +13,13 @@ namespace musclesim {
 double ForceLaw::stiffnessNPerMm(double pressure_ratio, double length_mm) const {
   constexpr double half_width_mm = 0.01;
   return (tensionN(pressure_ratio, length_mm + half_width_mm) - tensionN(pressure_ratio, length_mm - half_width_mm)) / (2 * half_width_mm);
+}
+
+std::optional<double> ForceLaw::contractedLengthMm() const {
+  const std::optional<double> rest_mm = restLengthMm();
+  if (!rest_mm) return {};
+  const auto pull_N = [this](double length_mm) { return formulaN(1, length_mm); };
+  return pull_N(*rest_mm) > 0 ? restFrom(pull_N, *rest_mm, 0, *rest_mm) : 0;
 }
 
 BraunConstants::BraunConstants(Parameters& parameters)

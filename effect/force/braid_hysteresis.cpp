@@ -14,7 +14,7 @@ EffectInfo BraidHysteresis::info() {
           .summary = "the threads of the braid rub against each other",
           .equation =
               "F' = F - w ((1 - c) |F| + c p F_0) z, dz = -dl / s within -1 <= z <= 1    F tension, p pressure, F_0 tension at full "
-              "pressure and length, l length, w = relative_width, s = presliding_mm, c = pressure_share",
+              "pressure and rest length, l length, w = relative_width, s = presliding_mm, c = pressure_share",
           .signature = "loop of pressure over length whose width grows with pressure and does not depend on speed",
           .source = "Maxwell slip element, Iwan 1966; friction between threads, Tondu and Lopez 2000",
           .parameters = {{"relative_width", "", 0, 0, 1, 0.01, 0.12,
@@ -28,7 +28,7 @@ EffectInfo BraidHysteresis::info() {
 
 void BraidHysteresis::attach(const EffectPlace& place) {
   ForceEffect::attach(place);
-  full_tension_N_ = actuator().forceLaw().tensionN(1, actuator().maximumLengthMm());
+  full_tension_N_ = actuator().calculateForce(1, actuator().restLengthMm());
 }
 
 double BraidHysteresis::playAt(double length_mm) const {

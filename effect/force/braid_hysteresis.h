@@ -1,7 +1,7 @@
 /// Force stage: the threads of the braid rub against each other and the bladder.
 ///     F' = F - w ((1 - c) |F| + c p F_0) z,    dz = -dl / s within -1 <= z <= 1
-/// F tension in N, p pressure ratio, F_0 tension at full pressure and full length in N, l length in mm, w = relative_width, s =
-/// presliding_mm, c = pressure_share. z reaches +1 after the muscle has shortened by 2 s and -1 after it has lengthened by 2 s, at any
+/// F tension in N, p pressure ratio, F_0 tension at full pressure and the force law's rest length in N, l length in mm, w = relative_width,
+/// s = presliding_mm, c = pressure_share. z reaches +1 after the muscle has shortened by 2 s and -1 after it has lengthened by 2 s, at any
 /// speed (Coulomb friction with presliding, one Maxwell slip element). For c = 0 the loop of tension over length is 2 w F wide; for c = 1
 /// its width depends on the pressure alone. Friction cannot push: F' >= 0 wherever F >= 0. At the start z = 0.
 /// Neutral: w = 0. Range 0 .. 1, usually 0.01 .. 0.12; of s 0.01 .. 50 mm, usually 0.5 .. 3; of c 0 .. 1. Source: Maxwell slip, Iwan 1966;

@@ -1,11 +1,16 @@
 /// Force stage: the bladder yields slowly under load (creep).
-///     F' = F(p, l - x),    tau dx/dt = amount (l - x - l_max) - x
-/// F tension, l length, x creep in mm, l_max the muscle's longest length, tau = time_constant_s. After a step in pressure or load l - x
-/// changes at once and x follows with tau while the tension stays constant: the length first reaches 1 / (1 + amount) of its final change.
-/// Exact if the length is constant over the step. A run starts with creep complete.
-/// Neutral: amount = 0. Range 0 .. 10, usually 0.03 .. 0.25; of tau 1e-3 .. 1e4 s, usually 0.3 .. 30.  Source: Kelvin-Voigt element in
-/// series; amounts of 0.07 to 0.19 with 0.53 to 1.0 s measured over 4 s.
+///     F' = F(p, l - x),    x = sum x_i,    tau_i dx_i/dt = amount / n (l - x - l_0) - x_i
+/// F tension, l length, x creep in mm, l_0 the force law's rest length. x is the strain of the bladder, so it is counted from the length of
+/// the muscle at rest: that is the same in all runs of a machine, and no stop changes it.
+/// With spread = 1 there is one element, tau = time_constant_s: after a step in pressure or load l - x changes at once and x follows with
+/// tau while the tension stays constant; the length first reaches 1 / (1 + amount) of its final change. Otherwise n = 4 elements share the
+/// amount; their time constants are in a geometric series about tau, the longest spread times the shortest. Exact if the length is constant
+/// over the step. A run starts with creep complete. Neutral: amount = 0. Range 0 .. 10, usually 0.03 .. 0.25; of tau 1e-3 .. 1e4 s, usually
+/// 0.3 .. 30; of spread 1 .. 1e4, usually 1 .. 100. Source: Kelvin-Voigt elements in series; amounts of 0.07 to 0.19 with 0.53 to 1.0 s
+/// measured over 4 s, 1 to 300 s in a hold of 300 s.
 #pragma once
+
+#include <vector>
 
 #include "musclesim/effect/effect_info.h"
 
@@ -13,19 +18,23 @@ namespace musclesim {
 
 class Creep final : public ForceEffect {
  public:
-  Creep(double amount, double time_constant_s) : amount_(amount), tau_s_(time_constant_s) {}
+  Creep(double amount, double time_constant_s, double spread);
   static EffectInfo info();
 
   double tensionN(const MuscleInput& input, const ForceBelow& below) const override;
   void advance(const MuscleInput& input) override;
-  void settle(const MuscleInput& input) override { creep_mm_ = finalMm(input.length_mm); }
+  void settle(const MuscleInput& input) override;
 
  private:
-  /// Final value of x if the length stays constant.
-  double finalMm(double length_mm) const;
+  /// A part of x that follows the length alone: dm/dt = rate (share (l - l_0) - m). Elements in series are coupled by x; their modes are
+  /// not.
+  struct Mode {
+    double share, rate_per_s;
+    double creep_mm = 0;  ///< m
+  };
+  double stretchMm(double length_mm) const;
 
-  double amount_, tau_s_;
-  double creep_mm_ = 0;  ///< x
+  std::vector<Mode> modes_;
 };
 
 }  // namespace musclesim

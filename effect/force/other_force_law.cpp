@@ -34,7 +34,7 @@ std::vector<EffectParameter> lawParameters() {
            "law that replaces the model's; corrected: the chou-hannaford formula is added to the model's law",
            false,
            {"own", "braun", "chou-hannaford", "sarosi", "map", "corrected"}},
-          {"rest_length_mm", "mm", 0, 0, 1e4, 0, 400, "rest length of the law; 0: the muscle's own longest length", true},
+          {"rest_length_mm", "mm", 0, 0, 1e4, 0, 400, "rest length of the law; 0: that of the model's law", true},
           constant("a", "", b.a, "braun"),
           constant("b", "", b.b, "braun"),
           constant("c_kgf", "kgf", b.c_kgf, "braun"),
@@ -99,7 +99,7 @@ EffectInfo OtherForceLaw::info() {
 void OtherForceLaw::attach(const EffectPlace& place) {
   ForceEffect::attach(place);
   const double given_mm = values_["rest_length_mm"];
-  const double rest_mm = given_mm > 0 ? given_mm : actuator().maximumLengthMm();
+  const double rest_mm = given_mm > 0 ? given_mm : actuator().restLengthMm();
   const auto law = static_cast<Law>(values_["law"]);
   adds_ = law == corrected;
   if (law == chou_hannaford || law == corrected)
@@ -109,7 +109,7 @@ void OtherForceLaw::attach(const EffectPlace& place) {
   else if (law == map)
     law_ = std::make_unique<ForceMap>(rest_mm, ForceMapTable(world().parameters()));
   else
-    law_ = std::make_unique<BraunForceLaw>(actuator().minimumLengthMm(), rest_mm, braunConstants(values_));
+    law_ = std::make_unique<BraunForceLaw>(actuator().contractedLengthMm(), rest_mm, braunConstants(values_));
 }
 
 double OtherForceLaw::tensionN(const MuscleInput& input, const ForceBelow& below) const {

@@ -18,23 +18,30 @@ EffectInfo VolumeCoupling::info() {
           .stage = Stage::pressure,
           .acts_on = {ComponentKind::muscle},
           .summary = "stretching a muscle compresses the air in it",
-          .equation = "dp/dt = (u - p) / tau - n (p + p_atm) (dV/dt) / V, V ~ 1 + v_0 - r^2    u delivered, p actual, r length ratio",
+          .equation =
+              "dp/dt = (u - p) / tau - n (p + p_atm) (dV/dt) / V, V ~ 1 + v_0 - r^2, r = (l - l_c) / (l_0 - l_c)    u delivered, p actual, "
+              "l length, l_0 rest length of the force law, l_c where it stops pulling at full pressure",
           .signature = "pushing the joint at constant command changes the pressure",
           .source = "polytropic gas in a changing volume; volume from virtual work as in Chou and Hannaford 1996",
           .parameters = {{"polytropic_exponent", "", 0, 0, 2, 1, 1.4, "n; 1: isothermal, 1.4: adiabatic"},
                          {"regulator_time_constant_s", "s", 0.1, 1e-4, 10, 0.02, 0.5, "tau", true},
                          {"rest_volume_ratio", "", 1, 0.05, 100, 0.5, 3,
-                          "v_0, volume at full length over the change of volume from shortest to full length", true}},
+                          "v_0, volume at rest length over the change of volume from l_c to rest length", true}},
           .make = [](const EffectValues& values) {
             return std::make_unique<VolumeCoupling>(values["polytropic_exponent"], values["regulator_time_constant_s"],
                                                     values["rest_volume_ratio"]);
           }};
 }
 
+void VolumeCoupling::attach(const EffectPlace& place) {
+  MuscleRatioEffect::attach(place);
+  contracted_mm_ = actuator().contractedLengthMm();
+  range_mm_ = actuator().restLengthMm() - contracted_mm_;
+}
+
 double VolumeCoupling::relativeVolumeRatePerS() const {
-  const double range_mm = actuator().maximumLengthMm() - actuator().minimumLengthMm();
-  const double r = std::clamp(actuator().lengthRatio(), 0.0, 1.0);
-  return -2 * r * lengthRateMmPerS() / range_mm / (1 + rest_volume_ratio_ - r * r);
+  const double r = std::clamp((actuator().lengthMm() - contracted_mm_) / range_mm_, 0.0, 1.0);
+  return -2 * r * lengthRateMmPerS() / range_mm_ / (1 + rest_volume_ratio_ - r * r);
 }
 
 double VolumeCoupling::output(double input, const StepTime& time) {

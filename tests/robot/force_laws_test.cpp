@@ -161,11 +161,30 @@ TEST(ForceLawChoice, RestLengthAndMinimumLengthScaleTheMeasuredMuscle) {
   Parameters parameters;
   parameters.set("force_law.rest_length_mm", 250.0, "test");
   parameters.set("force_law.minimum_length_ratio", 0.8, "test");
+  EXPECT_EQ(makeForceLaw(parameters, 120, 300)->restLengthMm(), 250);
+  EXPECT_EQ(makeForceLaw(parameters, 120, 300)->contractedLengthMm(), 200);
   EXPECT_NEAR(makeForceLaw(parameters, 120, 300)->tensionN(0.6, 230), BraunForceLaw(200, 250).tensionN(0.6, 230), 1e-9);
   Parameters other;
   other.set("force_law.name", std::string("sarosi"), "test");
   other.set("force_law.rest_length_mm", 250.0, "test");
   EXPECT_NEAR(makeForceLaw(other, 120, 300)->tensionN(0.6, 230), SarosiForceLaw(250, {}).tensionN(0.6, 230), 1e-9);
+}
+
+TEST(ForceLaw, StopsPullingAtItsContractedLength) {
+  EXPECT_NEAR(SarosiForceLaw(250, {}).contractedLengthMm().value(), 100, 1e-6) << "as Eq. 1 for l_min / l_max = 0.4";
+  ChouHannafordConstants wide_bore;
+  wide_bore.bore_N = 20;
+  const ChouHannafordForceLaw braid(300, wide_bore);
+  const double contracted_mm = braid.contractedLengthMm().value();
+  EXPECT_NEAR(braid.formulaN(1, contracted_mm), 0, 1e-9);
+  EXPECT_GT(braid.formulaN(1, contracted_mm + 1), 0);
+  EXPECT_LT(braid.formulaN(1, contracted_mm - 1), 0);
+  ChouHannafordConstants never_slack;
+  never_slack.bore_N = -1e3;
+  EXPECT_EQ(ChouHannafordForceLaw(300, never_slack).contractedLengthMm(), 0);
+  ChouHannafordConstants never_pulling;
+  never_pulling.threshold_N = 1e4;
+  EXPECT_EQ(ChouHannafordForceLaw(300, never_pulling).contractedLengthMm(), 0);
 }
 
 /// The same law under another name gives the same motion: Sarosi's defaults equal Eq. 1 for the rig's 120 and 300 mm.

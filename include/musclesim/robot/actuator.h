@@ -88,6 +88,10 @@ class Actuator : public WorldPart {
   double lengthRatio() const;
   double minimumLengthMm() const { return minimum_length_mm_; }
   double maximumLengthMm() const { return maximum_length_mm_; }
+  /// ForceLaw::restLengthMm and ForceLaw::contractedLengthMm of the muscle's law; the longest and the shortest length for laws without.
+  /// What refers to these lengths does not change with a stop that is never reached.
+  double restLengthMm() const { return law_->restLengthMm().value_or(maximum_length_mm_); }
+  double contractedLengthMm() const { return law_->contractedLengthMm().value_or(minimum_length_mm_); }
   double massG() const;
   const Color& color() const { return color_; }
   const std::string& name() const { return name_; }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "musclesim/base/parameters.h"
@@ -19,6 +20,11 @@ class ForceLaw {
   /// dF/dl in N/mm. The default is a central difference over 0.02 mm.
   virtual double stiffnessNPerMm(double pressure_ratio, double length_mm) const;
   virtual std::string name() const = 0;
+  /// Length in mm to which the law refers, that of the muscle at rest: s = 1, or r = 1 in Eq. 1. The default: none.
+  virtual std::optional<double> restLengthMm() const { return {}; }
+  /// Length in mm at which a muscle under full pressure has stopped pulling: the zero of formulaN(1, l) next below the rest length, 0 where
+  /// there is none. None without a rest length.
+  virtual std::optional<double> contractedLengthMm() const;
 };
 
 /// Constants of Eq. 1, read from the parameters "force_law.*". A fit to a real muscle may give a and b of either sign.
@@ -43,6 +49,9 @@ class BraunForceLaw final : public ForceLaw {
   double tensionN(double pressure_ratio, double length_mm) const override;
   double stiffnessNPerMm(double pressure_ratio, double length_mm) const override;
   std::string name() const override { return "braun"; }
+  std::optional<double> restLengthMm() const override { return l_max_mm_; }
+  /// l_min, where r = 0.
+  std::optional<double> contractedLengthMm() const override { return l_min_mm_; }
 
  private:
   double l_min_mm_, l_max_mm_;

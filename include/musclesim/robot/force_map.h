@@ -41,6 +41,7 @@ class ForceMap final : public ForceLaw {
   double tensionN(double pressure_ratio, double length_mm) const override;
   double formulaN(double pressure_ratio, double length_mm) const override;
   std::string name() const override { return "map"; }
+  std::optional<double> restLengthMm() const override { return rest_length_mm_; }
 
  private:
   double rest_length_mm_;
