@@ -12,11 +12,12 @@ namespace {
 constexpr int element_count = 4;  ///< differ from a smooth spectrum over two decades by 0.3 % of the creep, over three by 0.7 %
 
 using Values = Eigen::Vector<double, element_count>;
+using Matrix = Eigen::Matrix<double, element_count, element_count>;
 
 /// Time constants in a geometric series about tau_s.
-Values timeConstantsS(double tau_s, double spread) {
+Values timeConstantsS(double tau_s, double decades) {
   Values result;
-  for (int i = 0; i < element_count; ++i) result(i) = tau_s * std::pow(spread, static_cast<double>(i) / (element_count - 1) - 0.5);
+  for (int i = 0; i < element_count; ++i) result(i) = tau_s * std::pow(10, decades * (static_cast<double>(i) / (element_count - 1) - 0.5));
   return result;
 }
 
@@ -36,24 +37,23 @@ EffectInfo Creep::info() {
               "long holds",
           .parameters = {{"amount", "", 0, 0, 10, 0.03, 0.25, "slow change of length over the immediate change"},
                          {"time_constant_s", "s", 1, 1e-3, 1e4, 0.3, 30, "tau, geometric mean of all tau_i", true},
-                         {"spread", "", 1, 1, 1e4, 1, 100, "longest over shortest tau_i; 1: tau alone", true}},
+                         {"spread_decades", "decades", 0, 0, 4, 0, 2, "from the shortest to the longest tau_i; 0: tau alone", true}},
           .make = [](const EffectValues& values) {
-            return std::make_unique<Creep>(values["amount"], values["time_constant_s"], values["spread"]);
+            return std::make_unique<Creep>(values["amount"], values["time_constant_s"], values["spread_decades"]);
           }};
 }
 
 /// With y_i = x_i sqrt(tau_i) and d_i = 1 / sqrt(tau_i) the elements are dy/dt = a d (l - l_0) - (D + a d d^T) y, a = amount / n,
 /// D = diag(1 / tau_i). The matrix is symmetric: its eigenvectors q are the modes, with x = sum (d . q)(q . y).
-Creep::Creep(double amount, double time_constant_s, double spread) {
-  if (spread == 1) {
+Creep::Creep(double amount, double time_constant_s, double spread_decades) {
+  if (spread_decades == 0) {
     modes_ = {{amount / (1 + amount), (1 + amount) / time_constant_s}};
     return;
   }
   const double each = amount / element_count;
-  const Values d = timeConstantsS(time_constant_s, spread).cwiseInverse().cwiseSqrt();
-  const Eigen::Matrix<double, element_count, element_count> rates =
-      Eigen::DiagonalMatrix<double, element_count>(d.cwiseAbs2()).toDenseMatrix() + each * d * d.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, element_count, element_count>> solver(rates);
+  const Values d = timeConstantsS(time_constant_s, spread_decades).cwiseInverse().cwiseSqrt();
+  const Matrix rates = Matrix(d.cwiseAbs2().asDiagonal()) + each * d * d.transpose();
+  const Eigen::SelfAdjointEigenSolver<Matrix> solver(rates);
   for (int i = 0; i < element_count; ++i) {
     const double rate_per_s = solver.eigenvalues()(i), along = solver.eigenvectors().col(i).dot(d);
     modes_.push_back({each * along * along / rate_per_s, rate_per_s});

@@ -166,10 +166,10 @@ TEST(Creep, RelaxesAtConstantLength) {
 }
 
 /// Four elements with time constants in a geometric series, integrated in small steps at a constant length.
-double creepOfFourElementsMm(double amount, double tau_s, double spread, double from_mm, double to_mm, double duration_s) {
+double creepOfFourElementsMm(double amount, double tau_s, double decades, double from_mm, double to_mm, double duration_s) {
   const double share = amount / 4;
   std::vector<double> x(4, share / (1 + amount) * from_mm), tau;
-  for (int i = 0; i < 4; ++i) tau.push_back(tau_s * std::pow(spread, i / 3.0 - 0.5));
+  for (int i = 0; i < 4; ++i) tau.push_back(tau_s * std::pow(10, decades * (i / 3.0 - 0.5)));
   const int steps = 200000;
   for (int step = 0; step < steps; ++step) {
     const double free_mm = to_mm - (x[0] + x[1] + x[2] + x[3]);
@@ -179,25 +179,25 @@ double creepOfFourElementsMm(double amount, double tau_s, double spread, double 
 }
 
 TEST(Creep, WithASpreadIsASeriesOfElements) {
-  const double amount = 0.2, tau_s = 0.6, spread = 50;
+  const double amount = 0.2, tau_s = 0.6, decades = 1.7;
   for (const double duration_s : {0.1, 0.5, 2.0}) {
-    LengthMachine machine({{"creep", "all", {{"amount", amount}, {"time_constant_s", tau_s}, {"spread", spread}}}}, 0.5, 220);
+    LengthMachine machine({{"creep", "all", {{"amount", amount}, {"time_constant_s", tau_s}, {"spread_decades", decades}}}}, 0.5, 220);
     EXPECT_NEAR(machine.tensionAt(220), machine.lawN(0.5, 220 + 80 * amount / (1 + amount)), 1e-9) << "settled as with one element";
     machine.tensionAt(240);
     for (int i = 0; i < 100; ++i) machine.hold(duration_s / 100);
-    const double creep_mm = creepOfFourElementsMm(amount, tau_s, spread, 220 - 300, 240 - 300, duration_s);
+    const double creep_mm = creepOfFourElementsMm(amount, tau_s, decades, 220 - 300, 240 - 300, duration_s);
     EXPECT_NEAR(machine.tensionAt(240), machine.lawN(0.5, 240 - creep_mm), 1e-4) << duration_s;
   }
 }
 
 TEST(Creep, WithHardlyAnySpreadIsOneElement) {
-  const auto relaxedN = [](double spread) {
-    LengthMachine machine({{"creep", "all", {{"amount", 0.2}, {"time_constant_s", 0.6}, {"spread", spread}}}}, 0.5, 220);
+  const auto relaxedN = [](double decades) {
+    LengthMachine machine({{"creep", "all", {{"amount", 0.2}, {"time_constant_s", 0.6}, {"spread_decades", decades}}}}, 0.5, 220);
     machine.tensionAt(240);
     for (int i = 0; i < 500; ++i) machine.hold(1e-3);
     return machine.tensionAt(240);
   };
-  EXPECT_NEAR(relaxedN(1 + 1e-9), relaxedN(1), 1e-7);
+  EXPECT_NEAR(relaxedN(1e-9), relaxedN(0), 1e-7);
 }
 
 TEST(SeriesElasticity, IsInSeriesWithTheLaw) {
