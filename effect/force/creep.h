@@ -5,9 +5,10 @@
 /// With spread_decades = 0 there is one element, tau = time_constant_s: after a step in pressure or load l - x changes at once and x
 /// follows with tau while the tension stays constant; the length first reaches 1 / (1 + amount) of its final change. Otherwise n = 4
 /// elements share the amount; their time constants are in a geometric series about tau, with spread_decades from the shortest to the
-/// longest. Exact if the length is constant over the step. A run starts with creep complete. Neutral: amount = 0. Range 0 .. 10, usually
-/// 0.03 .. 0.25; of tau 1e-3 .. 1e4 s, usually 0.3 .. 30; of spread_decades 0 .. 4, usually 0 .. 2. Source: Kelvin-Voigt elements in
-/// series; amounts of 0.07 to 0.19 with 0.53 to 1.0 s measured over 4 s, 1 to 300 s in a hold of 300 s.
+/// longest.
+/// Exact if the length is constant over the step. A run starts with creep complete.
+/// Neutral: amount = 0. Range 0 .. 10, usually 0.03 .. 0.25; of tau 1e-3 .. 1e4 s, usually 0.3 .. 30; of spread_decades 0 .. 4, usually
+/// 0 .. 2.  Source: Kelvin-Voigt elements in series; amounts of 0.07 to 0.19 with 0.53 to 1.0 s measured over 4 s, 1 to 300 s in a hold.
 #pragma once
 
 #include <vector>
