@@ -2,8 +2,9 @@
 ///     F' = G(p, l),  or, with law = corrected,  F' = max(0, F + G(p, l))
 /// G is one of the laws of musclesim/robot: Eq. 1 with other constants, Chou-Hannaford, Sarosi, or the measured map of the parameters
 /// "force_law.*"; with law = corrected, G is the Chou-Hannaford formula. F tension, p pressure, l length; each law's header explains its
-/// constants. rest_length_mm = 0 stands for the rest length of the model's law; Eq. 1 has r = 0 where the model's law has it, or no longer
-/// pulls at full pressure. Neutral: law = own.  Source: Braun 2007; Chou and Hannaford 1996; Sarosi 2012.
+/// constants. rest_length_mm = 0 stands for the rest length of the model's law. Eq. 1 has r = 0 where the model's law has it or, under
+/// full pressure, stops pulling.
+/// Neutral: law = own.  Source: Braun 2007; Chou and Hannaford 1996; Sarosi 2012.
 #pragma once
 
 #include "musclesim/effect/effect_info.h"

@@ -2,11 +2,11 @@
 ///     dp/dt = (u - p) / tau - n (p + p_atm) (dV/dt) / V
 ///     V ~ 1 + v_0 - r^2,    r = (l - l_c) / (l_0 - l_c)
 /// u delivered, p actual pressure, fractions of full scale; n = polytropic_exponent, tau = regulator_time_constant_s, p_atm = 0.17 of full
-/// scale (1 bar of 6), l length, l_0 the force law's rest length, l_c the length at which it stops pulling at full pressure (l_min of Eq.
-/// 1). V is chosen, up to a factor, so that the work p dV equals the work of Eq. 1's tension c p r over dl; v_0 = rest_volume_ratio is the
-/// volume at l_0 over the change of volume from l_c to l_0. Exact if u and dV/dt are constant over the step. Neutral: n = 0, p = u. Range
-/// of n 0 .. 2, usually 1 (slow) .. 1.4 (fast, adiabatic).  Source: polytropic gas in a changing volume; virtual work as in Chou and
-/// Hannaford 1996.
+/// scale (1 bar of 6), l length, l_0 the force law's rest length, l_c the length at which it stops pulling at full pressure (l_min of
+/// Eq. 1). V is chosen, up to a factor, so that the work p dV equals the work of Eq. 1's tension c p r over dl; v_0 = rest_volume_ratio is
+/// the volume at l_0 over the change of volume from l_c to l_0. Exact if u and dV/dt are constant over the step.
+/// Neutral: n = 0, p = u. Range of n 0 .. 2, usually 1 (slow) .. 1.4 (fast, adiabatic).  Source: polytropic gas in a changing volume;
+/// virtual work as in Chou and Hannaford 1996.
 #pragma once
 
 #include "musclesim/effect/effect_info.h"
