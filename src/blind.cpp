@@ -42,12 +42,16 @@ Action addMake(CLI::App& command) {
   auto arguments = std::make_shared<MakeArguments>();
   command.add_option("folder", arguments->folder, "New folder for the cases and the seal")->required();
   command.add_option("--keys", arguments->keys, "Folder for the key; `blind run` must not be able to read it")->required();
-  command.add_option("--count", arguments->make.count, "Number of cases on rig and elbow, alternating (default 120)");
+  command.add_option("--count", arguments->make.count, "Number of cases on the robots in turn (default 120)");
+  addList(command, "--robot", arguments->make.robots, "Robots that take turns: names or files NAME.toml (default: rig,elbow,wrist)");
   command.add_option("--arm-count", arguments->make.arm_count, "Number of further cases on the arm (default 12)");
   command.add_option("--seed", arguments->make.seed, "Seed of all random choices (default 1)");
   command.add_option("--duration-s", arguments->make.duration_s,
                      "Length of each recording in s (default 6); recordings of the arm have half of it");
-  addList(command, "--kinds", arguments->make.kinds, "Make only these kinds of case: single, double, open, null");
+  addList(
+      command, "--kinds", arguments->make.kinds,
+      "Make only these kinds of case: null, single, double, triple, quadruple (four or five causes), mixed (known causes beside an unknown "
+      "one), open (an unknown cause); default: 10, 25, 25, 20, 10, 5, 5 %");
   addList(command, "--causes", arguments->make.causes, "Draw causes from these effects of the catalogue only (default: all, in turn)");
   command.add_option("--jobs", arguments->make.job_count, "Threads (default: one per core); the cases do not depend on it")
       ->check(CLI::Range(1, 1024));
