@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
+#include "evaluation/blind/benchmark.h"
 #include "evaluation/blind/follow_up.h"
 #include "evaluation/blind/make.h"
 #include "evaluation/blind/page.h"
@@ -142,6 +143,7 @@ int scoreCases(const ScoreArguments& arguments) {
                                     std::pair("truth in the ambiguity set", "covered"), std::pair("open causes detected", "open_detected"),
                                     std::pair("false alarms", "false_alarm")})
     printRate(all, words, name);
+  fmt::print("\n{}", blind::benchmarkTable(object));
   return done;
 }
 
