@@ -49,11 +49,12 @@ Action addMake(CLI::App& command) {
   command.add_option("--seed", arguments->make.seed, "Seed of all random choices (default 1)");
   command.add_option("--duration-s", arguments->make.duration_s,
                      "Length of each recording in s (default 6); recordings of the arm have half of it");
-  addList(
-      command, "--kinds", arguments->make.kinds,
-      "Make only these kinds of case: null, single, double, triple, quadruple (four or five causes), mixed (known causes beside an unknown "
-      "one), open (an unknown cause); default: 10, 25, 25, 20, 10, 5, 5 %");
+  addList(command, "--kinds", arguments->make.kinds,
+          "Only these kinds, equally often: null, single, double, triple, quadruple (4 or 5 causes), mixed (known beside unknown), open "
+          "(unknown)");
   addList(command, "--causes", arguments->make.causes, "Draw causes from these effects of the catalogue only (default: all, in turn)");
+  command.add_flag("--exact-numbers", arguments->make.exact_numbers,
+                   "The plants have just the model's masses, inertias, friction and constants");
   command.add_option("--jobs", arguments->make.job_count, "Threads (default: one per core); the cases do not depend on it")
       ->check(CLI::Range(1, 1024));
   command.add_option("--commit", arguments->make.commit, "Version of the sources, to be noted in the seal");

@@ -41,13 +41,13 @@ json excitationsJson(const Plan& plan) {
 }
 
 /// The known causes' laws in the model against nothing in it, on the recording that measures the result.
-double oracleReductionPercent(const Plant& plant, const Truth::Motion& whole) {
+double oracleReductionPercent(const Plant& plant) {
   constexpr double percent = 100;
   const Truth& truth = plant.truth;
   std::vector<ActiveEffect> known;
   for (const PlantCause& one : plant.causes)
     if (!one.cause.isUnknown()) known.push_back(one.cause.law);
-  const auto gap = [&](const Truth::Motion& model) { return truth.normalisedGap(truth.rmse({model.back()}, {whole.back()})); };
+  const auto gap = [&](const Truth::Motion& model) { return truth.normalisedGap(truth.rmse({model.back()}, {plant.motion.back()})); };
   return percent * (1 - gap(truth.nominalMotion(known)) / gap(truth.model()));
 }
 
@@ -70,8 +70,7 @@ json keyOf(const Plant& plant, const Robot& robot) {
     stages.push_back(nameOf(one.cause.stage));
     if (!one.cause.isUnknown()) acceptable.push_back(acceptableAnswers(one.cause.id, one.cause.component, plan.signals, robot));
   }
-  const Truth::Motion whole = truth.motion(lawsOf(plant.causes));
-  const auto rmse = truth.rmse(truth.model(), whole);
+  const auto rmse = truth.rmse(truth.model(), plant.motion);
   const double gap = truth.gapOverNoise(rmse);
   json key = {{"robot", robot.name()},
               {"kind", plan.kind.name},
@@ -88,13 +87,13 @@ json keyOf(const Plant& plant, const Robot& robot) {
               {"numbers_true", plant.numbers.truth},
               {"gap_over_noise", gap},
               {"gap_normalised", truth.normalisedGap(rmse)},
-              {"gap_of_step_over_noise", truth.gapOverNoise(truth.rmse(truth.model(), truth.nominalMotion({})))},
+              {"gap_of_step_over_noise", plant.gap_of_step_over_noise},
               {"gap_of_numbers_over_noise", truth.gapOverNoise(truth.rmse(truth.model(), truth.clean()))},
               {"step_ratio", truth.stepRatio()},
               {"noise_free_rmse", rmse},
               {"recordings", excitationsJson(plan)},
               {"redrawn", plant.redrawn}};
-  if (!acceptable.empty()) key["oracle_shrink_percent"] = oracleReductionPercent(plant, whole);
+  if (!acceptable.empty()) key["oracle_shrink_percent"] = oracleReductionPercent(plant);
   return key;
 }
 

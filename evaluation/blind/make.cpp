@@ -93,19 +93,12 @@ std::optional<json> keptOrMade(int index, const fs::path& folder, const Unsealed
   const std::string name = caseName(index);
   if (auto kept = unsealed.keyOf(name)) return kept;
   fs::remove_all(folder / name);
-  const auto place = static_cast<std::size_t>(index);
-  PlantRequest request{name,
-                       "arm",
-                       place - static_cast<std::size_t>(options.count),
-                       options.kinds,
-                       options.causes,
-                       options.duration_s,
-                       options.seed,
-                       options.interrupted};
-  if (index < options.count) {
-    request.robot = robotPath(options.robots[place % options.robots.size()]);
-    request.turn = place / options.robots.size();
-  }
+  const auto robotAt = [&](int i) {
+    return i < options.count ? options.robots[static_cast<std::size_t>(i) % options.robots.size()] : std::string("arm");
+  };
+  PlantRequest request{name,         robotPath(robotAt(index)), 0, options.kinds, options.causes, options.exact_numbers, options.duration_s,
+                       options.seed, options.interrupted};
+  for (int i = 0; i < index; ++i) request.turn += robotAt(i) == robotAt(index) ? 1 : 0;
   auto key = makeCase(request, folder);
   if (key) unsealed.keep(name, *key);
   return key;
@@ -121,6 +114,7 @@ fs::path make(const fs::path& folder, const fs::path& key_folder, const MakeOpti
   call["folder"] = fs::weakly_canonical(folder).string();
   call["kinds"] = options.kinds;
   call["causes"] = options.causes;
+  call["exact_numbers"] = options.exact_numbers;
   const UnsealedCases unsealed(key_folder, call);
   if (!fs::is_empty(folder) && !unsealed.exist())
     throw BadParameter("folder", folder.string(), "be new or empty, or hold what the same call had made when it was stopped");

@@ -69,22 +69,30 @@ std::vector<Bounds> boundsOf(const Robot& robot) {
   return bounds;
 }
 
-/// Whether every signal that begins within its bounds stays there.
-bool staysWithin(const std::vector<Bounds>& bounds, const Recording& motion) {
-  return std::ranges::all_of(bounds, [&](const Bounds& one) {
+/// The largest excursion from rest over the one that the bounds allow, of the signals that rest within their bounds.
+double excursionOf(const Recording& motion, const std::vector<Bounds>& bounds) {
+  double largest = 0;
+  for (const Bounds& one : bounds) {
     const Signal* signal = motion.find(one.signal);
-    if (!signal || signal->values.empty() || !one.holds(signal->values.front())) return true;
-    return std::ranges::all_of(signal->values, [&](double value) { return one.holds(value); });
-  });
+    if (!signal || signal->values.empty() || !one.holds(signal->values.front())) continue;
+    const double rest = signal->values.front();
+    for (const double value : signal->values) {
+      const double allowed = value > rest ? one.high - rest : rest - one.low;
+      if (value != rest) largest = std::max(largest, std::abs(value - rest) / allowed);
+    }
+  }
+  return largest;
 }
 
 /// Reduces the motion until the clean model stays off its stops. Returns its motion.
 Recording keepFromStops(Recording& plan, const std::vector<Bounds>& bounds) {
-  constexpr double smaller = 0.8;
-  constexpr int most_reductions = 20;  // to a hundredth
+  constexpr double least_factor = 0.2, largest_factor = 0.8;  // of one reduction: far out, the motion is not in proportion to the commands
+  constexpr int most_reductions = 20;
   for (int reduction = 0;; ++reduction) {
     Recording motion = replayRecording(plan).simulated;
-    if (staysWithin(bounds, motion) || reduction == most_reductions) return motion;
+    const double excursion = excursionOf(motion, bounds);
+    if (excursion <= 1 || reduction == most_reductions) return motion;
+    const double smaller = std::clamp(1 / excursion, least_factor, largest_factor);
     for (Signal& command : plan.signals) {
       const double middle = command.values.front();
       for (double& u : command.values) u = rounded(middle + smaller * (u - middle), 1e4);
@@ -100,7 +108,7 @@ bool isFlat(const std::string& signal, const std::vector<Recording>& motions) {
          });
 }
 
-/// The load of a robot that names one.
+/// The load of the rig, which is drawn too.
 std::map<std::string, Parameter::Value> drawLoad(const Robot& robot, RandomStream& random) {
   const double load_kg = rounded(random.uniform(1.5, 3), 10);
   if (robot.name() != "rig") return {};

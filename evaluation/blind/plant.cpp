@@ -75,13 +75,13 @@ class CauseDraw {
   /// Measures what each cause contributes.
   void weigh() {
     const Truth& truth = plant_.truth;
-    const Truth::Motion whole = truth.motion(lawsOf(plant_.causes));
-    const double gap = truth.gapOverNoise(truth.rmse(truth.model(), whole));
+    plant_.motion = truth.motion(lawsOf(plant_.causes));
+    const double gap = truth.gapOverNoise(truth.rmse(truth.model(), plant_.motion));
     for (std::size_t i = 0; i < plant_.causes.size(); ++i) {
       PlantCause& one = plant_.causes[i];
       std::vector<ActiveEffect> laws;
       for (const Cause& other : others(i)) laws.push_back(other.law);
-      const auto rmse = truth.rmse(truth.motion(laws), whole);
+      const auto rmse = truth.rmse(truth.motion(laws), plant_.motion);
       one.contribution_over_noise = truth.gapOverNoise(rmse);
       one.demanded = isDemanded(one.contribution_over_noise, gap, plant_.causes.size());
       one.contribution.clear();
@@ -121,10 +121,12 @@ Plant drawWithoutCauses(const PlantRequest& request, const Robot& robot, RandomS
   for (int draw = 0; draw < most_draws; ++draw) {
     Plan plan = drawPlan(request.name, request.robot, robot, request.kinds, request.duration_s, random);
     NumberErrors numbers = drawNumbers(plan.recordings.front(), random);
+    if (request.exact_numbers) numbers = {};
     const auto seed = static_cast<std::uint64_t>(random.uniform(0, 9e15));
     Truth truth(plan.recordings, plan.signals, plan.noise_std, seed, numbers.truth);
-    if (truth.gapOverNoise(truth.rmse(truth.model(), truth.nominalMotion({}))) <= most_over_noise)
-      return {.plan = std::move(plan), .numbers = std::move(numbers), .truth = std::move(truth)};
+    const double gap_of_step = truth.gapOverNoise(truth.rmse(truth.model(), truth.nominalMotion({})));
+    if (gap_of_step <= most_over_noise)
+      return {.plan = std::move(plan), .numbers = std::move(numbers), .truth = std::move(truth), .gap_of_step_over_noise = gap_of_step};
   }
   throw BadParameter(request.name + ": excitations", fmt::format("{} draws", most_draws),
                      "include some in which the model agrees with itself at half its step; take another seed");
@@ -150,7 +152,7 @@ std::optional<Plant> drawPlant(const PlantRequest& request) {
   Plant plant = drawWithoutCauses(request, robot, random);
   if (!CauseDraw(request, robot, plant, random).draw()) return {};
   const Truth& truth = plant.truth;
-  if (!std::isfinite(truth.gapOverNoise(truth.rmse(truth.model(), truth.motion(lawsOf(plant.causes))))))
+  if (!std::isfinite(truth.gapOverNoise(truth.rmse(truth.model(), plant.motion))))
     throw BadParameter(request.name + ": causes", fmt::format("{}", plant.causes.size()), "not let the plant diverge; take another seed");
   return plant;
 }

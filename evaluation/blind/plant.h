@@ -28,6 +28,8 @@ struct Plant {
   Plan plan;
   NumberErrors numbers;
   Truth truth;
+  double gap_of_step_over_noise = 0;      ///< what the plant's finer step changes alone
+  Truth::Motion motion = {};              ///< with all causes, without noise
   bool machine = false;                   ///< causes and sizes of a real machine
   std::vector<PlantCause> causes = {};    ///< an unknown one last
   std::vector<std::string> redrawn = {};  ///< causes that did not reach their size or were too weak, "law@component"
@@ -46,6 +48,7 @@ struct PlantRequest {
   std::size_t turn = 0;             ///< among the plants of this robot
   std::vector<std::string> kinds;   ///< as in drawKind
   std::vector<std::string> causes;  ///< ids of the catalogue; empty: all
+  bool exact_numbers = false;       ///< no errors of the model's numbers
   double duration_s = 6;
   std::uint64_t seed = 1;
   std::function<bool()> interrupted;

@@ -62,6 +62,10 @@ Truth::Motion Truth::motion(const std::vector<ActiveEffect>& effects, const Numb
   return recordings;
 }
 
+Truth::Motion Truth::nominalMotion(const std::vector<ActiveEffect>& effects) const {
+  return effects.empty() && numbers_.empty() ? clean_ : motion(effects, {});
+}
+
 std::map<std::string, double> Truth::rmse(const Motion& one, const Motion& other) const {
   std::map<std::string, double> squares;
   double row_count = 0;

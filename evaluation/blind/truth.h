@@ -29,7 +29,7 @@ class Truth {
   /// The plant with these effects.
   Motion motion(const std::vector<ActiveEffect>& effects) const { return motion(effects, numbers_); }
   /// The same with the model's numbers.
-  Motion nominalMotion(const std::vector<ActiveEffect>& effects) const { return motion(effects, {}); }
+  Motion nominalMotion(const std::vector<ActiveEffect>& effects) const;
 
   /// RMSE per signal between two motions over all their recordings. NaN if one of them diverges.
   std::map<std::string, double> rmse(const Motion& one, const Motion& other) const;

@@ -18,7 +18,7 @@ namespace musclesim::blind {
 namespace {
 
 PlantRequest request(const std::string& kind, std::uint64_t seed, const std::string& robot = "rig") {
-  return {"case001", robot, 0, {kind}, {}, 1, seed, [] { return false; }};
+  return {"case001", robot, 0, {kind}, {}, false, 1, seed, [] { return false; }};
 }
 
 TEST(BlindKind, HasTheSharesOfTheBenchmark) {
@@ -60,9 +60,15 @@ TEST(BlindMachine, DrawsMeasuredSizes) {
       ids.insert(cause.id);
       EXPECT_EQ(cause.component, "all");
       EXPECT_NE(cause.law.id, cause.id) << "another law than the catalogue's";
-      if (cause.id == "transport_delay") EXPECT_TRUE(valueOf(cause, "delay_s") >= 0.044 && valueOf(cause, "delay_s") <= 0.096);
-      if (cause.id == "flow_limit") EXPECT_GT(valueOf(cause, "fill_rate_per_s"), valueOf(cause, "vent_rate_per_s"));
-      if (cause.id == "pressure_calibration") EXPECT_NEAR(valueOf(cause, "offset"), -0.05, 0.0101);
+      if (cause.id == "transport_delay") {
+        EXPECT_TRUE(valueOf(cause, "delay_s") >= 0.044 && valueOf(cause, "delay_s") <= 0.096);
+      }
+      if (cause.id == "flow_limit") {
+        EXPECT_GT(valueOf(cause, "fill_rate_per_s"), valueOf(cause, "vent_rate_per_s"));
+      }
+      if (cause.id == "pressure_calibration") {
+        EXPECT_NEAR(valueOf(cause, "offset"), -0.05, 0.0101);
+      }
     }
     EXPECT_EQ(ids.size(), causes.size()) << "none twice";
     EXPECT_FALSE(ids.contains("valve_lag") && ids.contains("flow_limit"));
@@ -141,6 +147,15 @@ TEST(BlindPlant, TellsInTheKeyWhatEachCauseContributes) {
   }
   EXPECT_EQ(key["numbers_true"].size(), key["numbers_nominal"].size());
   EXPECT_EQ(key["number_error_scale"] == 0, key["numbers_true"].empty());
+}
+
+TEST(BlindPlant, HasTheModelsNumbersIfAsked) {
+  PlantRequest exact = request("null", 1);
+  exact.exact_numbers = true;
+  const auto plant = drawPlant(exact);
+  EXPECT_TRUE(plant->numbers.truth.empty());
+  const Truth& truth = plant->truth;
+  EXPECT_EQ(truth.gapOverNoise(truth.rmse(truth.model(), plant->motion)), plant->gap_of_step_over_noise);
 }
 
 TEST(BlindPlant, HasAnUnknownCauseBesideKnownOnes) {

@@ -134,7 +134,9 @@ TEST(BlindBenchmark, PrintsValuesBesideTheirBounds) {
   EXPECT_TRUE(contains(table, "| wrong effects per plant, several causes | 0.500 | <= 0.25 (missed) | <= 0.12 |"));
   EXPECT_TRUE(contains(table, "| full set, two causes | - | >= 0.7 | >= 0.85 |"));
   for (const BenchmarkRow& row : benchmarkRows(totals))
-    if (row.measure == "full set, three causes") EXPECT_TRUE(row.met);
+    if (row.measure == "full set, three causes") {
+      EXPECT_TRUE(row.met);
+    }
 }
 
 }  // namespace

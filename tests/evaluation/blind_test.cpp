@@ -46,6 +46,8 @@ class Blind : public ::testing::Test {
     MakeOptions options;
     options.count = 1;
     options.arm_count = 0;
+    options.robots = {"rig"};
+    options.exact_numbers = true;
     options.seed = seed;
     options.duration_s = 1;
     options.kinds = kinds;
