@@ -158,6 +158,7 @@ Judgement judge(const std::string& name, const json& key, const json& answer) {
   j.set = judgeSet(key, answer);
   if (j.kind == "null") {
     const bool corrects_numbers = j.verdict == "effects_found" && answer.contains("chosen") && answer["chosen"].empty();
+    j.verdict_right = j.verdict_right || corrects_numbers;
     j.false_alarm = j.verdict != "no_gap" && j.verdict != "not_excited" && !corrects_numbers;
     j.claim = claimOf(j, j.no_effect >= j.confidence());
     return j;

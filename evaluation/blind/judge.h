@@ -17,10 +17,10 @@ struct Judgement {
   std::vector<std::string> true_ids, true_stages;
   double gap_over_noise = 0;
 
-  std::string verdict;                                           ///< given
-  std::string message;                                           ///< of a failed diagnosis
-  bool verdict_right = false;                                    ///< null: no_gap; open: unexplained; else effects_found
-  std::string top;                                               ///< the most probable effect, "id@component"; empty if there is none
+  std::string verdict;         ///< given
+  std::string message;         ///< of a failed diagnosis
+  bool verdict_right = false;  ///< null: no_gap, or no false alarm with effects_found; open: unexplained; else effects_found
+  std::string top;             ///< the most probable effect, "id@component"; empty if there is none
   double top_probability = 0, none_of_these = 0, no_effect = 0;  ///< as answered
   std::optional<bool> top1, top3;                                ///< the true id is first, among the first three
   std::optional<bool> acceptable;          ///< an acceptable answer is first, and likelier than none of these and no gap

@@ -61,7 +61,9 @@ class CauseDraw {
     const auto laws = lawsInTurn(robot_, plan.signals, unknown, request_.causes, request_.seed, request_.turn + far_apart * place);
     for (std::size_t draw = 0; draw < most_draws && !laws.empty(); ++draw) {
       const OutOfCatalogueLaw& law = laws[draw / draws_in_a_row % laws.size()];
-      if (!canActBeside(law, others(place))) continue;
+      const bool others_left = laws.size() > plant_.causes.size();
+      const bool too_weak = others_left && place < plant_.causes.size() && plant_.causes[place].cause.law.id == law.info.id;
+      if (too_weak || !canActBeside(law, others(place))) continue;
       if (plan.kind.isSeveral() && law.stands_for == "channel_swap") continue;  // would hide all others
       const std::string component = oneOf(random_, componentsOf(law, robot_, plan.signals));
       if (request_.interrupted()) return {};
@@ -72,20 +74,24 @@ class CauseDraw {
                        fmt::format("be reached by one of {} drawn causes; take another seed, or other --causes", most_draws));
   }
 
+  std::map<std::string, double> overNoise(std::map<std::string, double> rmse) const {
+    for (auto& [signal, value] : rmse) value /= plant_.truth.noiseStd().at(signal);
+    return rmse;
+  }
+
   /// Measures what each cause contributes.
   void weigh() {
     const Truth& truth = plant_.truth;
     plant_.motion = truth.motion(lawsOf(plant_.causes));
-    const double gap = truth.gapOverNoise(truth.rmse(truth.model(), plant_.motion));
+    const auto gap = overNoise(truth.rmse(truth.model(), plant_.motion));
     for (std::size_t i = 0; i < plant_.causes.size(); ++i) {
       PlantCause& one = plant_.causes[i];
       std::vector<ActiveEffect> laws;
       for (const Cause& other : others(i)) laws.push_back(other.law);
       const auto rmse = truth.rmse(truth.motion(laws), plant_.motion);
       one.contribution_over_noise = truth.gapOverNoise(rmse);
-      one.demanded = isDemanded(one.contribution_over_noise, gap, plant_.causes.size());
-      one.contribution.clear();
-      for (const auto& [signal, value] : rmse) one.contribution[signal] = value / truth.noiseStd().at(signal);
+      one.contribution = overNoise(rmse);
+      one.demanded = isDemanded(one.contribution, gap, plant_.causes.size());
     }
   }
 
@@ -134,9 +140,10 @@ Plant drawWithoutCauses(const PlantRequest& request, const Robot& robot, RandomS
 
 }  // namespace
 
-bool isDemanded(double contribution_over_noise, double gap_over_noise, std::size_t cause_count) {
-  constexpr double least_floors = 3, least_share = 0.1;
-  return contribution_over_noise >= std::max(cause_count > 1 ? least_floors : 0, least_share * gap_over_noise);
+bool isDemanded(const std::map<std::string, double>& contribution, const std::map<std::string, double>& gap, std::size_t cause_count) {
+  constexpr double least_of_several = 3, least_alone = 1, least_share = 0.1;
+  const double least = cause_count > 1 ? least_of_several : least_alone;
+  return std::ranges::any_of(contribution, [&](const auto& one) { return one.second >= std::max(least, least_share * gap.at(one.first)); });
 }
 
 std::vector<ActiveEffect> lawsOf(const std::vector<PlantCause>& causes) {

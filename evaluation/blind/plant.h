@@ -35,9 +35,9 @@ struct Plant {
   std::vector<std::string> redrawn = {};  ///< causes that did not reach their size or were too weak, "law@component"
 };
 
-/// Largest contribution and gap below which a cause is neither demanded nor punished: three noise floors where several causes act, because
-/// less can hide in another one's error, and always a tenth of the plant's gap.
-bool isDemanded(double contribution_over_noise, double gap_over_noise, std::size_t cause_count);
+/// Whether an answer must have a cause: in some signal it contributes at least three noise floors, because less can hide in another cause's
+/// error, and a tenth of the plant's gap in that signal. One floor is enough for a lone cause. Both by signal, RMSE over noise.
+bool isDemanded(const std::map<std::string, double>& contribution, const std::map<std::string, double>& gap, std::size_t cause_count);
 
 /// The laws of all causes.
 std::vector<ActiveEffect> lawsOf(const std::vector<PlantCause>& causes);
@@ -55,8 +55,8 @@ struct PlantRequest {
 };
 
 /// Draws a plant. Half of those with several causes are packages of real machines (machine.h), unless the request names causes. A cause
-/// that contributes less than one noise floor is drawn again, three times at most. Empty if interrupted. Throws BadParameter where no drawn
-/// cause reaches its size, or the model never agrees with itself at half its step.
+/// that contributes less than one noise floor is drawn again, three times at most: with other sizes on a machine, otherwise by another law.
+/// Empty if interrupted. Throws BadParameter where no drawn cause reaches its size, or the model never agrees with itself at half its step.
 std::optional<Plant> drawPlant(const PlantRequest& request);
 
 }  // namespace musclesim::blind

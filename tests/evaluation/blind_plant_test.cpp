@@ -90,11 +90,15 @@ TEST(BlindCause, ActsBesideOthersThatCanBeTold) {
 }
 
 TEST(BlindPlant, DemandsWhatCanBeSeen) {
-  EXPECT_TRUE(isDemanded(2, 2, 1)) << "a lone cause";
-  EXPECT_FALSE(isDemanded(2, 30, 1)) << "but not beside a gap that it does not make";
-  EXPECT_FALSE(isDemanded(2.9, 10, 2));
-  EXPECT_TRUE(isDemanded(3, 10, 2));
-  EXPECT_FALSE(isDemanded(9, 100, 2));
+  const std::map<std::string, double> gap = {{"angle", 100}, {"pressure", 4}};
+  const auto demanded = [&](double angle, double pressure, std::size_t cause_count) {
+    return isDemanded({{"angle", angle}, {"pressure", pressure}}, gap, cause_count);
+  };
+  EXPECT_FALSE(demanded(9, 2.9, 2));
+  EXPECT_TRUE(demanded(10, 0, 2));
+  EXPECT_TRUE(demanded(9, 3, 2)) << "one signal shows it";
+  EXPECT_TRUE(demanded(2, 2, 1)) << "a lone cause";
+  EXPECT_FALSE(demanded(9, 0.9, 1)) << "but not beside a gap that it does not make";
 }
 
 /// A recording of one second without motion, as a plan.
@@ -132,7 +136,7 @@ TEST(BlindPlant, TellsInTheKeyWhatEachCauseContributes) {
   EXPECT_EQ(key, again) << "the same seed, the same plant";
   ASSERT_EQ(key["effects"].size(), 3u);
   EXPECT_EQ(key["acceptable"].size(), 3u);
-  const double gap = key["gap_over_noise"];
+  const auto noise_std = key["noise_std"].get<std::map<std::string, double>>();
   for (std::size_t i = 0; i < 3; ++i) {
     const nlohmann::json& effect = key["effects"][i];
     const double contribution = effect["contribution_over_noise"];
@@ -140,9 +144,14 @@ TEST(BlindPlant, TellsInTheKeyWhatEachCauseContributes) {
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
     const Truth& truth = plant->truth;
     EXPECT_DOUBLE_EQ(truth.gapOverNoise(truth.rmse(truth.motion(others), truth.motion(lawsOf(plant->causes)))), contribution);
-    EXPECT_EQ(effect["demanded"], contribution >= std::max(3.0, 0.1 * gap));
     double largest = 0;
-    for (const auto& [signal, value] : effect["contribution_per_signal"].items()) largest = std::max(largest, value.get<double>());
+    bool demanded = false;
+    for (const auto& [signal, value] : effect["contribution_per_signal"].items()) {
+      largest = std::max(largest, value.get<double>());
+      demanded =
+          demanded || value.get<double>() >= std::max(3.0, 0.1 * key["noise_free_rmse"][signal].get<double>() / noise_std.at(signal));
+    }
+    EXPECT_EQ(effect["demanded"], demanded);
     EXPECT_DOUBLE_EQ(largest, contribution);
   }
   EXPECT_EQ(key["numbers_true"].size(), key["numbers_nominal"].size());

@@ -104,6 +104,7 @@ TEST(BlindSet, KnowsWhetherAnUnknownCauseWasTold) {
 TEST(BlindSet, IsNoFalseAlarmToCorrectNumbers) {
   const json null = keyOf("null", {}, {}, 4);
   EXPECT_FALSE(*judge("a", null, chosen({})).false_alarm);
+  EXPECT_TRUE(judge("a", null, chosen({})).verdict_right);
   EXPECT_TRUE(*judge("b", null, chosen({lag_label})).false_alarm);
   EXPECT_TRUE(*judge("c", null, answerOf("effects_found", {candidate("creep", "all", 0.9)}, 0)).false_alarm);
 }
