@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
+#include "evaluation/blind/benchmark.h"
 #include "evaluation/blind/follow_up.h"
 #include "evaluation/blind/make.h"
 #include "evaluation/blind/page.h"
@@ -42,13 +43,18 @@ Action addMake(CLI::App& command) {
   auto arguments = std::make_shared<MakeArguments>();
   command.add_option("folder", arguments->folder, "New folder for the cases and the seal")->required();
   command.add_option("--keys", arguments->keys, "Folder for the key; `blind run` must not be able to read it")->required();
-  command.add_option("--count", arguments->make.count, "Number of cases on rig and elbow, alternating (default 120)");
+  command.add_option("--count", arguments->make.count, "Number of cases on the robots in turn (default 120)");
+  addList(command, "--robot", arguments->make.robots, "Robots that take turns: names or files NAME.toml (default: rig,elbow,wrist)");
   command.add_option("--arm-count", arguments->make.arm_count, "Number of further cases on the arm (default 12)");
   command.add_option("--seed", arguments->make.seed, "Seed of all random choices (default 1)");
   command.add_option("--duration-s", arguments->make.duration_s,
                      "Length of each recording in s (default 6); recordings of the arm have half of it");
-  addList(command, "--kinds", arguments->make.kinds, "Make only these kinds of case: single, double, open, null");
+  addList(command, "--kinds", arguments->make.kinds,
+          "Only these kinds, equally often: null, single, double, triple, quadruple (4 or 5 causes), mixed (known beside unknown), open "
+          "(unknown)");
   addList(command, "--causes", arguments->make.causes, "Draw causes from these effects of the catalogue only (default: all, in turn)");
+  command.add_flag("--exact-numbers", arguments->make.exact_numbers,
+                   "The plants have just the model's masses, inertias, friction and constants");
   command.add_option("--jobs", arguments->make.job_count, "Threads (default: one per core); the cases do not depend on it")
       ->check(CLI::Range(1, 1024));
   command.add_option("--commit", arguments->make.commit, "Version of the sources, to be noted in the seal");
@@ -138,6 +144,7 @@ int scoreCases(const ScoreArguments& arguments) {
                                     std::pair("truth in the ambiguity set", "covered"), std::pair("open causes detected", "open_detected"),
                                     std::pair("false alarms", "false_alarm")})
     printRate(all, words, name);
+  fmt::print("\n{}", blind::benchmarkTable(object));
   return done;
 }
 

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 
 #include "../../effect/components.h"
 #include "chance.h"
+#include "look_alikes.h"
 #include "musclesim/base/error.h"
 #include "musclesim/effect/relevance.h"
 #include "musclesim/robot/robot.h"
@@ -57,10 +59,10 @@ bool isPlausible(const EffectParameter& p, double value) {
   return std::abs(value - p.neutral) <= most * usual;
 }
 
-/// NaN for a law that cannot act on this component (a bracket needs a joint) and for a plant that diverges.
+/// Change that a law makes alone. NaN for a law that cannot act on this component (a bracket needs a joint) and for a plant that diverges.
 double gapOf(const ActiveEffect& law, const Truth& truth) {
   try {
-    return truth.gapOverNoise(truth.rmse({law}));
+    return truth.gapOverNoise(truth.rmse(truth.clean(), truth.motion({law})));
   } catch (const BadParameter&) {
     return std::numeric_limits<double>::quiet_NaN();
   }
@@ -79,6 +81,14 @@ Band bandOf(const std::string& size, const std::string& stands_for) {
   if (found == bands.end()) throw BadParameter("size", size, "be one of weak, clear, strong");
   if (size == "strong" && stands_for == "channel_swap") return {found->second.low, infinity};
   return found->second;
+}
+
+bool canActBeside(const OutOfCatalogueLaw& law, const std::vector<Cause>& others) {
+  static const std::set<std::string> one_valve = {"valve_lag", "flow_limit"};
+  return std::ranges::all_of(others, [&](const Cause& other) {
+    if (law.info.id == other.law.id) return false;
+    return !areOfOneClass(law.stands_for, other.id) && !(one_valve.contains(law.stands_for) && one_valve.contains(other.id));
+  });
 }
 
 std::vector<std::string> componentsOf(const OutOfCatalogueLaw& law, const Robot& robot, const std::vector<std::string>& signals) {
@@ -137,8 +147,10 @@ std::optional<Cause> causeOfSize(const OutOfCatalogueLaw& law, const std::string
   std::optional<std::vector<double>> values;
   for (int draw = 0; draw < draw_count; ++draw) {
     if (!values || draw % 4 == 0) values = drawSizes(law.info, random);
-    Cause cause{law.stands_for.empty() ? law.info.id : law.stands_for, component, activeEffect(law.info, component, *values),
-                law.info.stage, 0};
+    Cause cause{.id = law.stands_for.empty() ? law.info.id : law.stands_for,
+                .component = component,
+                .law = activeEffect(law.info, component, *values),
+                .stage = law.info.stage};
     cause.gap_over_noise = gapOf(cause.law, truth);
     if (band.holds(cause.gap_over_noise)) return cause;
     const double target = logUniform(random, band.low, std::min(band.high, largest_target * band.low));

@@ -31,8 +31,14 @@ struct Cause {
   std::string component;  ///< of the robot
   ActiveEffect law;       ///< an out-of-catalogue law; its parameters differ in meaning from the catalogue's
   Stage stage = Stage::command;
-  double gap_over_noise = 0;  ///< of this cause alone
+  double gap_over_noise = 0;  ///< change that this cause makes alone; not drawn for measured sizes
+  bool measured = false;      ///< its sizes are those of a real machine (machine.h)
+  bool isUnknown() const { return law.id == id; }
 };
+
+/// Whether a plant that has the others can also have the cause of this law: no cause twice, none that some recordings cannot distinguish
+/// from another one (areOfOneClass), not a lag and a rate limit of the same valve.
+bool canActBeside(const OutOfCatalogueLaw& law, const std::vector<Cause>& others);
 
 /// The laws that can act on this robot and change what is measured, in an order drawn from the seed, starting at the `turn`-th: over many
 /// turns all are used equally often. `open`: laws of causes that the catalogue does not have; otherwise laws of `causes` (ids of the
@@ -50,7 +56,7 @@ std::vector<double> drawSizes(const EffectInfo& law, RandomStream& random);
 /// range or three times its usual range.
 std::optional<std::vector<double>> scaled(const EffectInfo& law, std::vector<double> values, double factor);
 
-/// Draws and scales sizes up to ten times until the gap lies in the band; empty if it never does.
+/// Draws and scales sizes up to ten times until the change that the cause makes alone lies in the band; empty if it never does.
 std::optional<Cause> causeOfSize(const OutOfCatalogueLaw& law, const std::string& component, const std::string& size, const Truth& truth,
                                  RandomStream& random);
 

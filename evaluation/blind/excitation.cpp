@@ -99,32 +99,38 @@ struct Range {
   double low, high;
 };
 
-/// Amplitudes by robot and kind, fractions of full scale.
-Range amplitudeRange(const std::string& robot, const std::string& kind) {
-  static const std::map<std::string, std::map<std::string, Range>> ranges = {{"rig",
-                                                                              {{"triangle", {0.14, 0.19}},
-                                                                               {"steps", {0.06, 0.12}},
-                                                                               {"reversals", {0.13, 0.17}},
-                                                                               {"multisine", {0.09, 0.14}},
-                                                                               {"holds", {0.05, 0.14}}}},
-                                                                             {"elbow",
-                                                                              {{"triangle", {0.08, 0.12}},
-                                                                               {"steps", {0.04, 0.07}},
-                                                                               {"reversals", {0.05, 0.09}},
-                                                                               {"multisine", {0.05, 0.08}},
-                                                                               {"holds", {0.03, 0.07}}}},
-                                                                             {"arm",
-                                                                              {{"triangle", {0.01, 0.03}},
-                                                                               {"steps", {0.01, 0.02}},
-                                                                               {"reversals", {0.01, 0.03}},
-                                                                               {"multisine", {0.01, 0.02}},
-                                                                               {"holds", {0.01, 0.03}}}}};
-  return ranges.at(robot).at(kind);
+/// Amplitudes by layout and kind, fractions of full scale.
+Range amplitudeRange(Layout layout, const std::string& kind) {
+  static const std::map<Layout, std::map<std::string, Range>> ranges = {{Layout::one_muscle,
+                                                                         {{"triangle", {0.14, 0.19}},
+                                                                          {"steps", {0.06, 0.12}},
+                                                                          {"reversals", {0.13, 0.17}},
+                                                                          {"multisine", {0.09, 0.14}},
+                                                                          {"holds", {0.05, 0.14}}}},
+                                                                        {Layout::pair,
+                                                                         {{"triangle", {0.08, 0.12}},
+                                                                          {"steps", {0.04, 0.07}},
+                                                                          {"reversals", {0.05, 0.09}},
+                                                                          {"multisine", {0.05, 0.08}},
+                                                                          {"holds", {0.03, 0.07}}}},
+                                                                        {Layout::many,
+                                                                         {{"triangle", {0.01, 0.03}},
+                                                                          {"steps", {0.01, 0.02}},
+                                                                          {"reversals", {0.01, 0.03}},
+                                                                          {"multisine", {0.01, 0.02}},
+                                                                          {"holds", {0.01, 0.03}}}}};
+  return ranges.at(layout).at(kind);
 }
 
-Excitation drawExcitation(const std::string& robot, const std::string& kind, RandomStream& random) {
-  const Range range = amplitudeRange(robot, kind);
+Excitation drawExcitation(Layout layout, const std::string& kind, RandomStream& random) {
+  const Range range = amplitudeRange(layout, kind);
   return {kind, random.uniform(range.low, range.high), 1};
+}
+
+double drawMiddle(Layout layout, RandomStream& random) {
+  static const std::map<Layout, Range> ranges = {
+      {Layout::one_muscle, {0.32, 0.48}}, {Layout::pair, {0.3, 0.48}}, {Layout::many, {0.06, 0.18}}};
+  return random.uniform(ranges.at(layout).low, ranges.at(layout).high);
 }
 
 }  // namespace
@@ -139,27 +145,28 @@ std::vector<double> shapeOf(const std::string& kind, double speed, double durati
   throw BadParameter("kind of excitation", kind, "be one of triangle, steps, reversals, multisine, holds");
 }
 
-std::vector<Excitation> drawExcitations(const std::string& robot, RandomStream& random) {
+Layout layoutOf(int muscle_count) {
+  return muscle_count == 1 ? Layout::one_muscle : muscle_count == 2 ? Layout::pair : Layout::many;
+}
+
+std::vector<Excitation> drawExcitations(Layout layout, RandomStream& random) {
   std::vector<Excitation> drawn;
   const std::string third = oneOf(random, std::vector<std::string>{"reversals", "multisine", "holds"});
   for (const std::string& kind : {std::string("triangle"), std::string("steps"), third})
-    drawn.push_back(drawExcitation(robot, kind, random));
-  drawn.push_back(drawExcitation(robot, oneOf(random, std::vector<std::string>{"triangle", "reversals", "multisine", "holds"}), random));
+    drawn.push_back(drawExcitation(layout, kind, random));
+  drawn.push_back(drawExcitation(layout, oneOf(random, std::vector<std::string>{"triangle", "reversals", "multisine", "holds"}), random));
   drawn.back().speed = happens(random, 0.5) ? 0.6 : 1.6;
   drawn.back().amplitude *= random.uniform(0.6, 1.1);
   return drawn;
 }
 
-Recording planned(const std::string& robot, const Excitation& excitation, double duration_s, RandomStream& random) {
-  constexpr int arm_muscle_count = 10;
+Recording planned(const std::string& robot, int muscle_count, const Excitation& excitation, double duration_s, RandomStream& random) {
   constexpr double command_steps = 1e4;
-  const int muscle_count = robot == "rig" ? 1 : robot == "elbow" ? 2 : arm_muscle_count;
-  const double middle = robot == "rig"     ? random.uniform(0.32, 0.48)
-                        : robot == "elbow" ? random.uniform(0.3, 0.48)
-                                           : random.uniform(0.06, 0.18);
+  const Layout layout = layoutOf(muscle_count);
+  const double middle = drawMiddle(layout, random);
   const std::vector<double> shape = shapeOf(excitation.kind, excitation.speed, duration_s, random);
   const bool slow = excitation.kind == "triangle" || excitation.kind == "reversals";
-  const double both = robot == "elbow" && slow && happens(random, 0.6) ? random.uniform(0.05, 0.09) : 0;
+  const double both = layout == Layout::pair && slow && happens(random, 0.6) ? random.uniform(0.05, 0.09) : 0;
   const std::vector<double> together = shapeOf("triangle", 1.4 * excitation.speed, duration_s, random);
   Recording plan;
   plan.info.robot = robot;
@@ -167,8 +174,8 @@ Recording planned(const std::string& robot, const Excitation& excitation, double
   for (std::size_t row = 0; row < shape.size(); ++row) plan.time_s.push_back(static_cast<double>(row) * interval_s);
   for (int muscle = 0; muscle < muscle_count; ++muscle) {
     Signal command{fmt::format("command_{}", muscle), {}};
-    const std::vector<double> own = robot == "arm" ? shapeOf(excitation.kind, excitation.speed, duration_s, random) : shape;
-    const double sign = robot == "elbow" && muscle == 1 ? -1 : 1;
+    const std::vector<double> own = layout == Layout::many ? shapeOf(excitation.kind, excitation.speed, duration_s, random) : shape;
+    const double sign = layout == Layout::pair && muscle == 1 ? -1 : 1;
     for (std::size_t row = 0; row < shape.size(); ++row)
       command.values.push_back(rounded(middle + sign * excitation.amplitude * own[row] + both * together[row], command_steps));
     plan.signals.push_back(std::move(command));

@@ -7,6 +7,7 @@
 #include "../../diagnosis/schedule.h"
 #include "follow_up_files.h"
 #include "judge.h"
+#include "kind.h"
 #include "musclesim/base/error.h"
 #include "musclesim/diagnosis/diagnosis.h"
 #include "musclesim/effect/effects_file.h"
@@ -31,7 +32,7 @@ struct Answered {
   std::vector<Recording> recordings;
 };
 
-std::vector<ActiveEffect> lawsOf(const json& key) {
+std::vector<ActiveEffect> lawsIn(const json& key) {
   std::vector<ActiveEffect> laws;
   for (const json& effect : key.at("effects")) {
     ActiveEffect law{effect.at("law"), effect.at("component"), {}};
@@ -45,8 +46,9 @@ std::vector<ActiveEffect> lawsOf(const json& key) {
 Recording measuredUnder(Recording schedule, const Answered& one, const std::string& file, std::uint64_t seed) {
   schedule.info.noise_std.clear();
   const Truth truth({schedule}, one.key.at("signals").get<std::vector<std::string>>(),
-                    one.key.at("noise_std").get<std::map<std::string, double>>(), seed);
-  Recording measured = truth.measured(lawsOf(one.key)).front();
+                    one.key.at("noise_std").get<std::map<std::string, double>>(), seed,
+                    one.key.value("numbers_true", std::map<std::string, double>()));
+  Recording measured = truth.measured(lawsIn(one.key)).front();
   measured.file = one.name + "/" + file;
   return measured;
 }
@@ -125,11 +127,11 @@ json freshReduction(const Answered& one, const fs::path& effects_file) {
 std::optional<json> followed(const Answered& one, const fs::path& folder, const FollowUpOptions& options) {
   json result = json::object();
   if (one.answer.value("verdict", "") == "failed") return result;
-  const std::string kind = one.key.at("kind");
+  const Kind& kind = kindOf(one.key.at("kind"));
   auto put = [&](const char* part, const json& found) {
     if (!found.is_null()) result[part] = found;
   };
-  if (kind == "single" || kind == "double") put("left_out", leftOut(one, options));
+  if (kind.most_known > 0 && !kind.unknown) put("left_out", leftOut(one, options));
   if (isAmbiguous(judge(one.name, one.key, one.answer))) put("experiment", experimented(one, options));
   if (one.answer.value("verdict", "") == "effects_found") put("fresh", freshReduction(one, effectsOf(folder, one.name)));
   if (options.interrupted()) return std::nullopt;

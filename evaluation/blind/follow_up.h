@@ -16,7 +16,7 @@ struct FollowUpOptions {
 };
 
 /// For every answered case writes DIR/follow_up/caseNNN.json:
-/// - "left_out" (single and double cases): the answer without the true effects among the candidates;
+/// - "left_out" (cases with known causes only): the answer without the true effects among the candidates;
 /// - "experiment" (ambiguous answers): the answer after the plant has recorded the proposed schedule, with that recording among the fitted
 ///   ones; an answer that failed if no schedule was proposed;
 /// - "fresh" (answers with effects): gap reduction by the answer's effects on a new recording of the same plant.

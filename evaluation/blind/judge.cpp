@@ -41,12 +41,6 @@ double probabilityOf(const std::vector<Answer>& candidates, const std::vector<st
   return std::min(sum, 1.0);
 }
 
-bool allNamed(const Patterns& sets, const std::vector<std::string>& labels) {
-  return std::ranges::all_of(sets, [&](const std::vector<std::string>& set) {
-    return std::ranges::any_of(labels, [&](const std::string& label) { return fitsAny(label, set); });
-  });
-}
-
 void judgeRanking(Judgement& j, const std::vector<Answer>& candidates, const Patterns& acceptable, const std::vector<std::string>& truth) {
   constexpr std::size_t listed = 3;
   const std::vector<std::string> accepted = flat(acceptable);
@@ -66,44 +60,32 @@ void judgeRanking(Judgement& j, const std::vector<Answer>& candidates, const Pat
   j.probability_of_acceptable = probabilityOf(candidates, accepted);
 }
 
-void judgeReduction(Judgement& j, const json& answer, const std::vector<Answer>& candidates, const std::vector<std::string>& truth) {
+void judgeReduction(Judgement& j, const json& key, const json& answer, const std::vector<Answer>& candidates,
+                    const std::vector<std::string>& truth) {
   const json gap = answer.value("gap", json::object());
   j.reduction_percent = gap.value("shrink_percent", 0.0);
   j.nominal_refit_percent = gap.value("nominal_refit_shrink_percent", 0.0);
-  if (j.kind != "single") return;
-  constexpr double everything_percent = 100;
+  constexpr double everything_percent = 100, least_percent = 20;
+  double oracle_percent = key.value("oracle_shrink_percent", everything_percent);
   const auto listed = std::ranges::find_if(
       candidates, [&](const Answer& candidate) { return fitsAny(candidate.label, truth) && candidate.reduction_percent > 0; });
-  j.oracle_listed = listed != candidates.end();
-  j.oracle_share = *j.reduction_percent / (j.oracle_listed ? listed->reduction_percent : everything_percent);
+  j.oracle_listed = j.kind == "single" && listed != candidates.end();
+  if (j.oracle_listed) oracle_percent = listed->reduction_percent;
+  if (oracle_percent >= least_percent || j.oracle_listed) j.oracle_share = *j.reduction_percent / oracle_percent;
 }
 
-/// Probability of the explanations that contain all of the effects.
-double probabilityOfAll(const json& answer, const Patterns& truths) {
-  double sum = 0;
-  for (const json& explanation : answer.value("explanations", json::array()))
-    if (allNamed(truths, explanation.at("effects").get<std::vector<std::string>>())) sum += explanation.at("probability").get<double>();
-  return sum;
-}
-
-void judgeSets(Judgement& j, const json& answer, const Patterns& acceptable, const Patterns& truths) {
-  std::vector<std::string> set = j.ambiguity_set = answer.value("ambiguity_set", std::vector<std::string>());
-  const std::vector<std::string> chosen = answer.value("chosen", std::vector<std::string>());
-  j.set_size = std::max<double>(1, static_cast<double>(set.size()));
-  if (j.kind == "double") {
-    j.pair = allNamed(acceptable, chosen);
-    j.probability_of_truth = probabilityOfAll(answer, truths);
-  }
-  const std::vector<std::string> accepted = flat(acceptable);
-  j.spurious = std::ranges::any_of(chosen, [&](const std::string& label) { return !fitsAny(label, accepted); });
-  set.insert(set.end(), chosen.begin(), chosen.end());
-  j.covered = allNamed(truths, set);
+/// The ambiguity set of a lone cause.
+void judgeAmbiguity(Judgement& j, const json& answer, const std::vector<std::string>& truth) {
+  std::vector<std::string> named = answer.value("chosen", std::vector<std::string>());
+  named.insert(named.end(), j.ambiguity_set.begin(), j.ambiguity_set.end());
+  j.set_size = std::max<double>(1, static_cast<double>(j.ambiguity_set.size()));
+  j.covered = std::ranges::any_of(named, [&](const std::string& label) { return fitsAny(label, truth); });
 }
 
 /// The truth under all names of its component: the acceptable answers with the same id.
 Patterns truthsOf(const std::vector<std::string>& ids, const Patterns& acceptable) {
   Patterns truths;
-  for (std::size_t i = 0; i < ids.size(); ++i) {
+  for (std::size_t i = 0; i < acceptable.size(); ++i) {
     truths.emplace_back();
     std::ranges::copy_if(acceptable[i], std::back_inserter(truths.back()), [&](const std::string& p) { return idOf(p) == ids[i]; });
   }
@@ -120,8 +102,15 @@ void judgeFound(Judgement& j, const json& key, const json& answer, const std::ve
   const auto acceptable = key.at("acceptable").get<Patterns>();
   const Patterns truths = truthsOf(j.true_ids, acceptable);
   judgeRanking(j, candidates, acceptable, flat(truths));
-  judgeReduction(j, answer, candidates, flat(truths));
-  judgeSets(j, answer, acceptable, truths);
+  judgeReduction(j, key, answer, candidates, flat(truths));
+  j.spurious = j.set.wrong > 0;
+  if (j.kind == "single") {
+    judgeAmbiguity(j, answer, flat(truths));
+  } else {
+    j.covered = j.set.covered;
+    j.set_size = j.set.class_size;
+    j.probability_of_truth = j.set.probability;
+  }
   j.claim = claimOf(j, *j.acceptable);
 }
 
@@ -165,8 +154,12 @@ Judgement judge(const std::string& name, const json& key, const json& answer) {
   j.none_of_these = answer.value("none_of_these", 0.0);
   for (const json& explanation : answer.value("explanations", json::array()))
     if (explanation.at("effects").empty()) j.no_effect = explanation.at("probability");
+  j.ambiguity_set = answer.value("ambiguity_set", std::vector<std::string>());
+  j.set = judgeSet(key, answer);
   if (j.kind == "null") {
-    j.false_alarm = j.verdict != "no_gap" && j.verdict != "not_excited";
+    const bool corrects_numbers = j.verdict == "effects_found" && answer.contains("chosen") && answer["chosen"].empty();
+    j.verdict_right = j.verdict_right || corrects_numbers;
+    j.false_alarm = j.verdict != "no_gap" && j.verdict != "not_excited" && !corrects_numbers;
     j.claim = claimOf(j, j.no_effect >= j.confidence());
     return j;
   }
@@ -175,7 +168,7 @@ Judgement judge(const std::string& name, const json& key, const json& answer) {
   j.stage = std::ranges::find(j.true_stages, stage) != j.true_stages.end();
   if (j.kind == "open")
     judgeOpen(j);
-  else
+  else if (j.set.demanded > 0)
     judgeFound(j, key, answer, candidates);
   return j;
 }

@@ -10,15 +10,17 @@
 namespace musclesim::blind {
 
 struct MakeOptions {
-  int count = 120;     ///< cases on rig and elbow in turn
-  int arm_count = 12;  ///< further cases on the arm
+  int count = 120;                                              ///< cases on the robots in turn
+  std::vector<std::string> robots = {"rig", "elbow", "wrist"};  ///< names or robot files; one may be named more than once
+  int arm_count = 12;                                           ///< further cases on the arm
   std::uint64_t seed = 1;
-  double duration_s = 6;           ///< of each recording; half of it on the arm
-  std::vector<std::string> kinds;  ///< of single, double, open, null; empty: 70, 10, 10 and 10 %
+  double duration_s = 6;           ///< of each recording; half of it on the arm and other robots of many muscles
+  std::vector<std::string> kinds;  ///< names of kinds(), with equal odds; empty: all by their shares
   std::vector<std::string>
-      causes;          ///< ids of the catalogue that plants may have; empty: all. Open plants have causes outside the catalogue
-  int job_count = 0;   ///< threads; 0: one per core. The cases do not depend on it
-  std::string commit;  ///< of the sources, for the seal; may be empty
+      causes;                  ///< ids of the catalogue that plants may have; empty: all. Open plants have causes outside the catalogue
+  bool exact_numbers = false;  ///< whether the plants have the model's numbers
+  int job_count = 0;           ///< threads; 0: one per core. The cases do not depend on it
+  std::string commit;          ///< of the sources, for the seal; may be empty
   std::function<void(int done, int count)> progress = [](int, int) {};
   std::function<bool()> interrupted = [] { return false; };
 };

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <functional>
+#include <iterator>
 #include <map>
 
+#include "kind.h"
 #include "look_alikes.h"
 #include "musclesim/base/error.h"
 #include "run.h"
@@ -42,6 +45,38 @@ void putNumber(json& totals, const std::string& name, const std::optional<double
   if (value) totals[name] = *value;
 }
 
+json binsJson(const std::vector<Claim>& claims) {
+  json bins = json::array();
+  for (const CalibrationBin& bin : calibrationBins(claims)) {
+    json entry = rateJson(bin.right);
+    entry["mean_probability"] = bin.mean_probability;
+    bins.push_back(entry);
+  }
+  return bins;
+}
+
+/// Causes found, wrong effects, full sets, unknown causes; how often effects acted over their inclusion probability.
+void putSets(json& totals, const Cases& cases) {
+  Rate found;
+  std::vector<double> wrong;
+  std::vector<Claim> inclusion, complete;
+  for (const Judgement& j : cases) {
+    found.hits += j.set.found;
+    found.count += j.set.demanded;
+    wrong.push_back(j.set.wrong);
+    inclusion.insert(inclusion.end(), j.set.inclusion.begin(), j.set.inclusion.end());
+    if (j.set.complete) complete.push_back(*j.set.complete);
+  }
+  if (found.count) totals["demanded_found"] = rateJson(found);
+  putNumber(totals, "wrong_effects", meanOf(wrong));
+  putRate(totals, "full_set", cases, [](const Judgement& j) { return j.set.full; });
+  putRate(totals, "unknown_told", cases, [](const Judgement& j) { return j.set.unknown_told; });
+  putRate(totals, "unknown_claimed", cases, [](const Judgement& j) { return j.set.unknown_claimed; });
+  putNumber(totals, "inclusion_calibration_error", calibrationError(inclusion));
+  putNumber(totals, "complete_calibration_error", calibrationError(complete));
+  totals["inclusion_reliability"] = binsJson(inclusion);
+}
+
 void putRates(json& totals, const Cases& cases) {
   const std::pair<const char*, std::optional<bool> Judgement::*> members[] = {{"top1", &Judgement::top1},
                                                                               {"top3", &Judgement::top3},
@@ -52,15 +87,14 @@ void putRates(json& totals, const Cases& cases) {
                                                                               {"stage", &Judgement::stage},
                                                                               {"component", &Judgement::component},
                                                                               {"covered", &Judgement::covered},
-                                                                              {"pair", &Judgement::pair},
                                                                               {"open_detected", &Judgement::open_detected},
                                                                               {"false_alarm", &Judgement::false_alarm}};
   putRate(totals, "verdict", cases, [](const Judgement& j) { return j.verdict_right; });
   for (const auto& [name, member] : members) putRate(totals, name, cases, [m = member](const Judgement& j) { return j.*m; });
 }
 
-/// Rates of gap reduction: at least 80 % (single and double cases); at least 80 % of the true effect's best fit (single cases); at least 20
-/// points above the nominal refit if the cause is at least three times the noise. A nominal refit that increases the gap counts as 0.
+/// Rates of gap reduction, known causes: at least 80 %; at least 80 % of that by the true effects; at least 20 points above the nominal
+/// refit if the gap is at least three times the noise. A nominal refit that increases the gap counts as 0.
 void putReduction(json& totals, const Cases& cases) {
   constexpr double enough_percent = 80, enough_share = 0.8, enough_points = 20, large_gap = 3;
   putRate(totals, "shrink_at_least_80_percent", cases,
@@ -68,7 +102,7 @@ void putReduction(json& totals, const Cases& cases) {
   putRate(totals, "shrink_at_least_80_percent_of_true_effect", cases,
           [](const Judgement& j) { return j.oracle_share ? std::optional(*j.oracle_share >= enough_share) : std::nullopt; });
   putRate(totals, "true_effect_listed", cases,
-          [](const Judgement& j) { return j.oracle_share ? std::optional(j.oracle_listed) : std::nullopt; });
+          [](const Judgement& j) { return j.kind == "single" && j.oracle_share ? std::optional(j.oracle_listed) : std::nullopt; });
   putRate(totals, "shrink_20_points_above_nominal_refit", cases, [](const Judgement& j) {
     if (!j.reduction_percent || j.gap_over_noise < large_gap) return std::optional<bool>();
     return std::optional(*j.reduction_percent >= std::max(0.0, *j.nominal_refit_percent) + enough_points);
@@ -89,16 +123,6 @@ json grouped(const Cases& cases, const std::function<std::string(const Judgement
   json totals = json::object();
   for (const auto& [name, group] : groups) totals[name] = totalsOf(group);
   return totals;
-}
-
-json binsJson(const Cases& cases) {
-  json bins = json::array();
-  for (const CalibrationBin& bin : calibrationBins(claimsOfOneCause(cases))) {
-    json entry = rateJson(bin.right);
-    entry["mean_probability"] = bin.mean_probability;
-    bins.push_back(entry);
-  }
-  return bins;
 }
 
 std::string causesOf(const Judgement& j) {
@@ -133,12 +157,16 @@ json caseJson(const Judgement& j) {
                  {"top", j.top},
                  {"top_probability", j.top_probability},
                  {"none_of_these", j.none_of_these},
+                 {"demanded", j.set.demanded},
+                 {"found", j.set.found},
+                 {"wrong", j.set.wrong},
                  {"seconds", j.seconds}};
   put(object, "acceptable", j.acceptable);
   put(object, "acceptable3", j.acceptable3);
   put(object, "stage", j.stage);
   put(object, "covered", j.covered);
-  put(object, "pair", j.pair);
+  put(object, "full_set", j.set.full);
+  put(object, "unknown_told", j.set.unknown_told);
   put(object, "open_detected", j.open_detected);
   put(object, "false_alarm", j.false_alarm);
   put(object, "probability_of_truth", j.probability_of_truth);
@@ -159,6 +187,7 @@ json totalsOf(const Cases& cases) {
   json totals = {{"cases", cases.size()}};
   putRates(totals, cases);
   putReduction(totals, cases);
+  putSets(totals, cases);
   putNumber(totals, "probability_of_truth", meanOf(valuesOf(cases, &Judgement::probability_of_truth)));
   putNumber(totals, "probability_of_acceptable", meanOf(valuesOf(cases, &Judgement::probability_of_acceptable)));
   putNumber(totals, "set_size", meanOf(valuesOf(cases, &Judgement::set_size)));
@@ -184,13 +213,16 @@ Score score(const fs::path& folder, const fs::path& key_file) {
     result.cases.back().seconds = result.answers.at("seconds").value(name, 0.0);
   }
   result.follow_ups = followUpsOf(folder, key.at("cases"));
+  Cases several;
+  std::ranges::copy_if(result.cases, std::back_inserter(several), [](const Judgement& j) { return kindOf(j.kind).isSeveral(); });
   result.totals = {{"all", totalsOf(result.cases)},
+                   {"several", totalsOf(several)},
                    {"by_kind", grouped(result.cases, [](const Judgement& j) { return j.kind; })},
                    {"by_robot", grouped(result.cases, [](const Judgement& j) { return j.robot; })},
                    {"by_size", grouped(result.cases, [](const Judgement& j) { return j.size; })},
                    {"by_effect", grouped(result.cases, causesOf)},
                    {"confusion", confusionOf(result.cases)},
-                   {"reliability", binsJson(result.cases)},
+                   {"reliability", binsJson(claimsOfOneCause(result.cases))},
                    {"follow_up", followUpTotals(result.follow_ups)}};
   return result;
 }

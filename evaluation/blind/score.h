@@ -15,7 +15,7 @@ struct Score {
   nlohmann::json seal, answers;  ///< as in DIR
   std::vector<Judgement> cases;
   std::vector<FollowUp> follow_ups;  ///< empty if nothing was followed up
-  nlohmann::json totals;             ///< totalsOf() all cases and by kind, robot, size, effect
+  nlohmann::json totals;             ///< totalsOf() all cases, those with several causes, and by kind, robot, size, effect
 };
 
 /// What was said of single and open causes.

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "chance.h"
+#include "excitation.h"
 #include "musclesim/simulation/replay.h"
 
 namespace musclesim::blind {
@@ -27,39 +28,51 @@ double stepsPerUnit(const std::string& signal) {
 
 }  // namespace
 
-Truth::Truth(std::vector<Recording> plans, std::vector<std::string> signals, std::map<std::string, double> noise_std, std::uint64_t seed)
-    : plans_(std::move(plans)), signals_(std::move(signals)), noise_std_(std::move(noise_std)), seed_(seed) {
+Truth::Truth(std::vector<Recording> plans, std::vector<std::string> signals, std::map<std::string, double> noise_std, std::uint64_t seed,
+             std::map<std::string, double> numbers)
+    : plans_(std::move(plans)), signals_(std::move(signals)), noise_std_(std::move(noise_std)), seed_(seed), numbers_(std::move(numbers)) {
   for (const Recording& plan : plans_) {
     ReplayResult result = replayRecording(plan);
     substeps_.push_back(result.substeps);
     model_.push_back(std::move(result.simulated));
   }
+  clean_ = motion({});
 }
 
-/// The arm is sensitive: a finer time step alone moves its hand by millimetres, many times the noise. Its plants differ from the model in
-/// laws and seeds only.
+/// A robot of many muscles is sensitive: a finer time step alone moves the arm's hand by millimetres, many times the noise. Its plants
+/// differ from the model in everything else only.
 int Truth::stepRatio() const {
-  return plans_.front().info.robot == "arm" ? 1 : 2;
+  return layoutOf(plans_.front().muscleCount()) == Layout::many ? 1 : 2;
 }
 
-Recording Truth::simulated(std::size_t recording, const std::vector<ActiveEffect>& effects, bool noisy) const {
+Recording Truth::simulated(std::size_t recording, const std::vector<ActiveEffect>& effects, const Numbers& numbers, bool noisy) const {
   ReplayOptions options;
   options.effects = effects;
   options.seed = seed_ + recording;
   options.substeps = substeps_[recording] * stepRatio();
+  for (const auto& [name, value] : numbers) options.parameters.set(name, value, "blind");
   if (noisy)
     for (const auto& [signal, deviation] : noise_std_) options.parameters.set(noiseParameter(signal), deviation, "blind");
   return replayRecording(plans_[recording], options).simulated;
 }
 
-std::map<std::string, double> Truth::rmse(const std::vector<ActiveEffect>& effects) const {
+Truth::Motion Truth::motion(const std::vector<ActiveEffect>& effects, const Numbers& numbers) const {
+  Motion recordings;
+  for (std::size_t i = 0; i < plans_.size(); ++i) recordings.push_back(simulated(i, effects, numbers, false));
+  return recordings;
+}
+
+Truth::Motion Truth::nominalMotion(const std::vector<ActiveEffect>& effects) const {
+  return effects.empty() && numbers_.empty() ? clean_ : motion(effects, {});
+}
+
+std::map<std::string, double> Truth::rmse(const Motion& one, const Motion& other) const {
   std::map<std::string, double> squares;
   double row_count = 0;
-  for (std::size_t i = 0; i < plans_.size(); ++i) {
-    const Recording plant = simulated(i, effects, false);
-    const bool whole = plant.time_s.size() == plans_[i].time_s.size();
-    row_count += static_cast<double>(plans_[i].time_s.size());
-    for (const SignalError& error : compareSignals(model_[i], plant))
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    const bool whole = one[i].info.complete.value_or(true) && other[i].info.complete.value_or(true);
+    row_count += static_cast<double>(one[i].time_s.size());
+    for (const SignalError& error : compareSignals(one[i], other[i]))
       squares[error.name] +=
           whole ? error.rmse * error.rmse * static_cast<double>(error.sample_count) : std::numeric_limits<double>::quiet_NaN();
   }
@@ -86,7 +99,7 @@ double Truth::normalisedGap(const std::map<std::string, double>& rmse) const {
 std::vector<Recording> Truth::measured(const std::vector<ActiveEffect>& effects) const {
   std::vector<Recording> recordings;
   for (std::size_t i = 0; i < plans_.size(); ++i) {
-    const Recording plant = simulated(i, effects, true);
+    const Recording plant = simulated(i, effects, numbers_, true);
     Recording recording = plans_[i];
     recording.info.noise_std = noise_std_;
     for (const std::string& name : signals_) {

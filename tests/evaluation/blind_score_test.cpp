@@ -39,9 +39,9 @@ TEST(BlindJudge, WantsBothCausesOfAPair) {
   const std::vector<json> effects = {candidate("valve_lag", "all", 0.9), candidate("sensor_bias", "signal_length_0", 0.9)};
   const Judgement both =
       judge("c", key, answerOf("effects_found", effects, 0, {{"chosen", Labels{"valve_lag@all", "sensor_bias@signal_length_0"}}}));
-  EXPECT_TRUE(*both.pair && *both.covered && !*both.spurious);
+  EXPECT_TRUE(*both.set.full && *both.covered && !*both.spurious);
   const Judgement one = judge("c", key, answerOf("effects_found", effects, 0, {{"chosen", Labels{"valve_lag@all"}}}));
-  EXPECT_FALSE(*one.pair || *one.covered);
+  EXPECT_FALSE(*one.set.full || *one.covered);
   EXPECT_TRUE(both.claim->right) << "the first is one of the causes";
 }
 

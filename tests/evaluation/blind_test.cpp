@@ -46,6 +46,8 @@ class Blind : public ::testing::Test {
     MakeOptions options;
     options.count = 1;
     options.arm_count = 0;
+    options.robots = {"rig"};
+    options.exact_numbers = true;
     options.seed = seed;
     options.duration_s = 1;
     options.kinds = kinds;
@@ -128,7 +130,7 @@ TEST_F(Blind, SealsAKeyThatTheRecordingsDoNotTell) {
   EXPECT_EQ(seal["key_sha256"], sha256OfFile(key_file));
   for (const auto& [name, entry] : key["cases"].items()) {
     const std::string size = entry["size"];
-    const double gap = entry["gap_over_noise"];
+    const double gap = entry["effects"][0]["gap_over_noise"];
     EXPECT_TRUE(bandOf(size, entry["effects"][0]["id"]).holds(gap)) << name << ": " << size << " " << gap;
     EXPECT_TRUE(entry["effects"][0]["law"].get<std::string>().starts_with("foreign."));
     const Recording recording = readRecording((cases() / name / "r1.csv").string());
