@@ -49,4 +49,20 @@ PhaseSums phaseSums(const Comparison& comparison, const Eigen::VectorXd& residua
   return sums;
 }
 
+std::string phaseOf(const Comparison& comparison, const Eigen::VectorXd& residual) {
+  constexpr double fewest_rows = 50, stands_out = 1.5;
+  const PhaseSums sums = phaseSums(comparison, residual);
+  double square = 0, rows = 0, largest = 0;
+  std::string found;
+  for (const ActuationPhase phase : {ActuationPhase::filling, ActuationPhase::venting, ActuationPhase::holding}) {
+    const auto i = static_cast<std::size_t>(phase);
+    square += sums.square[i];
+    rows += sums.rows[i];
+    if (sums.rows[i] <= fewest_rows || sums.meanSquare(phase) <= largest) continue;
+    largest = sums.meanSquare(phase);
+    found = nameOf(phase);
+  }
+  return rows > 0 && largest > stands_out * square / rows ? found : "";
+}
+
 }  // namespace musclesim

@@ -20,4 +20,7 @@ struct PhaseSums {
 };
 PhaseSums phaseSums(const Comparison& comparison, const Eigen::VectorXd& residual);
 
+/// The actuation phase in which the residual is largest, in words; empty if it is similar in all.
+std::string phaseOf(const Comparison& comparison, const Eigen::VectorXd& residual);
+
 }  // namespace musclesim

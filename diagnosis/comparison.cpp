@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "../base/parallel.h"
 
@@ -21,6 +22,7 @@ Comparison::Comparison(const Plant& plant, std::vector<Segment> segments, Averag
       blocks_.push_back(std::move(block));
     }
   if (averages == Averages::with) addAverages();
+  shareEvidence();
   measured_.resize(size_);
   for (const Block& block : blocks_) {
     if (block.averaged_rows > 0) continue;
@@ -55,11 +57,26 @@ void Comparison::addAverages() {
     const std::vector<double>& y = plant_.measured(segments_[plain.segment].recording, plain.signal);
     std::vector<double> values;
     for (const int row : plain.rows) values.push_back(y[static_cast<std::size_t>(row)]);
-    Block block{plain.segment, plain.signal, {}, size_, plain.sigma * averagedShareOfSigma(values), averaging_rows, plain.first};
+    Block block{plain.segment, plain.signal, {}, size_, plain.sigma * averagedShareOfSigma(values), averaging_rows};
+    block.first_averaged = plain.first;
     for (std::size_t row = 0; row + averaging_rows <= plain.rows.size(); row += averaging_rows) block.rows.push_back(plain.rows[row]);
     size_ += block.count();
     blocks_.push_back(std::move(block));
   }
+}
+
+/// Every channel of a segment has the same power: each pressure, each tension, and all signals of motion together, because these are
+/// functions of each other. Blocks of a channel share it. A single recording, or two, count as three: they hold as many motions.
+void Comparison::shareEvidence() {
+  constexpr double usual_recordings = 3;
+  const auto channelOf = [this](const Block& block) {
+    const std::string& name = plant_.signals()[static_cast<std::size_t>(block.signal)].name;
+    return name.starts_with("pressure_") || name.starts_with("force_") ? name : std::string("motion");
+  };
+  std::map<std::pair<std::size_t, std::string>, double> counts;
+  for (const Block& block : blocks_) ++counts[{block.segment, channelOf(block)}];
+  const double per_segment = std::max(1.0, usual_recordings / static_cast<double>(segments_.size()));
+  for (Block& block : blocks_) block.power = per_segment / counts[{block.segment, channelOf(block)}];
 }
 
 void Comparison::average(Eigen::VectorXd& values) const {
@@ -146,34 +163,53 @@ const Comparison::Block& Comparison::blockLike(const Block& other) const {
       blocks_, [&](const Block& block) { return block.signal == other.signal && block.averaged_rows == other.averaged_rows; });
 }
 
-Comparison Comparison::bySquares(const Eigen::VectorXd& residual) const {
-  Comparison result = *this;
-  result.by_squares_ = true;
-  for (Block& block : result.blocks_) block.sigma = std::sqrt(block.sigma * block.sigma + meanSquare(block, residual));
-  return result;
-}
-
 double Comparison::meanSquare(const Block& block, const Eigen::VectorXd& residual) const {
   return residual.segment(block.first, block.count()).squaredNorm() / static_cast<double>(block.count());
 }
 
-double Comparison::logMisfit(const Eigen::VectorXd& residual) const {
+void Comparison::setGap(const Eigen::VectorXd& nominal_residual) {
+  for (Block& block : blocks_) block.gap = std::sqrt(meanSquare(block, nominal_residual));
+}
+
+double Comparison::misfitOf(const Block& block, double mean_square) const {
+  const double noise_square = block.sigma * block.sigma;
+  double sum = 0;
+  for (const Tolerance& tolerance : tolerances) {
+    const double left = tolerance.share_of_gap * block.gap, scale_square = noise_square + left * left;
+    sum += 0.5 * tolerance.nats * std::log((scale_square + mean_square) / (scale_square + noise_square));
+  }
+  return block.power * sum;
+}
+
+double Comparison::misfit(const Eigen::VectorXd& residual) const {
   if (residual.size() != size_ || !residual.allFinite()) return std::numeric_limits<double>::infinity();
   double sum = 0;
-  for (const Block& block : blocks_) {
-    const double over_noise = meanSquare(block, residual) / (block.sigma * block.sigma);
-    sum += 0.5 * (by_squares_ ? over_noise : std::log(std::max(1.0, over_noise)));
-  }
+  for (const Block& block : blocks_) sum += misfitOf(block, meanSquare(block, residual));
   return sum;
+}
+
+double Comparison::weightSquare(const Block& block, double mean_square) const {
+  double sum = 0;
+  for (const Tolerance& tolerance : tolerances) {
+    const double left = tolerance.share_of_gap * block.gap;
+    sum += tolerance.nats / (block.sigma * block.sigma + left * left + mean_square);
+  }
+  return block.power * sum;
 }
 
 Eigen::VectorXd Comparison::weights(const Eigen::VectorXd& residual) const {
   Eigen::VectorXd result(size_);
-  for (const Block& block : blocks_) {
-    const double rms = by_squares_ ? block.sigma : std::max(block.sigma, std::sqrt(meanSquare(block, residual)));
-    result.segment(block.first, block.count()).setConstant(1 / (rms * std::sqrt(static_cast<double>(block.count()))));
-  }
+  for (const Block& block : blocks_)
+    result.segment(block.first, block.count())
+        .setConstant(std::sqrt(weightSquare(block, meanSquare(block, residual)) / static_cast<double>(block.count())));
   return result;
+}
+
+double Comparison::scale() const {
+  double power = 0, nats = 0;
+  for (const Block& block : blocks_) power += block.power;
+  for (const Tolerance& tolerance : tolerances) nats += tolerance.nats;
+  return power * nats;
 }
 
 Gap Comparison::gap(const Eigen::VectorXd& residual) const {
@@ -196,12 +232,6 @@ Gap Comparison::gap(const Eigen::VectorXd& residual) const {
     gap.normalised += std::max(0.0, mean_square - sigma * sigma) / (sigma * sigma) / static_cast<double>(sums.size());
   }
   return gap;
-}
-
-int Comparison::affectedBlocks(const Eigen::VectorXd& residual) const {
-  const auto count = std::ranges::count_if(
-      blocks_, [&](const Block& block) { return std::sqrt(meanSquare(block, residual)) > out_of_noise * block.sigma; });
-  return std::max(1, static_cast<int>(count));
 }
 
 bool isWithinNoise(const Comparison& comparison, const Eigen::VectorXd& residual) {

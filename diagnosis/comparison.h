@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "plant.h"
@@ -21,6 +22,13 @@ inline double meanOfBlock(const Eigen::VectorXd& values, Eigen::Index first, Eig
   return values.segment(first + index * rows, rows).mean();
 }
 
+/// A share rho of the gap that the right cause may leave because its law differs from ours, and the nats per e-fold of residual beyond it.
+struct Tolerance {
+  double share_of_gap, nats;
+};
+/// Found by conditional logit on plants with known causes; docs/developer/diagnosis.md says on which.
+inline constexpr std::array<Tolerance, 3> tolerances = {{{0.1, 1.3}, {0.03, 0.9}, {0.01, 0.9}}};
+
 /// The compared rows of some segments. A residual block is one signal in one segment, either row by row or averaged over blocks of rows:
 /// averages have less noise, so weak but slow differences stand out.
 class Comparison {
@@ -32,6 +40,8 @@ class Comparison {
     Eigen::Index first;     ///< index of its first row in the vectors
     double sigma;
     std::size_t averaged_rows = 0;    ///< rows per average; 0: not averaged
+    double power = 1;                 ///< of its evidence: a channel's share, see shareEvidence
+    double gap = 0;                   ///< RMS of the gap
     Eigen::Index first_averaged = 0;  ///< index of the first row that is averaged
     Eigen::Index count() const { return static_cast<Eigen::Index>(rows.size()); }
   };
@@ -65,31 +75,34 @@ class Comparison {
   Eigen::VectorXd predicted(const std::vector<Prediction>& per_segment, Fidelity fidelity) const;
   const Eigen::VectorXd& measured() const { return measured_; }
 
-  /// A copy whose logMisfit and weights are those of plain least squares; the scale of every block is the root of the sum of squares of its
-  /// sigma and of the RMS of `residual`. Far from the best fit this has fewer minima, because the logarithm rewards a single block that
-  /// fits very well.
-  Comparison bySquares(const Eigen::VectorXd& residual) const;
-
   /// Mean square of the part of a vector that belongs to one block.
   double meanSquare(const Block& block, const Eigen::VectorXd& residual) const;
-  /// Sum over all blocks of ln(RMS residual / sigma), 0 below sigma; infinite for an empty vector.
-  double logMisfit(const Eigen::VectorXd& residual) const;
-  /// 1 / (RMS sqrt(rows)) for each row, where RMS is that of its block's residual, at least sigma: with these weights least squares follows
-  /// logMisfit.
+  /// Tells how large the gap is: what the right cause may leave if its law differs from ours grows with it (misfit). `nominal_residual`
+  /// is that of the model without effects.
+  void setGap(const Eigen::VectorXd& nominal_residual);
+  /// The tempered misfit of a residual, in nats, 0 for noise alone:
+  ///   sum over blocks b of power_b  sum over tolerances (rho, kappa) of  kappa / 2 ln((s^2 + ms_b) / (s^2 + sigma_b^2)),
+  ///   s^2 = sigma_b^2 + rho^2 C_b^2
+  /// ms_b: mean square of the residual in the block; C_b: RMS of the gap there (setGap); power_b: see Block. Infinite for an empty vector.
+  double misfit(const Eigen::VectorXd& residual) const;
+  /// The part of the misfit that blocks of some signals have.
+  double misfitOf(const Block& block, double mean_square) const;
+  /// For each row the root of d(2 misfit) / d(r^2): least squares with these weights follows the misfit.
   Eigen::VectorXd weights(const Eigen::VectorXd& residual) const;
+  /// The same weight squared, times the rows of the block.
+  double weightSquare(const Block& block, double mean_square) const;
+  /// The misfit of a residual e times as large as the noise in all blocks, if nothing were tolerated: a scale for misfits.
+  double scale() const;
   /// The normalised gap and its parts per signal.
   Gap gap(const Eigen::VectorXd& residual) const;
-  /// Number of blocks whose residual stands out of the noise (RMS > out_of_noise sigma), at least 1.
-  int affectedBlocks(const Eigen::VectorXd& residual) const;
-
  private:
   void addAverages();
+  void shareEvidence();
   void average(Eigen::VectorXd& values) const;
   Unsteady unsteadiness(const Eigen::VectorXd& change, const Eigen::VectorXd& residual) const;
   Eigen::VectorXd gathered(const std::vector<Prediction>& per_segment) const;
 
   const Plant& plant_;
-  bool by_squares_ = false;
   Fidelity fidelity_ = Fidelity::fine;
   Unsteady unsteady_;
   Eigen::VectorXd correction_;  ///< fine minus coarse prediction of the model without effects

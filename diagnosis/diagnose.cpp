@@ -11,7 +11,6 @@
 
 #include "../base/parallel.h"
 #include "actuation_phases.h"
-#include "attribute.h"
 #include "data_checks.h"
 #include "fault_isolation.h"
 #include "gap_reduction.h"
@@ -19,6 +18,8 @@
 #include "next_experiment.h"
 #include "plant.h"
 #include "schedule.h"
+#include "search.h"
+#include "sentences.h"
 #include "tune.h"
 #include "unit_check.h"
 
@@ -28,7 +29,7 @@ namespace {
 
 constexpr double listed = 0.01;   ///< least probability that is listed
 constexpr double named = 0.5;     ///< least probability of none_of_these that makes the verdict `unexplained`
-constexpr double as_good = 0.01;  ///< explanations with at least this share of the best one's probability cannot be distinguished from it
+constexpr double as_good = 0.05;  ///< explanations with at least this share of the best one's probability cannot be distinguished from it
 constexpr double excited = 1;     ///< least change of a signal by a typical effect, in sigmas, for it to be excited
 
 /// The options of the program for the diagnosed model, without the values in nominal.toml. A robot without a hand has no task.
@@ -39,7 +40,8 @@ std::string modelOptions(const Plant& plant, const std::optional<std::string>& i
   if (initial_state) options += " --initial-state " + *initial_state;
   for (const Parameter& parameter : plant.model().parameters().declared()) {
     if (parameter.name == "world.plane_height_mm") options += " --plane";
-    const bool is_tuned = std::ranges::find(plant.tuned(), parameter.name, &Parameter::name) != plant.tuned().end();
+    const bool is_tuned = std::ranges::any_of(
+        plant.numbers(), [&](const UncertainNumber& number) { return number.is_tuned && number.parameter.name == parameter.name; });
     if (parameter.value == parameter.default_value || is_tuned) continue;
     options += fmt::format(" --set {}=", parameter.name);
     options += std::visit([](const auto& any) { return fmt::format("{}", any); }, parameter.value);
@@ -84,7 +86,7 @@ class Run {
         monitor_(options),
         plant_(std::move(recordings), options),
         held_out_(plant_, plant_.split().held_out),
-        attributor_(plant_, options, [this] { monitor_.count(); }) {}
+        search_(plant_, options, [this] { monitor_.count(); }) {}
 
   Diagnosis diagnose() {
     const auto start = std::chrono::steady_clock::now();
@@ -162,25 +164,26 @@ class Run {
   /// Runs for every verdict, since effects that the recordings could not have shown may be present even without a gap.
   void screen() {
     monitor_.phase("screening all effects", static_cast<long>(hypotheses(plant_, DiagnosisOptions{}).size()));
-    attributor_.screen();
-    diagnosis_.unsteady = attributor_.fitComparison().unsteady();
+    search_.screen();
+    diagnosis_.unsteady = search_.fitComparison().unsteady();
     listNotExcited();
   }
 
   void explain() {
-    const Attribution& attribution = attributor_.result();
-    if (attribution.screened_count < attribution.hypotheses.size())
+    if (search_.catalogue().screened_count < search_.hypotheses().size())
       diagnosis_.notes.push_back(fmt::format("of {} possible causes the {} nearest on the first recording were looked at on the others too",
-                                             attribution.hypotheses.size(), attribution.screened_count));
+                                             search_.hypotheses().size(), search_.catalogue().screened_count));
     if (plant_.interrupted()) return;
     const FaultIsolation isolation =
-        isolateFault(attributor_.fitComparison(), attributor_.nominalResidual(), attributor_.screeningComparison(), attribution.hypotheses,
-                     attribution.sensitivities, attributor_.screeningResidual());
+        isolateFault(search_.fitComparison(), search_.nominalResidual(), search_.screeningComparison(), search_.hypotheses(),
+                     search_.catalogue().sensitivities);
     diagnosis_.where = isolation.places;
     diagnosis_.where_method = isolation.method;
     monitor_.phase("fitting the likely effects", 600);
-    attributor_.decide();
+    search_.decide();
+    diagnosis_.none_of_these = search_.noneOfThese();
     if (!plant_.interrupted()) choose();
+    listNumbers();
     list();
     listTrials();
     if (!plant_.interrupted()) proposeExperiment();
@@ -188,57 +191,121 @@ class Run {
 
   /// Labels none of whose variants would have shown; labels that were never simulated are not listed.
   void listNotExcited() {
-    const Attribution& attribution = attributor_.result();
-    std::set<std::string> shown = attribution.thinned;
-    for (std::size_t i = 0; i < attribution.hypotheses.size(); ++i)
-      if (!(attribution.sensitivities[i].excitation_ratio.value_or(excited) < excited)) shown.insert(labelOf(i));
-    for (std::size_t i = 0; i < attribution.hypotheses.size(); ++i) {
-      const bool would_be_seen = attribution.hypotheses[i].info().id == held_effect;
-      if (attribution.allowed[i] && !would_be_seen && shown.insert(labelOf(i)).second) diagnosis_.not_excited.push_back(labelOf(i));
+    std::set<std::string> shown = search_.catalogue().thinned;
+    for (std::size_t i = 0; i < search_.hypotheses().size(); ++i)
+      if (!(search_.catalogue().sensitivities[i].excitation_ratio.value_or(excited) < excited)) shown.insert(labelOf(i));
+    for (std::size_t i = 0; i < search_.hypotheses().size(); ++i) {
+      const bool would_be_seen = search_.hypotheses()[i].info().id == held_effect;
+      if (search_.catalogue().allowed[i] && !would_be_seen && shown.insert(labelOf(i)).second) diagnosis_.not_excited.push_back(labelOf(i));
     }
   }
 
   void choose() {
-    const Attribution& attribution = attributor_.result();
-    if (attribution.fits.empty() || attribution.no_effect > named) return;
-    const bool none = attribution.none_of_these > named;
-    const FittedHypothesis& best = none ? attributor_.nearest() : attribution.fits.front();
-    const Model model = attributor_.modelOf(best);
+    if (search_.explanations().empty()) return;
+    const Explanation& best = search_.explanations().front();
+    if (search_.nothing().probability > best.probability) return chooseNothing();
+    const Model model = search_.modelOf(best);
     const Eigen::VectorXd predicted = held_out_.predicted(model);
     if (!predicted.size()) return;
     const Eigen::VectorXd after = held_out_.measured() - predicted;
-    const Gap gap_after = held_out_.gap(after);
-    monitor_.phase("measuring what the controls gain", 60);
-    auto count = [this] { monitor_.count(); };
-    const Comparison& comparison = attributor_.fitComparison();
-    Eigen::VectorXd nominal, negative_control;
-    parallelFor(2, options_.job_count, [&](int i) {
-      if (i == 0)
-        nominal = nominalRefitResidual(comparison, held_out_, count);
-      else
-        negative_control = negativeControlResidual(comparison, held_out_, static_cast<int>(best.z.size()), options_.seed, count);
-    });
+    measureControls(static_cast<int>(best.z.size()));
     if (plant_.interrupted()) return;
-    auto reductionOf = [&](const Eigen::VectorXd& residual) {
-      return residual.size() ? gapReductionPercent(diagnosis_.before, held_out_.gap(residual)) : 0.0;
-    };
-    diagnosis_.nominal_refit_percent = reductionOf(nominal);
-    diagnosis_.negative_control_percent = reductionOf(negative_control);
     const Estimate interval =
         gapReductionInterval({held_out_, before_residual_, after},
-                             {attributor_.fitComparison(), attributor_.nominalResidual(), best.validationResidual()}, options_.seed);
-    const Attempt attempt{labelsOf(model), model.effects, gap_after, reductionOf(after), interval.low, interval.high};
-    const bool found =
-        !none && clearlyBeats(attempt.reduction_percent, diagnosis_.nominal_refit_percent, diagnosis_.negative_control_percent);
+                             {search_.fitComparison(), search_.nominalResidual(), best.validationResidual()}, options_.seed);
+    const Gap gap_after = held_out_.gap(after);
+    const Attempt attempt{labelsOf(model), model.effects, gap_after, reductionOf(gap_after), interval.low, interval.high};
+    // What they remove on unseen data bounds the probability that none of these effects acts.
+    diagnosis_.none_of_these = std::clamp(1 - attempt.reduction_percent / 100, 0.0, search_.noneOfThese());
+    const bool found = diagnosis_.none_of_these <= named &&
+                       clearlyBeats(attempt.reduction_percent, diagnosis_.nominal_refit_percent, diagnosis_.negative_control_percent);
     // Not offered, because it does not hold on the held-out data or gains no more than a control.
     if (!found && attempt.reduction_percent <= std::max({0.0, diagnosis_.nominal_refit_percent, diagnosis_.negative_control_percent}))
       return;
-    diagnosis_.tuned = tunedParameters(plant_, best.tuning, best.tuning_half_width);
+    fitted_numbers_ = best;
     after_residual_ = after;
     if (found)
       accept(attempt);
     else
       diagnosis_.attempt = attempt;
+  }
+
+  /// What the tolerances of the model's numbers allow explains the gap better than any effect.
+  void chooseNothing() {
+    const Explanation& nothing = search_.nothing();
+    const Eigen::VectorXd predicted = held_out_.predicted(search_.modelOf(nothing));
+    if (!predicted.size()) return;
+    fitted_numbers_ = nothing;
+    after_residual_ = held_out_.measured() - predicted;
+    diagnosis_.after = held_out_.gap(after_residual_);
+    diagnosis_.reduction_percent = diagnosis_.reduction_low_percent = diagnosis_.reduction_high_percent = reductionOf(diagnosis_.after);
+    if (!isWithinNoise(held_out_, after_residual_)) return;
+    diagnosis_.verdict = Verdict::no_gap;
+    diagnosis_.notes.push_back("the gap is no larger than the tolerances of the model's numbers explain");
+  }
+
+  double reductionOf(const Gap& after) const { return gapReductionPercent(diagnosis_.before, after); }
+
+  void measureControls(int parameter_count) {
+    monitor_.phase("measuring what the controls gain", 60);
+    const auto count = [this] { monitor_.count(); };
+    const Comparison& comparison = search_.fitComparison();
+    Eigen::VectorXd nominal, negative_control;
+    parallelFor(2, options_.job_count, [&](int i) {
+      if (i == 0)
+        nominal = nominalRefitResidual(comparison, held_out_, count);
+      else
+        negative_control = negativeControlResidual(comparison, held_out_, parameter_count, options_.seed, count);
+    });
+    const auto percentOf = [&](const Eigen::VectorXd& residual) { return residual.size() ? reductionOf(held_out_.gap(residual)) : 0.0; };
+    diagnosis_.nominal_refit_percent = percentOf(nominal);
+    diagnosis_.negative_control_percent = percentOf(negative_control);
+  }
+
+  /// What each chosen effect removes while the others are present.
+  std::map<std::string, double> shares() const {
+    std::map<std::string, double> result;
+    for (const ActiveEffect& effect : diagnosis_.chosen_effects) {
+      Model without = search_.modelOf(search_.explanations().front());
+      const std::string label = effect.id + "@" + effect.component;
+      std::erase_if(without.effects, [&](const ActiveEffect& other) { return other.id + "@" + other.component == label; });
+      const Eigen::VectorXd predicted = held_out_.predicted(without);
+      if (predicted.size()) result[label] = diagnosis_.reduction_percent - reductionOf(held_out_.gap(held_out_.measured() - predicted));
+    }
+    return result;
+  }
+
+  /// Where what is left stands out most.
+  void describeRemainder() {
+    if (!after_residual_.size() || diagnosis_.before.normalised <= 0) return;
+    const Gap left = held_out_.gap(after_residual_);
+    Remainder& remainder = diagnosis_.remainder;
+    remainder.is_significant = !isWithinNoise(held_out_, after_residual_);
+    remainder.percent_of_gap = 100 * left.normalised / diagnosis_.before.normalised;
+    remainder.probability = search_.noneOfThese();
+    for (const auto& [signal, gap] : left.per_signal)
+      if (const double in_sigmas = overNoise(gap); in_sigmas > remainder.in_sigmas) {
+        remainder.in_sigmas = in_sigmas;
+        remainder.signal = signal;
+        remainder.stage = nameOf(signal.starts_with("pressure_") ? Stage::pressure : signal.starts_with("force_") ? Stage::force : Stage::body);
+      }
+    remainder.shape = shapeOfRest(diagnosis_, remainder.signal);
+    if (const std::string phase = phaseOf(held_out_, after_residual_); !phase.empty())
+      remainder.shape += (remainder.shape.empty() ? "mostly while " : ", most while ") + phase;
+  }
+
+  void listNumbers() {
+    for (Eigen::Index i = 0; i < fitted_numbers_.numbers.size(); ++i) {
+      const auto& [parameter, tolerance, is_tuned] = plant_.numbers()[static_cast<std::size_t>(i)];
+      if (is_tuned || fitted_numbers_.numbers_half_width.size() <= i) continue;
+      const double eta = fitted_numbers_.numbers[i], half = fitted_numbers_.numbers_half_width[i];
+      diagnosis_.numbers.push_back({parameter.name,
+                                    parameter.unit,
+                                    std::get<double>(parameter.value),
+                                    {plant_.numberAt(i, eta), plant_.numberAt(i, eta - half), plant_.numberAt(i, eta + half), true},
+                                    eta});
+    }
+    diagnosis_.tuned = tunedParameters(plant_, fitted_numbers_.numbers, fitted_numbers_.numbers_half_width);
   }
 
   void accept(const Attempt& attempt) {
@@ -257,19 +324,20 @@ class Run {
     return labels;
   }
 
-  std::string labelOf(std::size_t hypothesis) const { return attributor_.result().hypotheses[hypothesis].label(); }
+  std::string labelOf(std::size_t hypothesis) const { return search_.hypotheses()[hypothesis].label(); }
 
   /// Lists probabilities per effect and per explanation, and the ambiguity set.
   void list() {
-    const Attribution& attribution = attributor_.result();
-    diagnosis_.none_of_these = attribution.none_of_these;
-    if (attribution.no_effect >= listed) diagnosis_.explanations.push_back({{}, attribution.no_effect});
+    const double known = 1 - diagnosis_.none_of_these;  // probability that one of the explanations below holds
+    const double no_effect = known * search_.nothing().probability;
+    if (no_effect >= listed) diagnosis_.explanations.push_back({{}, no_effect});
+    const std::map<std::string, double> removed = plant_.interrupted() ? std::map<std::string, double>() : shares();
     std::map<std::string, FoundEffect> found;
-    for (const FittedHypothesis& fitted : attribution.fits) {
-      ExplanationProbability entry{{}, fitted.probability};
+    for (const Explanation& fitted : search_.explanations()) {
+      ExplanationProbability entry{{}, known * fitted.probability};
       Eigen::Index first = 0;
       for (const std::size_t index : fitted.members) {
-        const Hypothesis& hypothesis = attribution.hypotheses[index];
+        const Hypothesis& hypothesis = search_.hypotheses()[index];
         entry.effects.push_back(hypothesis.label());
         FoundEffect& effect = found[hypothesis.label()];
         if (effect.id.empty()) {
@@ -277,11 +345,12 @@ class Run {
           effect.component = hypothesis.component();
           effect.parameters = estimates(hypothesis, fitted, first);
           effect.choices = hypothesis.choices();
+          if (const auto share = removed.find(hypothesis.label()); share != removed.end()) effect.removes_percent = share->second;
         }
-        effect.probability += fitted.probability;
+        effect.probability += known * fitted.probability;
         first += hypothesis.coordinateCount();
       }
-      if (fitted.probability >= listed) diagnosis_.explanations.push_back(std::move(entry));
+      if (known * fitted.probability >= listed) diagnosis_.explanations.push_back(std::move(entry));
     }
     for (auto& [label, effect] : found)
       if (effect.probability >= listed) diagnosis_.effects.push_back(effect);
@@ -300,31 +369,30 @@ class Run {
 
   /// Lists the screened and the fitted hypotheses.
   void listTrials() {
-    const Attribution& attribution = attributor_.result();
-    const double all = attributor_.screeningComparison().logMisfit(attributor_.screeningResidual());
-    for (std::size_t i = 0; i < attribution.hypotheses.size(); ++i)
-      if (attribution.allowed[i])
-        diagnosis_.screenings.push_back({labelOf(i), all > 0 ? 1 - attribution.sensitivities[i].log_misfit / all : 0});
+    const double all = search_.screeningComparison().misfit(search_.screeningResidual());
+    for (std::size_t i = 0; i < search_.hypotheses().size(); ++i)
+      if (search_.catalogue().allowed[i])
+        diagnosis_.screenings.push_back({labelOf(i), all > 0 ? 1 - search_.catalogue().sensitivities[i].misfit / all : 0});
     std::ranges::stable_sort(diagnosis_.screenings, [](const auto& a, const auto& b) { return a.removed > b.removed; });
-    const Comparison& comparison = attributor_.fitComparison();
+    const Comparison& comparison = search_.fitComparison();
     auto rmsOf = [&](const Eigen::VectorXd& residual) {
       std::vector<double> rms;
       for (const Comparison::Block& block : comparison.blocks()) rms.push_back(std::sqrt(comparison.meanSquare(block, residual)));
       return rms;
     };
-    const std::vector<double> before = rmsOf(attributor_.nominalResidual());
+    const std::vector<double> before = rmsOf(search_.nominalResidual());
     for (std::size_t i = 0; i < before.size(); ++i) {
       const Comparison::Block& block = comparison.blocks()[i];
       const auto recording = static_cast<std::size_t>(comparison.segments()[block.segment].recording);
       diagnosis_.blocks.push_back({plant_.recordings()[recording].file, plant_.signals()[static_cast<std::size_t>(block.signal)].name,
                                    block.sigma, before[i], static_cast<int>(block.averaged_rows)});
     }
-    for (const FittedHypothesis& fitted : attribution.fits) {
+    for (const Explanation& fitted : search_.explanations()) {
       Trial trial{{}, static_cast<int>(fitted.z.size()), rmsOf(fitted.residual), {}, {}};
       if (fitted.cross_validated.size()) trial.rms_cross_validated = rmsOf(fitted.cross_validated);
       Eigen::Index first = 0;
       for (const std::size_t index : fitted.members) {
-        const Hypothesis& hypothesis = attribution.hypotheses[index];
+        const Hypothesis& hypothesis = search_.hypotheses()[index];
         trial.effects.push_back(hypothesis.label());
         auto& values = trial.values.emplace_back();
         for (const auto& [name, value] : hypothesis.valuesAt(fitted.z.segment(first, hypothesis.coordinateCount()))) values[name] = value;
@@ -334,7 +402,7 @@ class Run {
     }
   }
 
-  std::map<std::string, Estimate> estimates(const Hypothesis& hypothesis, const FittedHypothesis& fitted, Eigen::Index first) const {
+  std::map<std::string, Estimate> estimates(const Hypothesis& hypothesis, const Explanation& fitted, Eigen::Index first) const {
     const Eigen::Index count = hypothesis.coordinateCount();
     const Eigen::VectorXd z = fitted.z.segment(first, count), half = fitted.half_width.segment(first, count);
     const auto at = hypothesis.valuesAt(z), one = hypothesis.valuesAt(hypothesis.clamped(z - half)),
@@ -348,32 +416,34 @@ class Run {
     return result;
   }
 
-  /// The best fit and those with as many effects that are not much less probable.
-  std::vector<const FittedHypothesis*> asGood() const {
-    std::vector<const FittedHypothesis*> result;
-    const auto& all = attributor_.result().fits;
-    for (const FittedHypothesis& fitted : all)
-      if (fitted.members.size() == all.front().members.size() && fitted.probability > 0 &&
-          fitted.probability >= as_good * all.front().probability)
-        result.push_back(&fitted);
+  /// The best explanation and those that are not much less probable.
+  std::vector<const Explanation*> asGood() const {
+    std::vector<const Explanation*> result;
+    const auto& all = search_.explanations();
+    for (const Explanation& fitted : all)
+      if (fitted.probability > 0 && fitted.probability >= as_good * all.front().probability) result.push_back(&fitted);
     return result;
   }
 
   void ambiguity() {
-    const std::vector<const FittedHypothesis*> likely = asGood();
-    for (const FittedHypothesis* fitted : likely)
+    const std::vector<const Explanation*> likely = asGood();
+    for (const Explanation* fitted : likely) {
+      const std::set<std::string> labels = search_.causes().labelsOf(fitted->members);
+      diagnosis_.ambiguity_sets.emplace_back(labels.begin(), labels.end());
+    }
+    for (const Explanation* fitted : likely)
       if (likely.size() > 1) diagnosis_.alternatives.push_back(ownWords(*fitted, likely));
-    for (const FittedHypothesis* fitted : likely)
+    for (const Explanation* fitted : likely)
       for (const std::size_t index : fitted->members)
         if (std::ranges::find(diagnosis_.ambiguity_set, labelOf(index)) == diagnosis_.ambiguity_set.end())
           diagnosis_.ambiguity_set.push_back(labelOf(index));
   }
 
   /// The effects of a fitted hypothesis that not all the others have.
-  std::string ownWords(const FittedHypothesis& fitted, const std::vector<const FittedHypothesis*>& others) const {
+  std::string ownWords(const Explanation& fitted, const std::vector<const Explanation*>& others) const {
     std::vector<std::string> own;
     for (const std::size_t index : fitted.members)
-      if (!std::ranges::all_of(others, [&](const FittedHypothesis* other) {
+      if (!std::ranges::all_of(others, [&](const Explanation* other) {
             return std::ranges::any_of(other->members, [&](std::size_t member) { return labelOf(member) == labelOf(index); });
           }))
         own.push_back(labelOf(index));
@@ -381,11 +451,10 @@ class Run {
   }
 
   double singleReduction(const std::string& label) const {
-    const Attribution& attribution = attributor_.result();
     if (plant_.interrupted()) return 0;
-    for (const FittedHypothesis& fitted : attribution.fits) {
-      if (fitted.members.size() != 1 || labelOf(fitted.members.front()) != label) continue;
-      const Eigen::VectorXd predicted = held_out_.predicted(attributor_.modelOf(fitted));
+    for (const Explanation& fitted : search_.singles()) {
+      if (labelOf(fitted.members.front()) != label) continue;
+      const Eigen::VectorXd predicted = held_out_.predicted(search_.modelOf(fitted));
       return predicted.size() ? gapReductionPercent(diagnosis_.before, held_out_.gap(held_out_.measured() - predicted)) : 0;
     }
     return 0;
@@ -393,13 +462,13 @@ class Run {
 
   void proposeExperiment() {
     constexpr std::size_t most = 4;
-    std::vector<const FittedHypothesis*> likely = asGood();
+    std::vector<const Explanation*> likely = asGood();
     if (likely.size() < 2) return;
     likely.resize(std::min(most, likely.size()));
     monitor_.phase("planning the next experiment", static_cast<long>(2 * scheduleBank().size() * likely.size()));
     std::vector<Rival> rivals;
-    for (const FittedHypothesis* fitted : likely) rivals.push_back(attributor_.rival(*fitted, ownWords(*fitted, likely)));
-    const Fidelity fidelity = std::min(attributor_.screeningComparison().fidelity(), Fidelity::coarse);
+    for (const Explanation* fitted : likely) rivals.push_back(search_.rival(*fitted, ownWords(*fitted, likely)));
+    const Fidelity fidelity = std::min(search_.screeningComparison().fidelity(), Fidelity::coarse);
     diagnosis_.next_experiment = nextExperiment(plant_, rivals, fidelity, options_.job_count, [this] { monitor_.count(); });
   }
 
@@ -407,6 +476,7 @@ class Run {
     if (diagnosis_.before.normalised > 0) diagnosis_.unexplained_percent = 100 * diagnosis_.after.normalised / diagnosis_.before.normalised;
     addPhases();
     addTraces();
+    describeRemainder();
     diagnosis_.drawing = plant_.drawing();
   }
 
@@ -443,9 +513,10 @@ class Run {
   Monitor monitor_;
   Plant plant_;
   Comparison held_out_;
-  Attributor attributor_;
+  Search search_;
   Diagnosis diagnosis_;
   Eigen::VectorXd before_residual_, after_residual_;
+  Explanation fitted_numbers_;  ///< the explanation whose numbers of the model are reported
 };
 
 }  // namespace

@@ -36,6 +36,7 @@ Json toJson(const FoundEffect& effect) {
                {"probability", effect.probability},
                {"parameters", parameters},
                {"shrink_percent", effect.reduction_percent}};
+  if (effect.removes_percent) json["removes_percent"] = *effect.removes_percent;
   if (!effect.choices.empty()) json["choices"] = effect.choices;
   return json;
 }
@@ -57,21 +58,48 @@ Json toJson(const TunedParameter& parameter) {
           {"determined", parameter.with_effects.is_determined}};
 }
 
+/// An interval of a reduction that says anything; one that reaches far below 0 does not.
+void addInterval(Json& json, double low, double high) {
+  constexpr double least_percent = -100;
+  if (low >= least_percent) json["shrink_ci95_percent"] = {low, high};
+}
+
+Json gapJson(const Diagnosis& d) {
+  Json json = {{"before", toJson(d.before)},
+          {"after", toJson(d.after)},
+          {"shrink_percent", d.reduction_percent},
+          {"held_out", true},
+          {"nominal_refit_shrink_percent", d.nominal_refit_percent},
+          {"sham_shrink_percent", d.negative_control_percent}};
+  addInterval(json, d.reduction_low_percent, d.reduction_high_percent);
+  return json;
+}
+
+Json toJson(const Remainder& remainder) {
+  Json json = {{"significant", remainder.is_significant},
+               {"stage", remainder.stage},
+               {"signal", remainder.signal},
+               {"in_noise_floors", remainder.in_sigmas},
+               {"percent_of_gap", remainder.percent_of_gap},
+               {"probability", remainder.probability}};
+  if (!remainder.shape.empty()) json["shape"] = remainder.shape;
+  return json;
+}
+
+Json toJson(const FittedNumber& number) {
+  return {{"name", number.name},
+          {"unit", number.unit},
+          {"start", number.start},
+          {"value", number.fitted.value},
+          {"ci95", {toJson(number.fitted.low), toJson(number.fitted.high)}},
+          {"in_tolerances", number.in_tolerances}};
+}
+
 template <class Value>
 Json listOf(const std::vector<Value>& values) {
   Json list = Json::array();
   for (const Value& value : values) list.push_back(toJson(value));
   return list;
-}
-
-Json gapJson(const Diagnosis& d) {
-  return {{"before", toJson(d.before)},
-          {"after", toJson(d.after)},
-          {"shrink_percent", d.reduction_percent},
-          {"shrink_ci95_percent", {d.reduction_low_percent, d.reduction_high_percent}},
-          {"held_out", true},
-          {"nominal_refit_shrink_percent", d.nominal_refit_percent},
-          {"sham_shrink_percent", d.negative_control_percent}};
 }
 
 /// The hypotheses that were tried and their residuals: enough to compute other odds without simulating again.
@@ -106,12 +134,15 @@ std::string diagnosisJson(const Diagnosis& d, const std::string& schedule_file) 
   if (!d.candidates.empty()) json["candidates"] = d.candidates;
   json["chosen"] = d.chosen;
   json["ambiguity_set"] = d.ambiguity_set;
+  json["ambiguity_sets"] = d.ambiguity_sets;
   json["gap"] = gapJson(d);
-  if (!d.attempt.effects.empty())
-    json["attempt"] = {{"effects", d.attempt.effects},
-                       {"after", toJson(d.attempt.after)},
-                       {"shrink_percent", d.attempt.reduction_percent},
-                       {"shrink_ci95_percent", {d.attempt.reduction_low_percent, d.attempt.reduction_high_percent}}};
+  if (!d.attempt.effects.empty()) {
+    json["attempt"] = {
+        {"effects", d.attempt.effects}, {"after", toJson(d.attempt.after)}, {"shrink_percent", d.attempt.reduction_percent}};
+    addInterval(json["attempt"], d.attempt.reduction_low_percent, d.attempt.reduction_high_percent);
+  }
+  if (d.remainder.in_sigmas > 0) json["remainder"] = toJson(d.remainder);
+  if (!d.numbers.empty()) json["numbers"] = listOf(d.numbers);
   if (!d.tuned.empty()) json["tuned"] = listOf(d.tuned);
   json["unexplained_percent"] = d.unexplained_percent;
   json["not_excited"] = d.not_excited;

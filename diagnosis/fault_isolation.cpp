@@ -35,8 +35,7 @@ bool isSensorOf(const Hypothesis& hypothesis, const std::vector<std::string>& si
 
 /// Shares of the stages by likeness alone, without the sensors of the signals in `acquitted`.
 StageWeights byLikeness(const Comparison& comparison, const std::vector<Hypothesis>& hypotheses,
-                        const std::vector<Sensitivity>& sensitivities, const Eigen::VectorXd& residual,
-                        const std::vector<std::string>& acquitted) {
+                        const std::vector<Sensitivity>& sensitivities, const std::vector<std::string>& acquitted) {
   StageWeights best;
   best.fill(std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {
@@ -44,7 +43,7 @@ StageWeights byLikeness(const Comparison& comparison, const std::vector<Hypothes
     double& misfit = best[indexOf(hypotheses[i].info().stage)];
     const double further = std::max(0.0, static_cast<double>(hypotheses[i].strengths().size()) - 1);
     misfit =
-        std::min(misfit, sensitivities[i].log_misfit / comparison.affectedBlocks(residual) + per_further_strength / per_misfit * further);
+        std::min(misfit, sensitivities[i].misfit / comparison.scale() + per_further_strength / per_misfit * further);
   }
   const double least = *std::ranges::min_element(best);
   StageWeights weights{};
@@ -68,34 +67,17 @@ std::string componentOf(Stage stage, const std::vector<Hypothesis>& hypotheses, 
   std::string component = "all";
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < hypotheses.size(); ++i)
-    if (hypotheses[i].info().stage == stage && sensitivities[i].log_misfit < least) {
-      least = sensitivities[i].log_misfit;
+    if (hypotheses[i].info().stage == stage && sensitivities[i].misfit < least) {
+      least = sensitivities[i].misfit;
       component = hypotheses[i].component();
     }
   return component;
 }
 
-/// The actuation phase in which the residual is largest, in words; empty if it is similar in all.
-std::string phaseOf(const Comparison& comparison, const Eigen::VectorXd& residual) {
-  constexpr double fewest_rows = 50, stands_out = 1.5;
-  const PhaseSums sums = phaseSums(comparison, residual);
-  double square = 0, rows = 0, largest = 0;
-  std::string found;
-  for (const ActuationPhase phase : {ActuationPhase::filling, ActuationPhase::venting, ActuationPhase::holding}) {
-    const auto i = static_cast<std::size_t>(phase);
-    square += sums.square[i];
-    rows += sums.rows[i];
-    if (sums.rows[i] <= fewest_rows || sums.meanSquare(phase) <= largest) continue;
-    largest = sums.meanSquare(phase);
-    found = nameOf(phase);
-  }
-  return rows > 0 && largest > stands_out * square / rows ? found : "";
-}
-
 /// Evidence from substitution and from the consistency of signals: the stages that it contradicts, and why.
-class Evidence {
+class SignalEvidence {
  public:
-  Evidence(const Comparison& comparison, const Eigen::VectorXd& residual) : comparison_(comparison), residual_(residual) {
+  SignalEvidence(const Comparison& comparison, const Eigen::VectorXd& residual) : comparison_(comparison), residual_(residual) {
     askMotion();
     if (allPressuresMeasured(comparison)) askPressures();
     askTensions();
@@ -228,10 +210,9 @@ class Evidence {
 }  // namespace
 
 FaultIsolation isolateFault(const Comparison& whole, const Eigen::VectorXd& residual_of_all, const Comparison& screening,
-                            const std::vector<Hypothesis>& hypotheses, const std::vector<Sensitivity>& sensitivities,
-                            const Eigen::VectorXd& screening_residual) {
-  const Evidence evidence(whole, residual_of_all);
-  StageWeights weights = byLikeness(screening, hypotheses, sensitivities, screening_residual, evidence.acquittedSignals());
+                            const std::vector<Hypothesis>& hypotheses, const std::vector<Sensitivity>& sensitivities) {
+  const SignalEvidence evidence(whole, residual_of_all);
+  StageWeights weights = byLikeness(screening, hypotheses, sensitivities, evidence.acquittedSignals());
   for (std::size_t i = 0; i < stage_count; ++i)
     if (evidence.speaksAgainst(static_cast<Stage>(i))) weights[i] *= hardly;
   normalise(weights);

@@ -21,7 +21,6 @@ struct FaultIsolation {
 /// on all fitted data (`whole`). For the stages that substitution leaves open, compares the residual on the screening segments with the
 /// change that a small typical disturbance of each stage makes (`sensitivities`).
 FaultIsolation isolateFault(const Comparison& whole, const Eigen::VectorXd& residual_of_all, const Comparison& screening,
-                            const std::vector<Hypothesis>& hypotheses, const std::vector<Sensitivity>& sensitivities,
-                            const Eigen::VectorXd& screening_residual);
+                            const std::vector<Hypothesis>& hypotheses, const std::vector<Sensitivity>& sensitivities);
 
 }  // namespace musclesim

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "attribute.h"
 #include "comparison.h"
+#include "sensitivity.h"
 
 namespace musclesim {
 

@@ -26,6 +26,8 @@ class Hypothesis {
   const std::string& component() const { return component_; }
   std::string label() const { return info_.id + "@" + component_; }
   int coordinateCount() const { return static_cast<int>(coordinates_.size()); }
+  /// Numbers that were counted in the recordings or tried one by one instead of fitted.
+  int countedParameters() const { return coordinates_.empty() ? static_cast<int>(info_.parameters.size()) : 0; }
   /// Indices of the coordinates that are strengths: at 0 the effect vanishes.
   const std::vector<int>& strengths() const { return strengths_; }
   /// Whether a strength may have either sign.

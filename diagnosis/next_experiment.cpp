@@ -15,7 +15,6 @@
 #include "musclesim/robot/actuator.h"
 #include "musclesim/robot/robot.h"
 #include "musclesim/simulation/simulation.h"
-#include "odds.h"
 #include "schedule.h"
 
 namespace musclesim {
@@ -23,6 +22,7 @@ namespace musclesim {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double nats_per_misfit = 24;  ///< of all recordings together, per mean log misfit
 constexpr double scatter = 4;      ///< noise sigmas by which readings scatter
 constexpr double worth_it = 2e-4;  ///< least probability of distinguishing the rivals for a schedule to be proposed
 constexpr double apart = 0.5;      ///< least difference, in noise sigmas, of rivals that a schedule is said to separate
@@ -161,7 +161,7 @@ class InSigmas {
   /// Mean over signals and averages of ln(RMS / sigma), where sigma combines the noise and the share of the gap that the right cause may
   /// leave because its law differs from ours (Odds).
   double logMisfit(const Eigen::VectorXd& difference, const Eigen::VectorXd& gap) const {
-    const double mismatch = Weighing{}.law_mismatch;
+    const double mismatch = tolerances.front().share_of_gap;
     double sum = 0;
     for (Eigen::Index s = 0; s < signal_count_; ++s) {
       auto add = [&](Eigen::Index first, Eigen::Index count) {
@@ -243,7 +243,7 @@ struct Worth {
 };
 
 Worth worthOf(const Plant& plant, const TriedSchedule& trial, const std::vector<Rival>& rivals, const Slopes& slopes) {
-  const double per_log_misfit = Weighing{}.per_misfit / (static_cast<double>(plant.split().fit.size()) + 1);
+  const double per_log_misfit = nats_per_misfit / (static_cast<double>(plant.split().fit.size()) + 1);
   const InSigmas in_sigmas(plant, trial.commands);
   const Recording& likeliest = trial.predicted.front();
   const Eigen::VectorXd gap = in_sigmas.difference(likeliest, trial.nominal ? *trial.nominal : likeliest);

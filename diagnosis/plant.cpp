@@ -123,11 +123,7 @@ Plant::Plant(std::vector<Recording> recordings, const DiagnosisOptions& options)
   reference_->build(info.robot);
   reference_->parameters().requireAllKnown();
   if (std::string note = otherDescriptionNote(info, reference_->robot()); !note.empty()) notes_.push_back(std::move(note));
-  for (const std::string& name : options.tune) {
-    for (const std::string& listed : allThatVaries(recordings_))
-      if (means(listed, name)) throw BadParameter("--tune", name, "not name a parameter that varies between the recordings");
-    tuned_.push_back(numberNamed(name));
-  }
+  findNumbers();
   const bool has_hinges =
       std::ranges::any_of(reference_->world().actuators(), [](const auto& actuator) { return !actuator->hinges().empty(); });
   for (const Parameter& parameter : reference_->parameters().declared())
@@ -255,29 +251,64 @@ Plant::MuscleRange Plant::muscleRange(int muscle) const {
   return {actuator.minimumLengthMm(), actuator.maximumLengthMm()};
 }
 
+void Plant::findNumbers() {
+  constexpr double of_tuned = 1;  // an e-fold: nobody measured it
+  const std::vector<std::string> varying = allThatVaries(recordings_);
+  const auto varies = [&](const std::string& name) {
+    return std::ranges::any_of(varying, [&](const std::string& listed) { return means(listed, name); });
+  };
+  for (const std::string& name : options_.tune) {
+    if (varies(name)) throw BadParameter("--tune", name, "not name a parameter that varies between the recordings");
+    numbers_.push_back({numberNamed("--tune", name), of_tuned, true});
+  }
+  const std::vector<Parameter>& declared = reference_->parameters().declared();
+  std::map<std::string, double> by_name = reference_->robot().parameterTolerances();
+  // The robot's own tolerances are for its usual values: a number that is set to 0 has none.
+  std::erase_if(by_name, [&](const auto& entry) {
+    return std::ranges::none_of(declared, [&](const Parameter& parameter) {
+      return parameter.name == entry.first && std::holds_alternative<double>(parameter.value) && std::get<double>(parameter.value) != 0;
+    });
+  });
+  for (const Recording& recording : recordings_)
+    for (const auto& [name, tolerance] : recording.info.parameter_tolerance) {
+      const auto meant = std::ranges::find_if(declared, [&](const Parameter& parameter) { return means(name, parameter.name); });
+      by_name[meant == declared.end() ? name : meant->name] = tolerance;
+    }
+  for (const auto& [name, tolerance] : by_name)
+    if (!varies(name) && std::ranges::find(options_.tune, name) == options_.tune.end())
+      numbers_.push_back({numberNamed("parameter_tolerance", name), tolerance, false});
+}
+
 /// Throws BadParameter, with the nearest name, if the model has no such number, and for a number that a factor cannot change.
-Parameter Plant::numberNamed(const std::string& name) const {
+Parameter Plant::numberNamed(const std::string& option, const std::string& name) const {
   std::vector<std::string> names;
   for (const Parameter& parameter : reference_->parameters().declared()) {
     if (!std::holds_alternative<double>(parameter.value) || parameter.integer) continue;
     names.push_back(parameter.name);
     if (parameter.name != name) continue;
     if (std::get<double>(parameter.value) != 0) return parameter;
-    throw BadParameter("--tune " + name, "0", "begin at another value: it is changed by a factor");
+    throw BadParameter(option + " " + name, "0", "begin at another value: it is changed by a factor");
   }
   const std::string nearest = nearestName(name, names);
-  throw BadParameter(fmt::format("--tune: the model of {} has no number \"{}\"{}", robot(), name,
+  throw BadParameter(fmt::format("{}: the model of {} has no number \"{}\"{}", option, robot(), name,
                                  nearest.empty() ? "" : ", did you mean \"" + nearest + "\"?"));
 }
 
-std::vector<std::pair<std::string, double>> Plant::tunedAt(const Eigen::VectorXd& z) const {
+double Plant::numberAt(Eigen::Index index, double eta) const {
+  const auto& [parameter, tolerance, is_tuned] = numbers_[static_cast<std::size_t>(index)];
+  return std::clamp(std::get<double>(parameter.value) * std::exp(tolerance * eta), parameter.minimum, parameter.maximum);
+}
+
+std::vector<std::pair<std::string, double>> Plant::numbersAt(const Eigen::VectorXd& eta) const {
   std::vector<std::pair<std::string, double>> values;
-  for (Eigen::Index i = 0; i < z.size(); ++i) {
-    const Parameter& parameter = tuned_[static_cast<std::size_t>(i)];
-    values.emplace_back(parameter.name,
-                        std::clamp(std::get<double>(parameter.value) * std::exp(z[i]), parameter.minimum, parameter.maximum));
-  }
+  for (Eigen::Index i = 0; i < eta.size(); ++i)
+    if (eta[i] != 0) values.emplace_back(numbers_[static_cast<std::size_t>(i)].parameter.name, numberAt(i, eta[i]));
   return values;
+}
+
+Eigen::VectorXd Plant::clampedNumbers(const Eigen::VectorXd& eta) const {
+  constexpr double farthest = 4;  // tolerances: beyond it the tolerance itself would be wrong
+  return eta.cwiseMax(-farthest).cwiseMin(farthest);
 }
 
 double Plant::tensionN(int muscle, double pressure_ratio, double length_mm) const {

@@ -49,6 +49,13 @@ struct Model {
   std::vector<std::pair<std::string, double>> parameters;
 };
 
+/// A number of the model whose true value differs from the value in force by a factor exp(tolerance * eta), eta standard normal.
+struct UncertainNumber {
+  Parameter parameter;
+  double tolerance;  ///< standard deviation of ln(true value / value in force)
+  bool is_tuned;     ///< named by DiagnosisOptions::tune
+};
+
 class Plant {
  public:
   /// Throws as diagnose().
@@ -81,12 +88,14 @@ class Plant {
   MuscleRange muscleRange(int muscle) const;
   /// Parameters of the model itself that no effect of the catalogue represents, with the values in force: the nominal refit re-tunes them.
   const std::vector<std::pair<std::string, double>>& nominalParameters() const { return nominal_; }
-  /// The parameters to tune (DiagnosisOptions::tune), with the values in force, units and ranges.
-  const std::vector<Parameter>& tuned() const { return tuned_; }
-  Eigen::Index tunedCount() const { return static_cast<Eigen::Index>(tuned_.size()); }
-  /// The tuned parameters at coordinates z: value in force * exp(z), within the range; none for an empty z.
-  std::vector<std::pair<std::string, double>> tunedAt(const Eigen::VectorXd& z) const;
-  static Eigen::VectorXd clampedTuning(const Eigen::VectorXd& z) { return z.cwiseMax(-farthest_tuning).cwiseMin(farthest_tuning); }
+  /// Numbers of the model that are known with an error only: those of a tolerance in a sidecar or a robot file, and DiagnosisOptions::tune.
+  /// Every explanation fits them along with its effects.
+  const std::vector<UncertainNumber>& numbers() const { return numbers_; }
+  Eigen::Index numberCount() const { return static_cast<Eigen::Index>(numbers_.size()); }
+  /// The numbers at coordinates eta: value in force * exp(tolerance * eta), within the range; none for an empty eta.
+  std::vector<std::pair<std::string, double>> numbersAt(const Eigen::VectorXd& eta) const;
+  double numberAt(Eigen::Index index, double eta) const;
+  Eigen::VectorXd clampedNumbers(const Eigen::VectorXd& eta) const;
   /// Tension of a muscle by the model's force law at a pressure and a length, N.
   double tensionN(int muscle, double pressure_ratio, double length_mm) const;
 
@@ -113,12 +122,11 @@ class Plant {
   bool interrupted() const { return options_.interrupted && options_.interrupted(); }
 
  private:
-  static constexpr double farthest_tuning = 4;  ///< bound of |ln(value / value in force)|
-
   void dropDeadSegments();
   void compareSignals();
   void requireNumbers(const std::vector<Segment>& part) const;
-  Parameter numberNamed(const std::string& name) const;
+  Parameter numberNamed(const std::string& option, const std::string& name) const;
+  void findNumbers();
   Fidelity possible(Fidelity fidelity) const;
   void count(double simulated_s) const;
   enum class HeldSamples { as_measured, drawn };
@@ -135,7 +143,7 @@ class Plant {
   Split split_;
   std::unique_ptr<Simulation> reference_;  ///< the model as built, never stepped
   std::vector<std::pair<std::string, double>> nominal_;
-  std::vector<Parameter> tuned_;
+  std::vector<UncertainNumber> numbers_;
   mutable std::atomic<long> simulation_count_{0}, simulated_ms_{0};
   mutable PredictionStore store_;
 };

@@ -11,7 +11,7 @@ namespace musclesim {
 
 namespace {
 
-constexpr double enough = 0.01;  ///< a decrease of logMisfit that does not justify another round
+constexpr double enough = 0.05;  ///< nats: a decrease that does not justify another round
 constexpr double normal_95 = 1.96;
 /// Differences for derivatives, in coordinates. Wide ones first: dry friction hides small changes, so that the tangent is flatter than the
 /// secant.
@@ -23,9 +23,13 @@ Eigen::VectorXd movedBy(Eigen::VectorXd z, Eigen::Index coordinate, double diffe
   return z;
 }
 
+double priorCost(const FitProblem& problem, const Eigen::VectorXd& z) {
+  return problem.precision.size() ? 0.5 * z.cwiseAbs2().dot(problem.precision) : 0;
+}
+
 struct Point {
   Eigen::VectorXd z, residual;
-  double log_misfit = std::numeric_limits<double>::infinity();
+  double cost = std::numeric_limits<double>::infinity();
 };
 
 Point evaluate(const Comparison& comparison, const FitProblem& problem, const Eigen::VectorXd& z) {
@@ -33,13 +37,18 @@ Point evaluate(const Comparison& comparison, const FitProblem& problem, const Ei
   const Eigen::VectorXd predicted = problem.predicted(point.z);
   if (predicted.size() != comparison.size() || !predicted.allFinite()) return point;
   point.residual = comparison.measured() - predicted;
-  point.log_misfit = comparison.logMisfit(point.residual);
+  point.cost = comparison.misfit(point.residual) + priorCost(problem, point.z);
   return point;
 }
 
-Eigen::MatrixXd derivatives(const Comparison& comparison, const FitProblem& problem, const Point& at, double difference) {
+Eigen::MatrixXd derivatives(const Comparison& comparison, const FitProblem& problem, const Point& at, double difference,
+                            const std::vector<Eigen::VectorXd>& known = {}) {
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(comparison.size(), at.z.size());
   parallelFor(static_cast<int>(at.z.size()), comparison.plant().jobCount(), [&](int i) {
+    if (const auto k = static_cast<std::size_t>(i); k < known.size() && known[k].size()) {
+      jacobian.col(i) = known[k];
+      return;
+    }
     for (const double side : {1.0, -1.0}) {
       const Eigen::VectorXd z = movedBy(at.z, i, side * difference);
       if (problem.clamped(z)[i] == at.z[i]) continue;  // at a bound
@@ -74,14 +83,15 @@ double samplesPerIndependent(const Comparison& comparison, const Eigen::VectorXd
 }
 
 /// Half of the 95 % interval of every coordinate; infinite if the data do not determine it, alone or together with the others.
-Eigen::VectorXd halfWidths(const Comparison& comparison, const Point& point, const Eigen::MatrixXd& jacobian) {
+Eigen::VectorXd halfWidths(const Comparison& comparison, const FitProblem& problem, const Point& point, const Eigen::MatrixXd& jacobian) {
   constexpr double nothing = 1e-12, flat = 1e-8, takes_part = 0.1;
-  // Weighted residuals have mean square 1 / rows per block if the misfit is the residual's own size.
-  Eigen::VectorXd per_sample = comparison.weights(point.residual);
+  Eigen::VectorXd per_sample(comparison.size());
   for (const Comparison::Block& block : comparison.blocks())
-    per_sample.segment(block.first, block.count()) *= block.averaged_rows > 0 ? 0 : std::sqrt(static_cast<double>(block.count()));
+    per_sample.segment(block.first, block.count())
+        .setConstant(block.averaged_rows > 0 ? 0 : 1 / std::max(block.sigma, std::sqrt(comparison.meanSquare(block, point.residual))));
   const Eigen::MatrixXd weighted = per_sample.asDiagonal() * jacobian;
-  const Eigen::MatrixXd information = weighted.transpose() * weighted / samplesPerIndependent(comparison, point.residual);
+  Eigen::MatrixXd information = weighted.transpose() * weighted / samplesPerIndependent(comparison, point.residual);
+  if (problem.precision.size()) information.diagonal() += problem.precision;
   const Eigen::ArrayXd size = information.diagonal().array().max(0).sqrt();
   // Scaled to unit size, so that a direction without influence shows in any units.
   const Eigen::VectorXd per_size = (size > nothing).select(size.inverse(), 0.0);
@@ -106,14 +116,18 @@ namespace {
 bool stepDown(const Comparison& comparison, const FitProblem& problem, const Eigen::MatrixXd& jacobian, double& damping, Point& best) {
   const Eigen::VectorXd weights = comparison.weights(best.residual);
   const Eigen::MatrixXd weighted = weights.asDiagonal() * jacobian;
-  const Eigen::MatrixXd normal = weighted.transpose() * weighted;
-  const Eigen::VectorXd slope = weighted.transpose() * weights.cwiseProduct(best.residual);
+  Eigen::MatrixXd normal = weighted.transpose() * weighted;
+  Eigen::VectorXd slope = weighted.transpose() * weights.cwiseProduct(best.residual);
+  if (problem.precision.size()) {
+    normal.diagonal() += problem.precision;
+    slope -= problem.precision.cwiseProduct(best.z);
+  }
   for (int attempt = 0; attempt < 3; ++attempt) {
     Eigen::MatrixXd damped = normal;
     damped.diagonal() *= 1 + damping;
     damped.diagonal().array() += 1e-9;
     Point next = evaluate(comparison, problem, best.z + damped.ldlt().solve(slope));
-    if (next.log_misfit < best.log_misfit) {
+    if (next.cost < best.cost) {
       best = std::move(next);
       damping *= 0.2;
       return true;
@@ -146,25 +160,27 @@ Eigen::MatrixXd derivatives(const Comparison& comparison, const FitProblem& prob
 FitResult fit(const Comparison& comparison, const FitProblem& problem, int round_count) {
   Point best = evaluate(comparison, problem, problem.start);
   if (!best.residual.size() || best.z.size() == 0 || round_count == 0)
-    return {best.z, best.residual, best.log_misfit, Eigen::VectorXd::Zero(best.z.size())};
+    return {best.z, best.residual, best.cost, Eigen::VectorXd::Zero(best.z.size()), {}};
   double difference = wide;
-  Eigen::MatrixXd jacobian = derivatives(comparison, problem, best, difference);
-  bool fresh = true;
+  Eigen::MatrixXd jacobian = derivatives(comparison, problem, best, difference, problem.known_derivatives);
+  bool fresh = problem.known_derivatives.empty();
   double damping = 0.01;
   for (int round = 0; round < round_count && !comparison.plant().interrupted(); ++round) {
     const Point before = best;
     const bool down = stepDown(comparison, problem, jacobian, damping, best);
-    const bool settled = best.log_misfit > before.log_misfit - enough;
-    if ((settled && fresh && difference == narrow) || round + 1 == round_count) break;
+    const bool settled = best.cost > before.cost - enough;
+    if ((settled && fresh && (difference == narrow || !problem.narrow_differences)) || round + 1 == round_count) break;
     if (settled) {
-      if (fresh) difference = narrow;
-      jacobian = derivatives(comparison, problem, best, difference);
+      if (fresh && problem.narrow_differences) difference = narrow;
+      std::vector<Eigen::VectorXd> kept(static_cast<std::size_t>(jacobian.cols()));
+      for (Eigen::Index k = problem.renewed_count; k >= 0 && k < jacobian.cols(); ++k) kept[static_cast<std::size_t>(k)] = jacobian.col(k);
+      jacobian = derivatives(comparison, problem, best, difference, kept);
     } else if (down) {
       update(jacobian, before, best);
     }
     fresh = settled;
   }
-  return {best.z, best.residual, best.log_misfit, halfWidths(comparison, best, jacobian)};
+  return {best.z, best.residual, best.cost, halfWidths(comparison, problem, best, jacobian), jacobian};
 }
 
 FitResult fitCorrected(const Comparison& comparison, const FitProblem& cheap, const Predicted& exact, int round_count) {
@@ -172,7 +188,7 @@ FitResult fitCorrected(const Comparison& comparison, const FitProblem& cheap, co
   FitProblem exactly = cheap;
   exactly.predicted = exact;
   Point best = evaluate(comparison, exactly, cheap.start);
-  FitResult result{best.z, best.residual, best.log_misfit, Eigen::VectorXd::Zero(best.z.size())};
+  FitResult result{best.z, best.residual, best.cost, Eigen::VectorXd::Zero(best.z.size()), {}};
   for (int pass = 0; pass < pass_count && best.residual.size() && !comparison.plant().interrupted(); ++pass) {
     const Eigen::VectorXd before = cheap.predicted(best.z);
     if (before.size() != comparison.size()) break;
@@ -185,14 +201,15 @@ FitResult fitCorrected(const Comparison& comparison, const FitProblem& cheap, co
     };
     const FitResult fitted = fit(comparison, corrected, round_count);
     result.half_width = fitted.half_width;
-    if (fitted.log_misfit > best.log_misfit - enough) break;
+    result.jacobian = fitted.jacobian;
+    if (fitted.cost > best.cost - enough) break;
     Point next = evaluate(comparison, exactly, fitted.z);
-    if (next.log_misfit > best.log_misfit - enough) break;
+    if (next.cost > best.cost - enough) break;
     best = std::move(next);
   }
   result.z = best.z;
   result.residual = best.residual;
-  result.log_misfit = best.log_misfit;
+  result.cost = best.cost;
   return result;
 }
 

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <vector>
 
 #include "comparison.h"
 
@@ -15,13 +16,20 @@ struct FitProblem {
   Predicted predicted;
   std::function<Eigen::VectorXd(const Eigen::VectorXd&)> clamped;
   Eigen::VectorXd start;
+  Eigen::VectorXd precision = {};  ///< of a normal prior of each coordinate about 0: 1 / variance; 0 or empty: none
+  /// Derivatives of the prediction at the start by coordinate, where they are known; empty columns are computed.
+  std::vector<Eigen::VectorXd> known_derivatives = {};
+  /// Only so many of the first coordinates get new derivatives later on; the known ones of the others are only updated. -1: all do.
+  Eigen::Index renewed_count = -1;
+  bool narrow_differences = true;  ///< whether the last rounds use narrow differences
 };
 
 struct FitResult {
   Eigen::VectorXd z;
   Eigen::VectorXd residual;  ///< measured - predicted; empty if no prediction could be made
-  double log_misfit = 0;
+  double cost = 0;             ///< misfit + sum of precision z^2 / 2, in nats
   Eigen::VectorXd half_width;  ///< half of the 95 % interval of every coordinate; infinite: not determined
+  Eigen::MatrixXd jacobian;    ///< d(prediction)/dz at z, as far as the fit knows it
 };
 
 /// d(prediction)/dz at z, column by column, from one-sided differences: 20 % of the coordinate, at least 0.2, to the side where the model
@@ -31,7 +39,7 @@ Eigen::MatrixXd derivatives(const Comparison& comparison, const FitProblem& prob
 /// The step of one coordinate that derivatives() tries first, within the bounds; 0 between two bounds.
 double stepOf(const FitProblem& problem, const Eigen::VectorXd& z, Eigen::Index coordinate);
 
-/// Minimises Comparison::logMisfit with Levenberg and Marquardt's method (Marquardt 1963) on residuals that are reweighted in every round.
+/// Minimises the misfit (Comparison) plus the prior's cost with Levenberg and Marquardt's method (Marquardt 1963) on residuals that are reweighted in every round.
 /// The response may have kinks, so the differences for derivatives are not small. Because simulations dominate the cost, derivatives are
 /// recomputed only when a step gains nothing; otherwise rank-one updates carry them on (Broyden 1965). The intervals are those of the
 /// linearised problem with the residual's own variance, widened by the number of samples over the effective number of samples (from the

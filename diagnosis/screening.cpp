@@ -7,7 +7,7 @@
 #include <set>
 
 #include "../base/parallel.h"
-#include "attribute.h"
+#include "search.h"
 #include "musclesim/base/error.h"
 
 namespace musclesim {
@@ -20,26 +20,28 @@ constexpr std::size_t per_effect_count = 3;   ///< and at least this many of eve
 
 }  // namespace
 
-Comparison Attributor::firstScreeningSegment() const {
+Comparison Search::firstScreeningSegment() const {
   Comparison result(plant_, {screening_.segments().front()}, Comparison::Averages::with);
-  result.goCoarse(result.predicted(Model{}), Comparison::Purpose::screening);
+  const Eigen::VectorXd nominal = result.predicted(Model{});
+  result.goCoarse(nominal, Comparison::Purpose::screening);
+  result.setGap(result.measured() - nominal);
   return result;
 }
 
 /// Keeps, of variants without a strength (numbers of bits), the two of each component with the least misfit on the screening segments,
 /// chosen from the six best on the first segment and those as good as the sixth. Simulating all of them everywhere would take as long as
 /// the rest of the diagnosis, and one segment alone may hardly distinguish them.
-void Attributor::keepNearestVariants() {
+void Search::keepNearestVariants() {
   keepNearestVariants(firstScreeningSegment(), 6, Ties::kept);
   keepNearestVariants(screening_, 2, Ties::dropped);
 }
 
-void Attributor::keepNearestVariants(const Comparison& comparison, std::size_t kept, Ties ties) {
-  std::vector<Hypothesis>& all = result_.hypotheses;
+void Search::keepNearestVariants(const Comparison& comparison, std::size_t kept, Ties ties) {
+  std::vector<Hypothesis>& all = causes_.hypotheses;
   std::map<std::string, std::vector<std::size_t>> variants;
   for (std::size_t i = 0; i < all.size(); ++i)
     if (all[i].coordinateCount() == 0) variants[all[i].label()].push_back(i);
-  std::vector<double> log_misfit(all.size(), 0);
+  std::vector<double> misfit(all.size(), 0);
   std::vector<std::size_t> tried;
   for (const auto& [label, members] : variants)
     if (members.size() > kept) tried.insert(tried.end(), members.begin(), members.end());
@@ -47,19 +49,19 @@ void Attributor::keepNearestVariants(const Comparison& comparison, std::size_t k
     const std::size_t index = tried[static_cast<std::size_t>(i)];
     if (plant_.interrupted()) return;
     const Eigen::VectorXd predicted = comparison.predicted(Model{{all[index].at({})}, {}});
-    log_misfit[index] =
-        predicted.size() ? comparison.logMisfit(comparison.measured() - predicted) : std::numeric_limits<double>::infinity();
+    misfit[index] =
+        predicted.size() ? comparison.misfit(comparison.measured() - predicted) : std::numeric_limits<double>::infinity();
     on_simulation_();
   });
   std::set<std::size_t> dropped;
   for (auto& [label, members] : variants) {
-    std::ranges::stable_sort(members, {}, [&](std::size_t i) { return log_misfit[i]; });
+    std::ranges::stable_sort(members, {}, [&](std::size_t i) { return misfit[i]; });
     if (members.size() <= kept) continue;
     auto end = members.begin() + static_cast<std::ptrdiff_t>(kept);
-    if (ties == Ties::kept) end = std::find_if(end, members.end(), [&](std::size_t i) { return log_misfit[i] > log_misfit[*(end - 1)]; });
+    if (ties == Ties::kept) end = std::find_if(end, members.end(), [&](std::size_t i) { return misfit[i] > misfit[*(end - 1)]; });
     if (end == members.end()) continue;
     dropped.insert(end, members.end());
-    result_.thinned.insert(label);
+    catalogue_.thinned.insert(label);
   }
   std::vector<Hypothesis> rest;
   for (std::size_t i = 0; i < all.size(); ++i)
@@ -69,16 +71,16 @@ void Attributor::keepNearestVariants(const Comparison& comparison, std::size_t k
 
 /// Indices of the hypotheses that are screened on all segments. If there are many (ten muscles have ten of most kinds), those that explain
 /// most of the first segment, and some of every effect. The choice does not depend on the candidates, because fault isolation must not.
-std::vector<std::size_t> Attributor::worthScreening() const {
-  const std::vector<Hypothesis>& all = result_.hypotheses;
+std::vector<std::size_t> Search::worthScreening() const {
+  const std::vector<Hypothesis>& all = causes_.hypotheses;
   std::vector<std::size_t> order(all.size());
   std::iota(order.begin(), order.end(), 0);
   if (all.size() <= many_hypotheses || screening_.segments().size() < 2) return order;
   const Comparison brief = firstScreeningSegment();
   std::vector<Hypothesis> hypotheses = all;
   const std::vector<Sensitivity> sensitivities =
-      sensitivitiesOf(brief, hypotheses, brief.predicted(Model{}), Model{}, Strengths::adapted, options_.job_count, on_simulation_);
-  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return sensitivities[i].log_misfit; });
+      sensitivitiesOf(brief, hypotheses, brief.predicted(Model{}), Model{}, options_.job_count, on_simulation_);
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return sensitivities[i].misfit; });
   std::map<std::string, std::size_t> per_effect;
   std::vector<std::size_t> chosen;
   for (std::size_t rank = 0; rank < order.size(); ++rank) {
@@ -89,57 +91,59 @@ std::vector<std::size_t> Attributor::worthScreening() const {
   return chosen;
 }
 
-void Attributor::screenHypotheses(const Eigen::VectorXd& nominal) {
+void Search::screenHypotheses(const Eigen::VectorXd& nominal) {
   const std::vector<std::size_t> chosen = worthScreening();
   std::vector<Hypothesis> hypotheses;
-  for (const std::size_t i : chosen) hypotheses.push_back(result_.hypotheses[i]);
+  for (const std::size_t i : chosen) hypotheses.push_back(causes_.hypotheses[i]);
   std::vector<Sensitivity> sensitivities =
-      sensitivitiesOf(screening_, hypotheses, nominal, Model{}, Strengths::adapted, options_.job_count, on_simulation_);
-  for (const Hypothesis& hypothesis : result_.hypotheses) {
+      sensitivitiesOf(screening_, hypotheses, nominal, Model{}, options_.job_count, on_simulation_);
+  for (const Hypothesis& hypothesis : causes_.hypotheses) {
     Sensitivity unknown;
     unknown.per_strength.resize(std::max<std::size_t>(1, hypothesis.strengths().size()));
     fitLinearly(screening_, hypothesis, screening_residual_, unknown);
-    result_.sensitivities.push_back(std::move(unknown));
+    catalogue_.sensitivities.push_back(std::move(unknown));
   }
   for (std::size_t k = 0; k < chosen.size(); ++k) {
-    result_.hypotheses[chosen[k]] = std::move(hypotheses[k]);
-    result_.sensitivities[chosen[k]] = std::move(sensitivities[k]);
+    causes_.hypotheses[chosen[k]] = std::move(hypotheses[k]);
+    catalogue_.sensitivities[chosen[k]] = std::move(sensitivities[k]);
   }
-  result_.screened_count = chosen.size();
+  catalogue_.screened_count = chosen.size();
 }
 
 /// An effect that shows nothing in the screening segments may show in the rest of the recordings.
-void Attributor::checkExcitation(const std::vector<Hypothesis>& typical) {
+void Search::checkExcitation(const std::vector<Hypothesis>& typical) {
   const std::vector<Segment>&screened = screening_.segments(), &fitted = fit_.segments();
   const bool is_all = screened.size() == fitted.size() && std::ranges::equal(screened, fitted, {}, &Segment::end_row, &Segment::end_row);
   if (is_all) return;
   const Eigen::VectorXd nominal = fit_.measured() - nominal_residual_;
   std::vector<std::size_t> hidden;
   for (std::size_t i = 0; i < typical.size(); ++i)
-    if (result_.allowed[i] && result_.sensitivities[i].excitation_ratio.value_or(1) < 1) hidden.push_back(i);
+    if (catalogue_.allowed[i] && catalogue_.sensitivities[i].excitation_ratio.value_or(1) < 1) hidden.push_back(i);
   parallelFor(static_cast<int>(hidden.size()), options_.job_count, [&](int i) {
     const std::size_t index = hidden[static_cast<std::size_t>(i)];
     if (plant_.interrupted()) return;
     const Hypothesis& hypothesis = typical[index];
     const Eigen::VectorXd predicted = fit_.predicted(Model{{hypothesis.at(hypothesis.typical())}, {}});
     if (predicted.size() == nominal.size() && predicted.allFinite())
-      result_.sensitivities[index].excitation_ratio = excitationRatio(fit_, {predicted - nominal});
+      catalogue_.sensitivities[index].excitation_ratio = excitationRatio(fit_, {predicted - nominal});
     on_simulation_();
   });
 }
 
-void Attributor::screen() {
+void Search::screen() {
   const Eigen::VectorXd nominal = screening_.predicted(Model{});
   if (!nominal.size()) throw Diverged(0, plant_.robot(), "the model without further effects cannot follow the recordings");
   screening_residual_ = screening_.measured() - nominal;
   const Eigen::VectorXd everywhere = fit_.predicted(Model{});
   nominal_residual_ = fit_.measured() - everywhere;
+  screening_.setGap(screening_residual_);
+  fit_.setGap(nominal_residual_);
   screening_.goCoarse(nominal, Comparison::Purpose::screening);
   fit_.goCoarse(everywhere);
-  result_.hypotheses = hypotheses(plant_, DiagnosisOptions{});
+  causes_.hypotheses = musclesim::hypotheses(plant_, DiagnosisOptions{});
   keepNearestVariants();
-  for (const Hypothesis& hypothesis : result_.hypotheses) result_.allowed.push_back(allows(options_, hypothesis.info().id));
-  const std::vector<Hypothesis> typical = result_.hypotheses;
+  for (const Hypothesis& hypothesis : causes_.hypotheses) catalogue_.allowed.push_back(allows(options_, hypothesis.info().id));
+  const std::vector<Hypothesis> typical = causes_.hypotheses;
   screenHypotheses(nominal);
   checkExcitation(typical);
 }

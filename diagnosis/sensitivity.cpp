@@ -12,7 +12,6 @@ namespace musclesim {
 
 namespace {
 
-constexpr double largest_amount = 5;  ///< typical strengths up to which the response is taken as linear
 constexpr double strong = 4;          ///< typical strengths at which a strength without response is tried again
 constexpr double nothing = 0.1;       ///< noise sigmas
 constexpr double late = 3;            ///< typical strengths at which delays and time constants are tried again
@@ -91,7 +90,7 @@ double excitationRatio(const Comparison& comparison, const std::vector<Eigen::Ve
 void fitLinearly(const Comparison& comparison, const Hypothesis& hypothesis, const Eigen::VectorXd& residual, Sensitivity& sensitivity) {
   const auto count = static_cast<Eigen::Index>(sensitivity.per_strength.size());
   sensitivity.amount = Eigen::VectorXd::Zero(count);
-  sensitivity.log_misfit = comparison.logMisfit(residual);
+  sensitivity.misfit = comparison.misfit(residual);
   Eigen::MatrixXd columns(residual.size(), count);
   for (Eigen::Index i = 0; i < count; ++i) {
     if (!sensitivity.per_strength[static_cast<std::size_t>(i)].size()) return;
@@ -111,9 +110,9 @@ void fitLinearly(const Comparison& comparison, const Hypothesis& hypothesis, con
                                        ? Eigen::VectorXd(Eigen::VectorXd::Ones(count))
                                        : boundedSolution(normal, weighted.transpose() * weights.cwiseProduct(residual), least);
     left = residual - columns * amount;
-    const double misfit = comparison.logMisfit(left);
-    if (misfit < sensitivity.log_misfit || hypothesis.strengths().empty()) {
-      sensitivity.log_misfit = misfit;
+    const double misfit = comparison.misfit(left);
+    if (misfit < sensitivity.misfit || hypothesis.strengths().empty()) {
+      sensitivity.misfit = misfit;
       sensitivity.amount = amount;
     }
   }
@@ -222,7 +221,7 @@ class OnlyStrength {
         keepIfNearer(between);
       }
     }
-    if (best_.strength != 0 && best_.log_misfit < worth_refining * comparison_.logMisfit(residual())) refine();
+    if (best_.strength != 0 && best_.misfit < worth_refining * comparison_.misfit(residual())) refine();
     if (best_.strength == 0) return;
     sensitivity_.per_strength = {changeAt(best_.strength)};
     sensitivity_.from_threshold = true;
@@ -236,7 +235,7 @@ class OnlyStrength {
       farther.per_strength = {changeAt(sensitivity_.amount[0])};
       if (!farther.per_strength.front().size()) return;
       fitLinearly(comparison_, hypothesis_, residual(), farther);
-      if (!(farther.log_misfit < sensitivity_.log_misfit)) return;
+      if (!(farther.misfit < sensitivity_.misfit)) return;
       hypothesis_.rescale(coordinate(), sensitivity_.amount[0]);
       sensitivity_ = std::move(farther);
     }
@@ -244,7 +243,7 @@ class OnlyStrength {
 
  private:
   struct Found {
-    double strength = 0, log_misfit = 0;
+    double strength = 0, misfit = 0;
   };
   enum class Showing { none, some, diverged };
   static constexpr double worth_refining = 0.97;  ///< of the misfit without the effect
@@ -275,8 +274,8 @@ class OnlyStrength {
   }
   void keepIfNearer(double strength) {
     if (showing(strength) != Showing::some) return;
-    const double log_misfit = comparison_.logMisfit(residual() - changeAt(strength));
-    if (best_.strength == 0 || log_misfit < best_.log_misfit) best_ = {possible(strength), log_misfit};
+    const double misfit = comparison_.misfit(residual() - changeAt(strength));
+    if (best_.strength == 0 || misfit < best_.misfit) best_ = {possible(strength), misfit};
   }
   void refine() {
     for (const double factor : {1.2, 1.1, 1.05, 1.025, 1.0125}) {
@@ -337,28 +336,42 @@ std::vector<Probe> lateProbes(const std::vector<Hypothesis>& hypotheses) {
 
 }  // namespace
 
-std::vector<Sensitivity> sensitivitiesOf(const Comparison& comparison, std::vector<Hypothesis>& hypotheses, const Eigen::VectorXd& nominal,
-                                         const Model& base, Strengths strengths, int job_count, const OnSimulation& on_simulation) {
+namespace {
+
+/// Probes the hypotheses and adds what they show to their sensitivities, per unit of `strength`.
+void probeInto(std::vector<Sensitivity>& sensitivities, const Comparison& comparison, const std::vector<Probe>& probes, double strength,
+               const Eigen::VectorXd& nominal, const Model& base, int job_count, const OnSimulation& on_simulation) {
+  const std::vector<Eigen::VectorXd> changes = changesBy(comparison, probes, nominal, base, job_count, on_simulation);
+  for (std::size_t i = 0; i < probes.size(); ++i)
+    for (const Probe::Target& target : probes[i].targets)
+      if (changes[i].size())
+        sensitivities[target.hypothesis].per_strength[target.strength] = only(comparison, changes[i] / strength, target.signal);
+}
+
+}  // namespace
+
+std::vector<Sensitivity> changesOf(const Comparison& comparison, const std::vector<Hypothesis>& hypotheses, const Eigen::VectorXd& nominal,
+                                   const Model& base, int job_count, const OnSimulation& on_simulation) {
   std::vector<Sensitivity> result(hypotheses.size());
   for (std::size_t s = 0; s < hypotheses.size(); ++s)
     result[s].per_strength.resize(std::max<std::size_t>(1, hypotheses[s].strengths().size()));
-  auto probeInto = [&](std::vector<Sensitivity>& sensitivities, const std::vector<Probe>& probes, double strength) {
-    const std::vector<Eigen::VectorXd> changes = changesBy(comparison, probes, nominal, base, job_count, on_simulation);
-    for (std::size_t i = 0; i < probes.size(); ++i)
-      for (const Probe::Target& target : probes[i].targets)
-        if (changes[i].size())
-          sensitivities[target.hypothesis].per_strength[target.strength] = only(comparison, changes[i] / strength, target.signal);
+  probeInto(result, comparison, probes(comparison, hypotheses), 1, nominal, base, job_count, on_simulation);
+  return result;
+}
+
+std::vector<Sensitivity> sensitivitiesOf(const Comparison& comparison, std::vector<Hypothesis>& hypotheses, const Eigen::VectorXd& nominal,
+                                         const Model& base, int job_count, const OnSimulation& on_simulation) {
+  std::vector<Sensitivity> result = changesOf(comparison, hypotheses, nominal, base, job_count, on_simulation);
+  const auto probe = [&](std::vector<Sensitivity>& into, const std::vector<Probe>& probes, double strength) {
+    probeInto(into, comparison, probes, strength, nominal, base, job_count, on_simulation);
   };
-  auto probeAll = [&](const std::vector<Probe>& probes, double strength) { probeInto(result, probes, strength); };
-  probeAll(probes(comparison, hypotheses), 1);
   for (Sensitivity& sensitivity : result)
     if (std::ranges::all_of(sensitivity.per_strength, [](const Eigen::VectorXd& change) { return change.size() > 0; }))
       sensitivity.excitation_ratio = excitationRatio(comparison, sensitivity.per_strength);
   const Eigen::VectorXd residual = comparison.measured() - nominal;
-  const bool adapt = strengths == Strengths::adapted;
   auto adaptOnlyStrengths = [&](const std::function<bool(std::size_t)>& chosen, const std::function<void(OnlyStrength&)>& adapted) {
     std::vector<std::size_t> chosen_indices;
-    for (std::size_t s = 0; adapt && s < hypotheses.size(); ++s)
+    for (std::size_t s = 0; s < hypotheses.size(); ++s)
       if (hypotheses[s].info().stage != Stage::sensor && hypotheses[s].strengths().size() == 1 && chosen(s)) chosen_indices.push_back(s);
     parallelFor(static_cast<int>(chosen_indices.size()), job_count, [&](int i) {
       const std::size_t s = chosen_indices[static_cast<std::size_t>(i)];
@@ -369,16 +382,16 @@ std::vector<Sensitivity> sensitivitiesOf(const Comparison& comparison, std::vect
   adaptOnlyStrengths(
       [&](std::size_t s) { return result[s].per_strength.front().size() && !shows(comparison, hypotheses[s], 0, result[s]); },
       [](OnlyStrength& it) { it.searchThreshold(); });
-  for (const int direction : {1, -1}) probeAll(strongerProbes(comparison, hypotheses, result, direction), direction * strong);
-  for (std::size_t s = 0; adapt && s < hypotheses.size(); ++s) leaveOutIdle(comparison, hypotheses[s], result[s]);
-  const int weakenings = adapt ? 3 : 0;
-  for (int i = 0; i < weakenings; ++i) probeAll(weakerProbes(comparison, hypotheses, result, residual), 1);
+  for (const int direction : {1, -1}) probe(result, strongerProbes(comparison, hypotheses, result, direction), direction * strong);
+  for (std::size_t s = 0; s < hypotheses.size(); ++s) leaveOutIdle(comparison, hypotheses[s], result[s]);
+  constexpr int weakenings = 3;
+  for (int i = 0; i < weakenings; ++i) probe(result, weakerProbes(comparison, hypotheses, result, residual), 1);
   std::vector<Sensitivity> late_result = result;
-  probeInto(late_result, lateProbes(hypotheses), late);
+  probe(late_result, lateProbes(hypotheses), late);
   for (std::size_t s = 0; s < hypotheses.size(); ++s) {
     fitLinearly(comparison, hypotheses[s], residual, result[s]);
     fitLinearly(comparison, hypotheses[s], residual, late_result[s]);
-    if (late_result[s].log_misfit < result[s].log_misfit) result[s] = std::move(late_result[s]);
+    if (late_result[s].misfit < result[s].misfit) result[s] = std::move(late_result[s]);
   }
   adaptOnlyStrengths([](std::size_t) { return true; }, [](OnlyStrength& it) { it.relinearise(); });
   return result;

@@ -11,13 +11,15 @@
 
 namespace musclesim {
 
+inline constexpr double largest_amount = 5;  ///< typical strengths up to which a response is taken as linear
+
 /// The change that one hypothesis makes in the predictions, and how much of the residual a multiple of it removes.
 struct Sensitivity {
   /// Change of the prediction by each strength alone, at z = 1; empty columns if the model diverged.
   std::vector<Eigen::VectorXd> per_strength;
   Eigen::VectorXd amount;       ///< multiple of each strength that removes most
   bool from_threshold = false;  ///< z = 1 was set at the threshold of the effect, below which it may do nothing
-  double log_misfit = 0;        ///< log misfit of the remaining residual
+  double misfit = 0;        ///< log misfit of the remaining residual
   /// Largest RMS over sigma, in any residual block, of the change at typical strengths; empty if not all of them could be simulated.
   std::optional<double> excitation_ratio;
 };
@@ -25,24 +27,25 @@ struct Sensitivity {
 /// Called after each simulation, from any thread; must be thread-safe.
 using OnSimulation = std::function<void()>;
 
-/// Whether screening may rescale or remove the strengths of a hypothesis, or must keep them.
-enum class Strengths { adapted, kept };
-
 /// Simulates every hypothesis once or a few times on the comparison's segments; sensor effects of one id on different signals share a
-/// simulation. `nominal` is the prediction of `base`, the model to which the hypotheses are added. If strengths may be adapted, it
+/// simulation. `nominal` is the prediction of `base`, the model to which the hypotheses are added. It also
 /// - drops strengths with a negligible influence compared with another one of the hypothesis (a force across the plane in which an elbow
 /// moves),
 /// - weakens strengths that change a signal by much more than the residual, because their response need not be proportional,
 /// - strengthens a sole strength that shows no response (a dead band below all commands),
 /// - linearises a sole strength again if its optimum lies at the limit of the linear range.
 std::vector<Sensitivity> sensitivitiesOf(const Comparison& comparison, std::vector<Hypothesis>& hypotheses, const Eigen::VectorXd& nominal,
-                                         const Model& base, Strengths strengths, int job_count, const OnSimulation& on_simulation);
+                                         const Model& base, int job_count, const OnSimulation& on_simulation);
+
+/// The changes by every strength alone at z = 1 beside `base`, no more.
+std::vector<Sensitivity> changesOf(const Comparison& comparison, const std::vector<Hypothesis>& hypotheses, const Eigen::VectorXd& nominal,
+                                   const Model& base, int job_count, const OnSimulation& on_simulation);
 
 /// Largest RMS over sigma of some changes in any residual block.
 double excitationRatio(const Comparison& comparison, const std::vector<Eigen::VectorXd>& changes);
 
 /// Fits the amounts of a sensitivity to a residual by least squares, reweighted three times; amounts of unsigned strengths stay positive.
-/// Sets amount and log_misfit.
+/// Sets amount and misfit.
 void fitLinearly(const Comparison& comparison, const Hypothesis& hypothesis, const Eigen::VectorXd& residual, Sensitivity& sensitivity);
 
 }  // namespace musclesim

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <limits>
 #include <mutex>
 
@@ -21,10 +22,11 @@ Tuning tune(const std::vector<Recording>& recordings, DiagnosisOptions& options)
   const Plant plant(recordings, options);
   const Comparison fitted(plant, plant.split().fit);
   std::mutex mutex;  // derivatives are simulated by several threads
-  DiagnosisProgress progress{"fitting parameters of the model", 0, tuning_round_count * static_cast<long>(plant.tunedCount() + 2)};
+  DiagnosisProgress progress{"fitting parameters of the model", 0, tuning_round_count * static_cast<long>(plant.numberCount() + 2)};
   FitProblem problem;
-  problem.start = Eigen::VectorXd::Zero(plant.tunedCount());
-  problem.clamped = Plant::clampedTuning;
+  problem.start = Eigen::VectorXd::Zero(plant.numberCount());
+  problem.clamped = [&plant](const Eigen::VectorXd& eta) { return plant.clampedNumbers(eta); };
+  problem.precision = Eigen::VectorXd::Ones(plant.numberCount());
   problem.predicted = [&](const Eigen::VectorXd& z) {
     {
       const std::lock_guard lock(mutex);
@@ -32,7 +34,7 @@ Tuning tune(const std::vector<Recording>& recordings, DiagnosisOptions& options)
       if (options.progress) options.progress(progress);
     }
     Model model;
-    model.parameters = plant.tunedAt(z);
+    model.parameters = plant.numbersAt(z);
     return fitted.predicted(model);
   };
   FitResult result = fit(fitted, problem, tuning_round_count);
@@ -45,14 +47,14 @@ Tuning tune(const std::vector<Recording>& recordings, DiagnosisOptions& options)
   return tuning;
 }
 
-std::vector<TunedParameter> tunedParameters(const Plant& plant, const Eigen::VectorXd& z, const Eigen::VectorXd& half_width) {
-  const auto at = plant.tunedAt(z), one = plant.tunedAt(z - half_width), other = plant.tunedAt(z + half_width);
+std::vector<TunedParameter> tunedParameters(const Plant& plant, const Eigen::VectorXd& eta, const Eigen::VectorXd& half_width) {
   std::vector<TunedParameter> result;
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    const Parameter& parameter = plant.tuned()[i];
-    const Estimate fitted = {at[i].second, std::min(one[i].second, other[i].second), std::max(one[i].second, other[i].second),
-                             std::isfinite(half_width[static_cast<Eigen::Index>(i)])};
-    result.push_back({parameter.name, parameter.unit, std::get<double>(parameter.value), fitted, fitted});
+  for (Eigen::Index i = 0; i < eta.size(); ++i) {
+    const UncertainNumber& number = plant.numbers()[static_cast<std::size_t>(i)];
+    if (!number.is_tuned) continue;
+    const Estimate fitted = {plant.numberAt(i, eta[i]), plant.numberAt(i, eta[i] - half_width[i]), plant.numberAt(i, eta[i] + half_width[i]),
+                             std::isfinite(half_width[i])};
+    result.push_back({number.parameter.name, number.parameter.unit, std::get<double>(number.parameter.value), fitted, fitted});
   }
   return result;
 }

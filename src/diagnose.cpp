@@ -23,7 +23,7 @@ constexpr const char* files_of_some_answers[] = {"attempt.json", "nominal.toml",
 struct DiagnoseArguments {
   std::vector<std::string> recordings, candidates, exclude, ignore_columns, tune;
   std::optional<std::string> out, json;
-  int jobs = 0, max_effects = 2;
+  int jobs = 0, max_effects = 4;
 };
 
 std::filesystem::path folderFor(const DiagnoseArguments& arguments) {
@@ -158,7 +158,7 @@ Action addDiagnose(CLI::App& command, ModelOptions& model) {
           "Fit these unmeasured parameters of the model first, by name, separated by commas; written to nominal.toml");
   command
       .add_option("--max-effects", arguments->max_effects,
-                  "Largest number of effects that act together; they are searched one after another (default 2)")
+                  "Largest number of effects that act together (default 4)")
       ->check(CLI::Range(1, 6));
   addList(command, "--ignore-columns", arguments->ignore_columns, "Columns to skip, separated by commas");
   addModelOptions(command, model);

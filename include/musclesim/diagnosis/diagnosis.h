@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,7 +28,8 @@ struct DiagnosisOptions {
   std::vector<std::string> candidates;                     ///< ids of effects to consider; empty: the whole catalogue
   std::vector<std::string> exclude;                        ///< ids not to consider
   std::vector<std::string> tune;                           ///< names of parameters of the model that nobody measured; they are fitted first
-  int max_effects = 2;                                     ///< largest number of effects in an explanation, 1..6
+  int max_effects = 4;                                     ///< largest number of effects in an explanation, 1..6
+  std::vector<ActiveEffect> earlier;  ///< an earlier finding: a set that the search begins with, fitted anew and kept if it is believed
   int job_count = 0;                                       ///< threads; 0: one per core. The answer does not depend on it
   std::uint64_t seed = 1;                                  ///< of the bootstrap and the negative control
   std::function<void(const DiagnosisProgress&)> progress;  ///< called from one thread at a time
@@ -56,6 +58,7 @@ struct FoundEffect {
   double probability = 0;
   std::map<std::string, Estimate> parameters;
   double reduction_percent = 0;                     ///< reduction of the gap on the held-out data by this effect alone
+  std::optional<double> removes_percent = {};       ///< of a chosen effect: what it removes of the gap while the others are present
   std::map<std::string, std::string> choices = {};  ///< parameters that are words, such as the end of a muscle or the side of a wall
   std::string label() const { return id + "@" + component; }
 };
@@ -134,6 +137,24 @@ struct RobotDrawing {
   std::vector<Point> points;
 };
 
+/// What the chosen effects leave on the held-out data.
+struct Remainder {
+  bool is_significant = false;  ///< it stands out of the noise
+  std::string stage, signal;    ///< of the signal that stands out most
+  double in_sigmas = 0;         ///< RMS over sigma there
+  std::string shape;            ///< in words, empty if it has no simple one
+  double percent_of_gap = 0;
+  double probability = 0;  ///< that something acts which the chosen effects do not hold
+};
+
+/// A number of the model with a tolerance, as the chosen explanation fits it.
+struct FittedNumber {
+  std::string name, unit;
+  double start = 0;
+  Estimate fitted;
+  double in_tolerances = 0;  ///< ln(fitted / start) over the tolerance
+};
+
 /// Curves of one signal of one recording, for the report.
 struct Trace {
   std::string recording, signal;
@@ -172,6 +193,9 @@ struct Diagnosis {
   Attempt attempt;       ///< of the verdict `unexplained`; without effects if there is none
   std::string held_out;  ///< the held-out data, in words
   double reduction_percent = 0, reduction_low_percent = 0, reduction_high_percent = 0;
+  std::vector<std::vector<std::string>> ambiguity_sets;  ///< sets of effects that the data cannot tell from the chosen one, that one first
+  Remainder remainder;
+  std::vector<FittedNumber> numbers;
   std::vector<std::string> alternatives;  ///< explanations that the data cannot distinguish, each without the effects common to all
   std::string model_options;              ///< options of the program for the robot of the recordings: "--robot rig --set rig.load_kg=2"
   std::vector<std::string> refitted;      ///< parameters of the model that the nominal refit re-tunes

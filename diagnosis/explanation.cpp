@@ -1,0 +1,100 @@
+#include "explanation.h"
+
+#include <algorithm>
+
+namespace musclesim {
+
+bool overlap(const std::string& one, const std::string& other) {
+  if (one == "all" || other == "all") return true;
+  // A pair of muscles, "muscle_0+muscle_1", overlaps with either.
+  const std::string in_one = "+" + one + "+", in_other = "+" + other + "+";
+  return in_one.find(in_other) != std::string::npos || in_other.find(in_one) != std::string::npos;
+}
+
+Model Causes::modelOf(const Explanation& explanation) const {
+  Model model;
+  Eigen::Index first = 0;
+  for (const std::size_t index : explanation.members) {
+    const Hypothesis& hypothesis = hypotheses[index];
+    model.effects.push_back(hypothesis.at(explanation.z.segment(first, hypothesis.coordinateCount())));
+    first += hypothesis.coordinateCount();
+  }
+  model.parameters = plant_.numbersAt(explanation.numbers);
+  return model;
+}
+
+std::set<std::string> Causes::labelsOf(const std::vector<std::size_t>& members) const {
+  std::set<std::string> labels;
+  for (const std::size_t member : members) labels.insert(hypotheses[member].label());
+  return labels;
+}
+
+bool Causes::clash(std::size_t one, std::size_t other) const {
+  return hypotheses[one].info().id == hypotheses[other].info().id &&
+         overlap(hypotheses[one].component(), hypotheses[other].component());
+}
+
+Eigen::Index Causes::firstCoordinate(const Explanation& explanation, std::size_t member) const {
+  Eigen::Index first = 0;
+  for (std::size_t i = 0; i < member; ++i) first += hypotheses[explanation.members[i]].coordinateCount();
+  return first;
+}
+
+Eigen::VectorXd Causes::clamped(const std::vector<std::size_t>& members, const Eigen::VectorXd& z) const {
+  Eigen::VectorXd result = z;
+  Eigen::Index first = 0;
+  for (const std::size_t index : members) {
+    const Eigen::Index count = hypotheses[index].coordinateCount();
+    result.segment(first, count) = hypotheses[index].clamped(z.segment(first, count));
+    first += count;
+  }
+  return result;
+}
+
+FitProblem Causes::problemOf(const Explanation& explanation, const Comparison& comparison, Fidelity fidelity) const {
+  const Eigen::Index effect_count = explanation.z.size(), number_count = plant_.numberCount();
+  FitProblem problem;
+  problem.start.resize(effect_count + number_count);
+  problem.start << explanation.z, explanation.numbers;
+  problem.precision = Eigen::VectorXd::Zero(effect_count + number_count);
+  problem.precision.tail(number_count).setOnes();
+  problem.clamped = [this, members = explanation.members, effect_count, number_count](const Eigen::VectorXd& z) {
+    Eigen::VectorXd result(z.size());
+    result << clamped(members, z.head(effect_count)), plant_.clampedNumbers(z.tail(number_count));
+    return result;
+  };
+  problem.predicted = [this, members = explanation.members, effect_count, number_count, &comparison, fidelity](const Eigen::VectorXd& z) {
+    on_simulation_();
+    Explanation at;
+    at.members = members;
+    at.z = z.head(effect_count);
+    at.numbers = z.tail(number_count);
+    const Model model = modelOf(at);
+    return fidelity == Fidelity::fine ? comparison.predicted(model, Fidelity::fine) : comparison.predicted(model);
+  };
+  return problem;
+}
+
+void Causes::refit(Explanation& explanation, const Comparison& comparison, int rounds, Fidelity fidelity,
+                   std::vector<Eigen::VectorXd> known) const {
+  const Eigen::Index effect_count = explanation.z.size(), number_count = plant_.numberCount();
+  FitProblem problem = problemOf(explanation, comparison, Fidelity::coarse);
+  if (!known.empty()) {
+    problem.known_derivatives = std::move(known);
+    problem.renewed_count = fidelity == Fidelity::fine ? 0 : effect_count;
+    problem.narrow_differences = false;
+  }
+  const FitResult result = fidelity == Fidelity::fine
+                               ? fitCorrected(comparison, problem, problemOf(explanation, comparison, Fidelity::fine).predicted, rounds)
+                               : fit(comparison, problem, rounds);
+  explanation.z = result.z.head(effect_count);
+  explanation.numbers = result.z.tail(number_count);
+  if (rounds > 0 || explanation.half_width.size() == 0) {
+    explanation.half_width = result.half_width.head(effect_count);
+    explanation.numbers_half_width = result.half_width.tail(number_count);
+  }
+  explanation.residual = result.residual;
+  explanation.jacobian = result.jacobian;
+}
+
+}  // namespace musclesim

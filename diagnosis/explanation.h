@@ -1,0 +1,61 @@
+/// An explanation is a set of hypotheses with fitted coordinates, fitted together with the uncertain numbers of the model.
+#pragma once
+
+#include <Eigen/Core>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "comparison.h"
+#include "hypothesis.h"
+#include "refit.h"
+#include "sensitivity.h"
+
+namespace musclesim {
+
+struct Explanation {
+  std::vector<std::size_t> members;  ///< indices of hypotheses; empty: no effect
+  Eigen::VectorXd z;                 ///< coordinates of all members, one after the other
+  Eigen::VectorXd numbers;           ///< coordinates of the uncertain numbers (Plant::numbersAt)
+  Eigen::VectorXd half_width, numbers_half_width;  ///< of their 95 % intervals
+  Eigen::VectorXd residual;                        ///< on the comparison that it was fitted to last
+  Eigen::MatrixXd jacobian;                        ///< of the prediction there, by z and then numbers
+  Eigen::VectorXd cross_validated;                 ///< residual of each segment predicted from a fit to the others; empty if not computed
+  double score = 0;                                ///< Evidence::score
+  double probability = 0;
+  bool is_inactive = false;  ///< one of its effects is inactive: the fit is as good at nearly zero strength
+  /// The residual that its evidence is computed from.
+  const Eigen::VectorXd& validationResidual() const { return cross_validated.size() ? cross_validated : residual; }
+};
+
+/// The hypotheses of a plant, and what a set of them means.
+class Causes {
+ public:
+  Causes(const Plant& plant, const OnSimulation& on_simulation) : plant_(plant), on_simulation_(on_simulation) {}
+
+  std::vector<Hypothesis> hypotheses;
+
+  const Plant& plant() const { return plant_; }
+  Model modelOf(const Explanation& explanation) const;
+  /// Labels of the members, in order of the alphabet.
+  std::set<std::string> labelsOf(const std::vector<std::size_t>& members) const;
+  /// Whether two hypotheses are the same effect on places that overlap: they cannot act together.
+  bool clash(std::size_t one, std::size_t other) const;
+  /// Index of the first coordinate of a member.
+  Eigen::Index firstCoordinate(const Explanation& explanation, std::size_t member) const;
+  Eigen::VectorXd clamped(const std::vector<std::size_t>& members, const Eigen::VectorXd& z) const;
+  /// The fit of all coordinates and numbers to a comparison. References must outlive the problem.
+  FitProblem problemOf(const Explanation& explanation, const Comparison& comparison, Fidelity fidelity) const;
+  /// Fits on, from where the explanation is; `known` as FitProblem::known_derivatives.
+  void refit(Explanation& explanation, const Comparison& comparison, int rounds, Fidelity fidelity,
+             std::vector<Eigen::VectorXd> known = {}) const;
+
+ private:
+  const Plant& plant_;
+  const OnSimulation& on_simulation_;
+};
+
+/// Whether two components overlap: one of them is "all", or both name a common part.
+bool overlap(const std::string& one, const std::string& other);
+
+}  // namespace musclesim

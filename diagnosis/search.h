@@ -1,0 +1,124 @@
+/// Which sets of effects explain the gap: a search over sets that adds, swaps and drops effects, and the probabilities of what it finds.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "comparison.h"
+#include "evidence.h"
+#include "explanation.h"
+#include "linear_model.h"
+#include "rival.h"
+#include "sensitivity.h"
+
+namespace musclesim {
+
+/// The catalogue's hypotheses on this plant with their sensitivities on the screening segments.
+struct ScreenedCatalogue {
+  std::vector<char> allowed;        ///< per hypothesis: it may be an answer
+  std::set<std::string> thinned;    ///< labels of hypotheses that lost some of their variants
+  std::vector<Sensitivity> sensitivities;  ///< per hypothesis; without changes if it was not screened on all segments
+  std::size_t screened_count = 0;   ///< hypotheses that were screened on all screening segments
+};
+
+class Search {
+ public:
+  Search(const Plant& plant, const DiagnosisOptions& options, OnSimulation on_simulation);
+
+  /// The sensitivity of the residual to every effect of the catalogue.
+  void screen();
+  /// Searches, fits what is likely to all recordings, and computes the probabilities.
+  void decide();
+
+  const Comparison& screeningComparison() const { return screening_; }
+  const Comparison& fitComparison() const { return fit_; }
+  const Eigen::VectorXd& nominalResidual() const { return nominal_residual_; }
+  const Eigen::VectorXd& screeningResidual() const { return screening_residual_; }
+  const std::vector<Hypothesis>& hypotheses() const { return causes_.hypotheses; }
+  const ScreenedCatalogue& catalogue() const { return catalogue_; }
+  const Causes& causes() const { return causes_; }
+  /// Fitted to all recordings, most probable first.
+  const std::vector<Explanation>& explanations() const { return explanations_; }
+  /// Probability that something else acts, judged by what the best explanation leaves.
+  double noneOfThese() const { return none_of_these_; }
+  /// Single effects as fitted to the screening segments.
+  std::vector<Explanation> singles() const;
+  /// No effect, but the numbers of the model fitted.
+  const Explanation& nothing() const { return nothing_; }
+  Model modelOf(const Explanation& explanation) const { return causes_.modelOf(explanation); }
+  /// The explanation as nextExperiment() needs it, with the derivatives of its prediction.
+  Rival rival(const Explanation& explanation, const std::string& label) const;
+
+ private:
+  /// A set whose fit has not begun, and the linear estimate of what it will cost.
+  struct Proposal {
+    Explanation start;
+    double cost;                                ///< in nats, price included
+    std::vector<Eigen::VectorXd> known = {};    ///< FitProblem::known_derivatives
+  };
+  /// A linear model about one explanation and the meaning of its columns.
+  struct Surroundings {
+    Explanation base;
+    LinearModel model;
+    std::vector<std::vector<std::size_t>> of_hypothesis;  ///< columns of each hypothesis' strengths; empty: it cannot be added
+    std::vector<std::vector<std::size_t>> of_member;      ///< columns of each member's coordinates
+    std::vector<std::size_t> removal_of_member;           ///< column of a member's removal
+    std::vector<std::size_t> of_numbers;
+    std::vector<Sensitivity> sensitivities;
+    std::vector<Eigen::VectorXd> derivatives;             ///< by the base's coordinates and the numbers
+  };
+
+  // screening.cpp
+  Comparison firstScreeningSegment() const;
+  void keepNearestVariants();
+  enum class Ties { kept, dropped };  ///< variants as good as the last one kept
+  void keepNearestVariants(const Comparison& comparison, std::size_t kept, Ties ties);
+  std::vector<std::size_t> worthScreening() const;
+  void screenHypotheses(const Eigen::VectorXd& nominal);
+  void checkExcitation(const std::vector<Hypothesis>& typical);
+
+  // search.cpp
+  Surroundings surroundingsOf(const Explanation& base) const;
+  std::vector<std::size_t> worthAdding(const Explanation& base) const;
+  void changesBeside(const Explanation& base, const Eigen::VectorXd& predicted, std::vector<Sensitivity>& sensitivities) const;
+  Proposal proposed(const Surroundings& around, const std::vector<std::size_t>& kept, const std::vector<std::size_t>& added) const;
+  std::vector<Proposal> singleEffects(const Surroundings& around) const;
+  std::vector<Proposal> largerSets(const Surroundings& around) const;
+  std::vector<Proposal> additions(const Surroundings& around) const;
+  std::vector<Proposal> swaps(const Surroundings& around) const;
+  std::vector<Proposal> drops(const Surroundings& around) const;
+  std::vector<Proposal> nearest(std::vector<Proposal> proposals, std::size_t count, int most_variants = 1) const;
+  bool isKnown(const std::vector<std::size_t>& members) const;
+  bool fitsBeside(std::size_t hypothesis, const std::vector<std::size_t>& members) const;
+  void fitOnScreening(std::vector<Proposal> proposals);
+  void expand(const Explanation& base);
+  std::vector<std::size_t> bestOnScreening(std::size_t member_count, std::size_t count) const;
+  bool isDominated(const Explanation& explanation) const;
+  void fitFinalists();
+  void fitToAll(Explanation& explanation) const;
+  void takeFromCounterparts(Explanation& explanation) const;
+  bool hasInactiveEffect(const Explanation& explanation) const;
+  void predictFromOthers(Explanation& explanation) const;
+  void weigh();
+  Evidence evidence() const { return {fit_, nominal_residual_, causes_}; }
+  Evidence screeningEvidence() const { return {screening_, screening_residual_, causes_}; }
+
+  const Plant& plant_;
+  const DiagnosisOptions& options_;
+  OnSimulation on_simulation_;
+  Causes causes_;
+  Comparison screening_, fit_;
+  Eigen::VectorXd screening_residual_, nominal_residual_;
+  ScreenedCatalogue catalogue_;
+  std::unique_ptr<Surroundings> about_nothing_;
+  std::vector<Explanation> pool_;  ///< fitted to the screening segments
+  std::set<std::set<std::string>> expanded_;
+  std::vector<Explanation> explanations_;
+  Explanation nothing_;
+  double none_of_these_ = 0;
+};
+
+}  // namespace musclesim
