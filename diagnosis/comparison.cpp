@@ -171,14 +171,27 @@ void Comparison::setGap(const Eigen::VectorXd& nominal_residual) {
   for (Block& block : blocks_) block.gap = std::sqrt(meanSquare(block, nominal_residual));
 }
 
+namespace {
+
+/// power / 2 ln((s^2 + ms) / (s^2 + sigma^2)) of one tolerance.
+double misfitBeyond(const Tolerance& tolerance, const Comparison::Block& block, double mean_square) {
+  const double left = tolerance.share_of_gap * block.gap, noise_square = block.sigma * block.sigma, scale_square = noise_square + left * left;
+  return 0.5 * block.power * std::log((scale_square + mean_square) / (scale_square + noise_square));
+}
+
+}  // namespace
+
 double Comparison::misfitOf(const Block& block, double mean_square) const {
-  const double noise_square = block.sigma * block.sigma;
   double sum = 0;
-  for (const Tolerance& tolerance : tolerances) {
-    const double left = tolerance.share_of_gap * block.gap, scale_square = noise_square + left * left;
-    sum += 0.5 * tolerance.nats * std::log((scale_square + mean_square) / (scale_square + noise_square));
-  }
-  return block.power * sum;
+  for (const Tolerance& tolerance : tolerances) sum += tolerance.nats * misfitBeyond(tolerance, block, mean_square);
+  return sum;
+}
+
+std::array<double, tolerances.size()> Comparison::misfits(const Eigen::VectorXd& residual) const {
+  std::array<double, tolerances.size()> sums{};
+  for (const Block& block : blocks_)
+    for (std::size_t i = 0; i < tolerances.size(); ++i) sums[i] += misfitBeyond(tolerances[i], block, meanSquare(block, residual));
+  return sums;
 }
 
 double Comparison::misfit(const Eigen::VectorXd& residual) const {

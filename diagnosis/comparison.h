@@ -85,7 +85,9 @@ class Comparison {
   ///   s^2 = sigma_b^2 + rho^2 C_b^2
   /// ms_b: mean square of the residual in the block; C_b: RMS of the gap there (setGap); power_b: see Block. Infinite for an empty vector.
   double misfit(const Eigen::VectorXd& residual) const;
-  /// The part of the misfit that blocks of some signals have.
+  /// The misfit by tolerance, each without its kappa.
+  std::array<double, tolerances.size()> misfits(const Eigen::VectorXd& residual) const;
+  /// The part of a block.
   double misfitOf(const Block& block, double mean_square) const;
   /// For each row the root of d(2 misfit) / d(r^2): least squares with these weights follows the misfit.
   Eigen::VectorXd weights(const Eigen::VectorXd& residual) const;

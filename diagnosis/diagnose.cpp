@@ -212,7 +212,7 @@ class Run {
     if (plant_.interrupted()) return;
     const Estimate interval =
         gapReductionInterval({held_out_, before_residual_, after},
-                             {search_.fitComparison(), search_.nominalResidual(), best.validationResidual()}, options_.seed);
+                             {search_.fitComparison(), search_.nominalResidual(), best.residual}, options_.seed);
     const Gap gap_after = held_out_.gap(after);
     const Attempt attempt{labelsOf(model), model.effects, gap_after, reductionOf(gap_after), interval.low, interval.high};
     // What they remove on unseen data bounds the probability that none of these effects acts.
@@ -369,10 +369,10 @@ class Run {
 
   /// Lists the screened and the fitted hypotheses.
   void listTrials() {
-    const double all = search_.screeningComparison().misfit(search_.screeningResidual());
+    const double whole = search_.screeningComparison().misfit(search_.screeningResidual());
     for (std::size_t i = 0; i < search_.hypotheses().size(); ++i)
       if (search_.catalogue().allowed[i])
-        diagnosis_.screenings.push_back({labelOf(i), all > 0 ? 1 - search_.catalogue().sensitivities[i].misfit / all : 0});
+        diagnosis_.screenings.push_back({labelOf(i), whole > 0 ? 1 - search_.catalogue().sensitivities[i].misfit / whole : 0});
     std::ranges::stable_sort(diagnosis_.screenings, [](const auto& a, const auto& b) { return a.removed > b.removed; });
     const Comparison& comparison = search_.fitComparison();
     auto rmsOf = [&](const Eigen::VectorXd& residual) {
@@ -387,9 +387,21 @@ class Run {
       diagnosis_.blocks.push_back({plant_.recordings()[recording].file, plant_.signals()[static_cast<std::size_t>(block.signal)].name,
                                    block.sigma, before[i], static_cast<int>(block.averaged_rows)});
     }
-    for (const Explanation& fitted : search_.explanations()) {
-      Trial trial{{}, static_cast<int>(fitted.z.size()), rmsOf(fitted.residual), {}, {}};
-      if (fitted.cross_validated.size()) trial.rms_cross_validated = rmsOf(fitted.cross_validated);
+    std::vector<Explanation> all = search_.explanations();
+    all.push_back(search_.nothing());
+    for (const Explanation& fitted : all) {
+      if (fitted.residual.size() != comparison.size()) continue;
+      const Evidence evidence = search_.evidence();
+      const auto misfits = comparison.misfits(fitted.residual);
+      const auto complexity = evidence.complexityOf(fitted).asArray();
+      Trial trial{{},
+                  static_cast<int>(fitted.z.size()),
+                  rmsOf(fitted.residual),
+                  {misfits.begin(), misfits.end()},
+                  {complexity.begin(), complexity.end()},
+                  0.5 * fitted.numbers.squaredNorm(),
+                  fitted.score,
+                  {}};
       Eigen::Index first = 0;
       for (const std::size_t index : fitted.members) {
         const Hypothesis& hypothesis = search_.hypotheses()[index];

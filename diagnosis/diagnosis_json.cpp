@@ -116,7 +116,10 @@ Json fittedJson(const Diagnosis& d) {
     json["trials"].push_back({{"effects", trial.effects},
                               {"parameters", trial.parameter_count},
                               {"rms", trial.rms},
-                              {"rms_unseen", trial.rms_cross_validated},
+                              {"misfits", trial.misfits},
+                              {"complexity", trial.complexity},
+                              {"numbers_cost", trial.numbers_cost},
+                              {"score", trial.score},
                               {"values", trial.values}});
   return json;
 }

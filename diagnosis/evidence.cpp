@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace musclesim {
 
 namespace {
+
+/// ln odds of something else per share of the misfit that the best explanation leaves, and the share at which it is as likely as not.
+constexpr double per_share_left = 12, share_of_unknown = 0.3;
 
 enum class Part { muscle, body, sensor };
 
@@ -35,31 +39,36 @@ bool Evidence::actsWhereOthersDo(const Explanation& explanation, std::size_t mem
   });
 }
 
-double Evidence::price(const Explanation& explanation) const {
-  if (explanation.members.empty()) return 0;
-  double price = weighing_.per_effect * (static_cast<double>(explanation.members.size()) - 1);
+Complexity Evidence::complexityOf(const Explanation& explanation) const {
+  Complexity result;
   Eigen::Index first = 0;
   for (std::size_t i = 0; i < explanation.members.size(); ++i) {
     const Hypothesis& hypothesis = causes_.hypotheses[explanation.members[i]];
-    price += weighing_.per_parameter * std::max(hypothesis.coordinateCount(), hypothesis.countedParameters());
-    if (actsWhereOthersDo(explanation, i)) price += weighing_.per_same_place;
-    price += weighing_.per_excess * hypothesis.excess(explanation.z.segment(first, hypothesis.coordinateCount()));
-    if (hypothesis.info().stage == Stage::sensor && hypothesis.component() == "all") price += weighing_.shared_sensor;
+    result.parameters += std::max(hypothesis.coordinateCount(), hypothesis.countedParameters());
+    result.effects += i > 0 ? 1 : 0;
+    result.same_place += actsWhereOthersDo(explanation, i) ? 1 : 0;
+    result.excess += hypothesis.excess(explanation.z.segment(first, hypothesis.coordinateCount()));
+    result.shared_sensor += hypothesis.info().stage == Stage::sensor && hypothesis.component() == "all" ? 1 : 0;
     first += hypothesis.coordinateCount();
   }
-  return price;
+  return result;
+}
+
+double Evidence::price(const Explanation& explanation) const {
+  const std::array<double, prices.size()> amounts = complexityOf(explanation).asArray();
+  return std::inner_product(prices.begin(), prices.end(), amounts.begin(), 0.0);
 }
 
 double Evidence::score(const Explanation& explanation) const {
   if (explanation.is_inactive || explanation.residual.size() != comparison_.size()) return -std::numeric_limits<double>::infinity();
-  return -comparison_.misfit(explanation.validationResidual()) - price(explanation) - 0.5 * explanation.numbers.squaredNorm();
+  return -comparison_.misfit(explanation.residual) - price(explanation) - 0.5 * explanation.numbers.squaredNorm();
 }
 
 double Evidence::ofSomethingElse(const std::vector<Explanation>& explanations) const {
   const double gap = comparison_.misfit(nominal_residual_);
   const Explanation& best = *std::ranges::max_element(explanations, {}, &Explanation::score);
-  const double share_left = gap > 0 ? std::max(0.0, comparison_.misfit(best.validationResidual())) / gap : 0;
-  return weighing_.per_share_left * (share_left - weighing_.share_of_unknown);
+  const double share_left = gap > 0 ? std::max(0.0, comparison_.misfit(best.residual)) / gap : 0;
+  return per_share_left * (share_left - share_of_unknown);
 }
 
 }  // namespace musclesim

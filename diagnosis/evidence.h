@@ -1,6 +1,7 @@
 /// How believable fitted explanations are: misfit, price of complexity, probabilities.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "comparison.h"
@@ -8,16 +9,17 @@
 
 namespace musclesim {
 
-/// Prices in nats; docs/developer/diagnosis.md says on which plants they were found.
-struct Weighing {
-  double per_parameter = 1.0;   ///< of a fitted coordinate
-  double per_effect = 3.1;      ///< of an effect beyond the first
-  double per_same_place = 1.0;  ///< extra if it shares a place with an earlier one: it may only correct that one's law
-  double per_excess = 1.0;      ///< per e-fold by which a parameter exceeds its usual range
-  double shared_sensor = 4.0;   ///< extra for a fault that all sensors share
-  double per_share_left = 12;     ///< ln odds of something else, per share of the misfit that the best explanation leaves
-  double share_of_unknown = 0.3;  ///< share at which it is as likely as not
+/// What the price of an explanation is made of, in the order of `prices`.
+struct Complexity {
+  double parameters = 0;     ///< fitted coordinates, or numbers that were counted or tried
+  double effects = 0;        ///< beyond the first
+  double same_place = 0;     ///< effects that share their place with an earlier one: they may only correct that one's law
+  double excess = 0;         ///< e-folds by which strengths exceed their usual range
+  double shared_sensor = 0;  ///< faults that all sensors share
+  std::array<double, 5> asArray() const { return {parameters, effects, same_place, excess, shared_sensor}; }
 };
+/// Nats for one of each; docs/developer/diagnosis.md says on which plants they were found.
+inline constexpr std::array<double, 5> prices = {1.0, 3.1, 1.0, 1.0, 4.0};
 
 class Evidence {
  public:
@@ -25,7 +27,8 @@ class Evidence {
   Evidence(const Comparison& comparison, const Eigen::VectorXd& nominal_residual, const Causes& causes)
       : comparison_(comparison), nominal_residual_(nominal_residual), causes_(causes) {}
 
-  /// Price of the effects and their coordinates, in nats.
+  Complexity complexityOf(const Explanation& explanation) const;
+  /// The complexity times the prices, in nats.
   double price(const Explanation& explanation) const;
   /// ln of the odds up to a constant: -misfit - price - sum of numbers^2 / 2; minus infinity with an inactive effect.
   double score(const Explanation& explanation) const;
@@ -38,7 +41,6 @@ class Evidence {
   const Comparison& comparison_;
   const Eigen::VectorXd& nominal_residual_;
   const Causes& causes_;
-  Weighing weighing_;
 };
 
 }  // namespace musclesim

@@ -20,12 +20,9 @@ struct Explanation {
   Eigen::VectorXd half_width, numbers_half_width;  ///< of their 95 % intervals
   Eigen::VectorXd residual;                        ///< on the comparison that it was fitted to last
   Eigen::MatrixXd jacobian;                        ///< of the prediction there, by z and then numbers
-  Eigen::VectorXd cross_validated;                 ///< residual of each segment predicted from a fit to the others; empty if not computed
   double score = 0;                                ///< Evidence::score
   double probability = 0;
   bool is_inactive = false;  ///< one of its effects is inactive: the fit is as good at nearly zero strength
-  /// The residual that its evidence is computed from.
-  const Eigen::VectorXd& validationResidual() const { return cross_validated.size() ? cross_validated : residual; }
 };
 
 /// The hypotheses of a plant, and what a set of them means.

@@ -209,6 +209,16 @@ std::vector<std::pair<std::string, double>> Hypothesis::valuesAt(const Eigen::Ve
   return values;
 }
 
+Eigen::VectorXd Hypothesis::coordinatesOf(const std::map<std::string, Parameter::Value>& values) const {
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(coordinateCount());
+  for (std::size_t i = 0; i < coordinates_.size(); ++i) {
+    const auto value = values.find(info_.parameters[coordinates_[i].parameter].name);
+    if (value != values.end() && std::holds_alternative<double>(value->second))
+      z[static_cast<Eigen::Index>(i)] = coordinateOf(coordinates_[i], std::get<double>(value->second));
+  }
+  return clamped(z);
+}
+
 std::map<std::string, std::string> Hypothesis::choices() const {
   std::map<std::string, std::string> result;
   for (const std::size_t i : relevantParameters(info_, component_))

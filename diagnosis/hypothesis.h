@@ -45,6 +45,8 @@ class Hypothesis {
   ActiveEffect at(const Eigen::VectorXd& z) const;
   /// Names and values of the parameters that z changes, and of those fixed at a value other than neutral.
   std::vector<std::pair<std::string, double>> valuesAt(const Eigen::VectorXd& z) const;
+  /// The inverse of valuesAt: parameters that are not given are neutral or, if they are shapes, usual.
+  Eigen::VectorXd coordinatesOf(const std::map<std::string, Parameter::Value>& values) const;
   /// Names and words of the parameters that are words and matter on this component.
   std::map<std::string, std::string> choices() const;
   /// How far strengths exceed their usual range: sum of ln(distance from neutral / largest usual distance), 0 within the range. Strengths

@@ -9,7 +9,7 @@
 #include <map>
 
 #include "../base/parallel.h"
-#include "data_checks.h"
+#include "musclesim/base/error.h"
 
 namespace musclesim {
 
@@ -25,6 +25,7 @@ constexpr std::size_t base_counts[] = {3, 2, 2, 1, 1, 1};  ///< explanations of 
 constexpr double hopeless = 4;      ///< nats behind the best: sets of this size are not extended any more
 constexpr double far_behind = 8;    ///< nats behind the best on the screening segments: not fitted to all recordings
 constexpr std::size_t finalist_count = 10;
+constexpr std::size_t varied_count = 2;  ///< explanations of which other variants are tried
 constexpr int screening_rounds = 4, coarse_rounds = 4, fine_rounds = 3;
 constexpr double usual_strength = 3;   ///< standard deviation of strengths in the linear model, in typical strengths
 constexpr double largest_change = 3;   ///< the same for coordinates of an explanation that is changed
@@ -356,6 +357,7 @@ void Search::decide() {
   std::vector<Proposal> proposals = singleEffects(*about_nothing_);
   std::ranges::move(largerSets(*about_nothing_), std::back_inserter(proposals));
   dbg("nothing");
+  if (!options_.earlier.empty()) proposals.push_back({earlierFinding(), 0});
   fitOnScreening(std::move(proposals));
   dbg("singles and linear");
   for (int size = 1; size <= options_.max_effects && !plant_.interrupted(); ++size) {
@@ -383,6 +385,44 @@ bool Search::isDominated(const Explanation& explanation) const {
   });
 }
 
+/// DiagnosisOptions::earlier as the start of a fit.
+Explanation Search::earlierFinding() const {
+  Explanation result;
+  std::vector<double> z;
+  for (const ActiveEffect& effect : options_.earlier) {
+    const std::string label = effect.id + "@" + effect.component;
+    const auto found = std::ranges::find(causes_.hypotheses, label, &Hypothesis::label);
+    if (found == causes_.hypotheses.end())
+      throw BadParameter("--effects", label, "be an effect that these recordings can show; --fixed-effects takes any");
+    result.members.push_back(static_cast<std::size_t>(found - causes_.hypotheses.begin()));
+    const Eigen::VectorXd own = found->coordinatesOf(effect.parameters);
+    z.insert(z.end(), own.begin(), own.end());
+  }
+  result.z = Eigen::Map<const Eigen::VectorXd>(z.data(), static_cast<Eigen::Index>(z.size()));
+  result.numbers = nothing_.numbers;
+  return result;
+}
+
+/// The same effects with another variant of one of them: the search fits one variant only.
+std::vector<Explanation> Search::otherVariants(const Explanation& explanation) const {
+  std::vector<Explanation> result;
+  const Model model = causes_.modelOf(explanation);
+  for (std::size_t m = 0; m < explanation.members.size(); ++m)
+    for (std::size_t i = 0; i < causes_.hypotheses.size(); ++i) {
+      if (i == explanation.members[m] || causes_.hypotheses[i].label() != causes_.hypotheses[explanation.members[m]].label()) continue;
+      const Eigen::Index first = causes_.firstCoordinate(explanation, m);
+      const Eigen::Index after = first + causes_.hypotheses[explanation.members[m]].coordinateCount();
+      const Eigen::VectorXd own = causes_.hypotheses[i].coordinatesOf(model.effects[m].parameters);
+      Explanation other = explanation;
+      other.members[m] = i;
+      other.z.resize(explanation.z.size() - (after - first) + own.size());
+      other.z << explanation.z.head(first), own, explanation.z.tail(explanation.z.size() - after);
+      other.half_width.resize(0);
+      result.push_back(std::move(other));
+    }
+  return result;
+}
+
 /// Fits the likely explanations, and no effect, to all recordings in fine steps and weighs them.
 void Search::fitFinalists() {
   std::vector<std::size_t> best = bestOnScreening(0, pool_.size());
@@ -396,7 +436,21 @@ void Search::fitFinalists() {
     if (!plant_.interrupted()) fitToAll(explanations_[static_cast<std::size_t>(i)]);
   });
   std::erase_if(explanations_, [&](const Explanation& explanation) { return explanation.residual.size() != fit_.size(); });
+  std::ranges::stable_sort(explanations_, std::greater<>{}, &Explanation::score);
+  tryVariants();
   weigh();
+}
+
+/// Replaces the best explanations by other variants of themselves that are better.
+void Search::tryVariants() {
+  for (std::size_t rank = 0; rank < std::min(explanations_.size(), varied_count); ++rank) {
+    std::vector<Explanation> others = otherVariants(explanations_[rank]);
+    parallelFor(static_cast<int>(others.size()), options_.job_count, [&](int i) {
+      if (!plant_.interrupted()) fitToAll(others[static_cast<std::size_t>(i)]);
+    });
+    for (Explanation& other : others)
+      if (other.residual.size() == fit_.size() && other.score > explanations_[rank].score) explanations_[rank] = std::move(other);
+  }
 }
 
 /// Coarse steps first; the derivatives found there serve for fine ones too.
@@ -409,7 +463,6 @@ void Search::fitToAll(Explanation& explanation) const {
   if (explanation.residual.size() != fit_.size()) return;
   takeFromCounterparts(explanation);
   explanation.is_inactive = hasInactiveEffect(explanation);
-  predictFromOthers(explanation);
   explanation.score = evidence().score(explanation);
 }
 
@@ -458,50 +511,6 @@ bool Search::hasInactiveEffect(const Explanation& explanation) const {
     first += hypothesis.coordinateCount();
   }
   return false;
-}
-
-/// Leave-one-out cross-validation (Stone 1974) of the linearised fit: predicts each segment with the coordinates that fit the others;
-/// repeats of the segment are left out too. Needs no simulation.
-void Search::predictFromOthers(Explanation& explanation) const {
-  const Eigen::Index count = explanation.jacobian.cols();
-  const auto recordingOf = [&](std::size_t segment) -> const Recording& {
-    return plant_.recordings()[static_cast<std::size_t>(fit_.segments()[segment].recording)];
-  };
-  const std::size_t segment_count = fit_.segments().size();
-  if (count == 0 || segment_count < 2 || explanation.jacobian.rows() != fit_.size()) return;
-  const Eigen::VectorXd weights = fit_.weights(explanation.residual);
-  std::vector<Eigen::MatrixXd> normals(segment_count, Eigen::MatrixXd::Zero(count, count));
-  std::vector<Eigen::VectorXd> slopes(segment_count, Eigen::VectorXd::Zero(count));
-  for (const Comparison::Block& block : fit_.blocks()) {
-    const auto w = weights.segment(block.first, block.count());
-    const Eigen::MatrixXd part = w.asDiagonal() * explanation.jacobian.middleRows(block.first, block.count());
-    normals[block.segment] += part.transpose() * part;
-    slopes[block.segment] += part.transpose() * w.cwiseProduct(explanation.residual.segment(block.first, block.count()));
-  }
-  Eigen::VectorXd longest(count), precision(count);
-  longest << explanation.z.cwiseAbs().cwiseMax(1.0), Eigen::VectorXd::Ones(plant_.numberCount());
-  precision << Eigen::VectorXd::Constant(explanation.z.size(), 1e-3), Eigen::VectorXd::Ones(plant_.numberCount());
-  const auto stepWithout = [&](const std::set<std::size_t>& left_out) -> Eigen::VectorXd {
-    Eigen::MatrixXd normal = precision.asDiagonal();
-    Eigen::VectorXd slope = Eigen::VectorXd::Zero(count);
-    for (std::size_t k = 0; k < segment_count; ++k)
-      if (!left_out.contains(k)) normal += normals[k], slope += slopes[k];
-    return normal.ldlt().solve(slope).cwiseMax(-longest).cwiseMin(longest);
-  };
-  const Eigen::VectorXd with_all = stepWithout({});
-  Eigen::VectorXd cross_validated = explanation.residual;
-  for (std::size_t k = 0; k < segment_count; ++k) {
-    std::set<std::size_t> left_out;
-    for (std::size_t other = 0; other < segment_count; ++other)
-      if (other == k || isRepeat(recordingOf(other), recordingOf(k))) left_out.insert(other);
-    if (left_out.size() == segment_count) return;
-    const Eigen::VectorXd step = stepWithout(left_out) - with_all;
-    for (const Comparison::Block& block : fit_.blocks())
-      if (block.segment == k)
-        cross_validated.segment(block.first, block.count()) -=
-            explanation.jacobian.middleRows(block.first, block.count()) * step;
-  }
-  explanation.cross_validated = cross_validated;
 }
 
 /// Computes the probabilities of the explanations, no effect among them, and apart from them that of something else.

@@ -48,6 +48,7 @@ class Search {
   std::vector<Explanation> singles() const;
   /// No effect, but the numbers of the model fitted.
   const Explanation& nothing() const { return nothing_; }
+  Evidence evidence() const { return {fit_, nominal_residual_, causes_}; }
   Model modelOf(const Explanation& explanation) const { return causes_.modelOf(explanation); }
   /// The explanation as nextExperiment() needs it, with the derivatives of its prediction.
   Rival rival(const Explanation& explanation, const std::string& label) const;
@@ -97,13 +98,14 @@ class Search {
   void expand(const Explanation& base);
   std::vector<std::size_t> bestOnScreening(std::size_t member_count, std::size_t count) const;
   bool isDominated(const Explanation& explanation) const;
+  Explanation earlierFinding() const;
+  std::vector<Explanation> otherVariants(const Explanation& explanation) const;
   void fitFinalists();
+  void tryVariants();
   void fitToAll(Explanation& explanation) const;
   void takeFromCounterparts(Explanation& explanation) const;
   bool hasInactiveEffect(const Explanation& explanation) const;
-  void predictFromOthers(Explanation& explanation) const;
   void weigh();
-  Evidence evidence() const { return {fit_, nominal_residual_, causes_}; }
   Evidence screeningEvidence() const { return {screening_, screening_residual_, causes_}; }
 
   const Plant& plant_;

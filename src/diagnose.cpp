@@ -22,7 +22,7 @@ constexpr const char* files_of_some_answers[] = {"attempt.json", "nominal.toml",
 
 struct DiagnoseArguments {
   std::vector<std::string> recordings, candidates, exclude, ignore_columns, tune;
-  std::optional<std::string> out, json;
+  std::optional<std::string> out, json, fixed_effects;
   int jobs = 0, max_effects = 4;
 };
 
@@ -44,13 +44,13 @@ std::string scheduleText(const Experiment& experiment) {
   return text;
 }
 
-/// Includes the effects that --effects gave to the model, so that the file can replace the file of --effects.
+/// Includes the fixed effects, so that the file describes the whole machine.
 void writeWith(const std::vector<ActiveEffect>& found, std::vector<ActiveEffect> effects, const std::filesystem::path& file) {
   effects.insert(effects.end(), found.begin(), found.end());
   writeEffects(effects, file.string());
 }
 
-/// The sidecar members that describe the diagnosed model, without the effects of --effects, which are not part of the recording.
+/// The sidecar members that describe the diagnosed model, without the fixed effects, which are not part of the recording.
 RecordingInfo modelOf(const Recording& recording, const ReplayOptions& options) {
   RecordingInfo given = recording.info;
   replaceRobot(given, options.robot);
@@ -93,7 +93,7 @@ void writeAll(const Diagnosis& diagnosis, const std::filesystem::path& folder, c
 void requirePlaces(const std::filesystem::path& folder, const ModelOptions& model, const DiagnoseArguments& arguments) {
   std::vector<std::string> inputs = arguments.recordings;
   for (const std::string& recording : arguments.recordings) inputs.push_back(sidecarPath(recording));
-  for (const auto& file : {model.config, model.effects})
+  for (const auto& file : {model.config, model.effects, arguments.fixed_effects})
     if (file) inputs.push_back(*file);
   for (const char* file : files_of_all_answers) requireOther(folder / file, inputs);
   for (const char* file : files_of_some_answers) requireOther(folder / file, inputs);
@@ -124,6 +124,8 @@ int diagnoseCommand(const ModelOptions& model, const DiagnoseArguments& argument
   requirePlaces(folder, model, arguments);
   DiagnosisOptions options;
   options.model = replayOptionsFrom(model);
+  std::swap(options.earlier, options.model.effects);
+  if (arguments.fixed_effects) options.model.effects = readEffects(*arguments.fixed_effects);
   options.candidates = arguments.candidates;
   options.exclude = arguments.exclude;
   options.tune = arguments.tune;
@@ -160,9 +162,12 @@ Action addDiagnose(CLI::App& command, ModelOptions& model) {
       .add_option("--max-effects", arguments->max_effects,
                   "Largest number of effects that act together (default 4)")
       ->check(CLI::Range(1, 6));
+  command.add_option("--fixed-effects", arguments->fixed_effects, "JSON file with effects of the model that are not fitted");
   addList(command, "--ignore-columns", arguments->ignore_columns, "Columns to skip, separated by commas");
   addModelOptions(command, model);
   command.remove_option(command.get_option("--json"));
+  command.get_option("--effects")->description(
+      "JSON file with an earlier finding: its effects are fitted anew, and kept if they are still believed");
   command.add_option("--json", arguments->json, "Write a copy of diagnosis.json to FILE");
   return [&model, arguments] { return diagnoseCommand(model, *arguments); };
 }

@@ -101,12 +101,14 @@ struct FittedBlock {
   int averaged_rows = 0;  ///< rows per average; 0: as recorded
 };
 
-/// A fitted hypothesis and the RMS residual that it leaves in each block.
+/// A fitted explanation and the RMS residual that it leaves in each block.
 struct Trial {
   std::vector<std::string> effects;
   int parameter_count = 0;
   std::vector<double> rms;
-  std::vector<double> rms_cross_validated;  ///< cross-validated: every recording predicted from a fit to the others; empty if not computed
+  std::vector<double> misfits, complexity;  ///< what its odds are computed from (Evidence), without weights
+  double numbers_cost = 0;                  ///< nats for numbers of the model that are off their value
+  double score = 0;                         ///< ln odds up to a constant
   std::vector<std::map<std::string, double>> values;  ///< parameters of each effect
 };
 
