@@ -462,14 +462,14 @@ class Run {
     return fmt::format("{}", fmt::join(own, " + "));
   }
 
-  double singleReduction(const std::string& label) const {
-    if (plant_.interrupted()) return 0;
+  std::optional<double> singleReduction(const std::string& label) const {
+    if (plant_.interrupted()) return std::nullopt;
     for (const Explanation& fitted : search_.singles()) {
       if (labelOf(fitted.members.front()) != label) continue;
       const Eigen::VectorXd predicted = held_out_.predicted(search_.modelOf(fitted));
-      return predicted.size() ? gapReductionPercent(diagnosis_.before, held_out_.gap(held_out_.measured() - predicted)) : 0;
+      if (predicted.size()) return reductionOf(held_out_.gap(held_out_.measured() - predicted));
     }
-    return 0;
+    return std::nullopt;
   }
 
   void proposeExperiment() {

@@ -34,8 +34,8 @@ Json toJson(const FoundEffect& effect) {
   Json json = {{"id", effect.id},
                {"component", effect.component},
                {"probability", effect.probability},
-               {"parameters", parameters},
-               {"shrink_percent", effect.reduction_percent}};
+               {"parameters", parameters}};
+  if (effect.reduction_percent) json["shrink_percent"] = *effect.reduction_percent;
   if (effect.removes_percent) json["removes_percent"] = *effect.removes_percent;
   if (!effect.choices.empty()) json["choices"] = effect.choices;
   return json;

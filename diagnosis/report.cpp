@@ -93,10 +93,6 @@ std::string where(const Diagnosis& d) {
          stagesFigure(d.where) + paragraph("Evidence: " + d.where_method + ".") + "</div>" + drawing(d) + "</div>\n";
 }
 
-bool triedAlone(const Diagnosis& d, const FoundEffect& effect) {
-  return std::ranges::any_of(d.trials, [&](const Trial& trial) { return trial.effects.size() == 1 && trial.effects[0] == effect.label(); });
-}
-
 /// A remark on a fitted number at its bound or outside the usual range.
 std::string remarkOn(const EffectParameter& parameter, double value) {
   if (!parameter.choices.empty() || value == parameter.neutral) return "";
@@ -132,13 +128,15 @@ std::string which(const Diagnosis& d) {
   if (d.verdict == Verdict::no_gap || d.verdict == Verdict::not_excited || (d.effects.empty() && d.none_of_these == 0)) return "";
   std::string rows;
   for (const FoundEffect& effect : d.effects)
-    rows += fmt::format("<tr><td>{}</td><td class=number>{}</td><td>{}</td><td class=number>{}</td></tr>\n", breakableCode(effect.label()),
-                        probabilityWords(effect.probability), parameterRows(effect),
-                        triedAlone(d, effect) ? percentWords(effect.reduction_percent) : "not tried alone");
-  rows += fmt::format("<tr><td>none of these</td><td class=number>{}</td><td></td><td></td></tr>\n", probabilityWords(d.none_of_these));
+    rows += fmt::format("<tr><td>{}</td><td class=number>{}</td><td>{}</td><td class=number>{}</td><td class=number>{}</td></tr>\n",
+                        breakableCode(effect.label()), probabilityWords(effect.probability), parameterRows(effect),
+                        effect.reduction_percent ? percentWords(*effect.reduction_percent) : "not tried alone",
+                        effect.removes_percent ? percentWords(*effect.removes_percent) : "");
+  rows += fmt::format("<tr><td>none of these</td><td class=number>{}</td><td></td><td></td><td></td></tr>\n",
+                      probabilityWords(d.none_of_these));
   std::string text = heading("Which") + sliding(
                                             "<table><tr><th>effect</th><th class=number>probability</th><th>parameters (95 % "
-                                            "interval)</th><th class=number>removes alone</th></tr>\n" +
+                                            "interval)</th><th class=number>removes alone</th><th class=number>removes beside the others</th></tr>\n" +
                                             rows + "</table>");
   if (!d.effects.empty())
     text += small(

@@ -206,14 +206,25 @@ std::string chosenWords(const Diagnosis& d) {
 }
 
 /// A sentence about a residual that stands far out of the noise, which no explanation should hide. RMS / sigma = sqrt(1 + normalised gap).
-std::string remainder(const Gap& after) {
+std::string remainder(const Diagnosis& d, const Gap& after) {
   const double over_noise = std::sqrt(1 + after.normalised);
   if (over_noise < stands_out) return "";
   const auto most = std::ranges::max_element(after.per_signal, {}, [](const auto& entry) { return overNoise(entry.second); });
   const std::string where =
       most == after.per_signal.end() ? "" : fmt::format(" ({:.1f} times in {})", overNoise(most->second), most->first);
-  return fmt::format("The residual is still {:.1f} times the noise{}: another effect acts as well, or this one follows another law.",
-                     over_noise, where);
+  const bool together = d.chosen.size() > 1 || d.attempt.effects.size() > 1;
+  return fmt::format("The residual is still {:.1f} times the noise{}{}: another effect acts as well, or {} follows another law.", over_noise,
+                     where, d.remainder.shape.empty() ? "" : ", " + d.remainder.shape, together ? "one of these" : "this one");
+}
+
+/// The numbers of the model that are off by more than their tolerance lets expect.
+std::string numbersWords(const Diagnosis& d) {
+  constexpr double unusual = 2;  // standard deviations: one in twenty
+  std::vector<std::string> words;
+  for (const FittedNumber& number : d.numbers)
+    if (std::abs(number.in_tolerances) >= unusual)
+      words.push_back(fmt::format("{} of {} instead of {:.4g} {}", number.name, estimateWords(number.fitted), number.start, number.unit));
+  return words.empty() ? "" : fmt::format("The data speak for a {}.", fmt::join(words, " and a "));
 }
 
 /// "valve lag on muscle 1 together with payload on hand" of "valve_lag@muscle_1 + payload@hand".
@@ -289,7 +300,7 @@ std::string notConfirmed(const Diagnosis& d) {
       ": the best candidate, {}, has a probability of {} on the recordings that it was fitted to, but removes {} of the gap on the "
       "held-out data",
       labelWords(first.label()), probabilityWords(first.probability),
-      first.reduction_percent > 0 ? percentWords(first.reduction_percent) : "nothing");
+      first.reduction_percent.value_or(0) > 0 ? percentWords(*first.reduction_percent) : "nothing");
   if (d.nominal_refit_percent > 0)
     text += fmt::format("; re-tuning the model without any effect removes {}", percentWords(d.nominal_refit_percent));
   return text;
@@ -329,7 +340,7 @@ std::vector<std::string> unexplainedSentences(const Diagnosis& d) {
       fmt::format("The best rejected hypothesis, {}, removes {} of the gap on held-out data; attempt.json holds it as a starting point, "
                   "not as a finding.",
                   listWords(d.attempt.effects), percentWords(d.attempt.reduction_percent)));
-  sentences.push_back(remainder(d.attempt.after));
+  sentences.push_back(remainder(d, d.attempt.after));
   return sentences;
 }
 
@@ -339,7 +350,7 @@ std::vector<std::string> foundSentences(const Diagnosis& d) {
           fmt::format("The best explanation ({} likely) is {}; adding {} to the model removes {}{} of the gap on held-out data.",
                       probabilityWords(best == d.explanations.end() ? 0 : best->probability), chosenWords(d),
                       d.chosen.size() > 1 ? "them" : "it", percentWords(d.reduction_percent), intervalWords(d)),
-          remainder(d.after), noneWords(d), otherwise(d)};
+          remainder(d, d.after), numbersWords(d), noneWords(d), otherwise(d)};
 }
 
 }  // namespace
@@ -348,7 +359,9 @@ std::vector<std::string> verdictSentences(const Diagnosis& d) {
   std::vector<std::string> sentences;
   switch (d.verdict) {
     case Verdict::no_gap:
-      return {"No gap: the recordings agree with the model up to the noise."};
+      if (d.numbers.empty()) return {"No gap: the recordings agree with the model up to the noise."};
+      sentences = {"No gap that needs an effect: within the tolerances of its numbers the model agrees with the recordings.", numbersWords(d)};
+      break;
     case Verdict::not_excited:
       return {"I cannot tell: the commands do not change, so the recordings do not show how the plant responds."};
     case Verdict::unexplained:

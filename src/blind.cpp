@@ -1,11 +1,15 @@
-/// `musclesim blind make`, `run`, `score` and `follow`: the check of the diagnosis on withheld causes.
+/// `musclesim blind make`, `run`, `score`, `follow` and `calibrate`: the check of the diagnosis on withheld causes.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
 #include "evaluation/blind/benchmark.h"
+#include "evaluation/blind/calibrate.h"
 #include "evaluation/blind/follow_up.h"
 #include "evaluation/blind/make.h"
 #include "evaluation/blind/page.h"
@@ -157,6 +161,36 @@ Action addScore(CLI::App& command) {
   return [arguments] { return scoreCases(*arguments); };
 }
 
+struct CalibrateArguments {
+  std::vector<std::string> keys_and_answers;
+};
+
+int calibrateWeights(const CalibrateArguments& arguments) {
+  if (arguments.keys_and_answers.size() % 2 != 0) throw BadParameter("calibrate", "an odd number of places", "name pairs: KEYS.json ANSWERS");
+  std::vector<blind::TriedCase> cases;
+  for (std::size_t i = 0; i < arguments.keys_and_answers.size(); i += 2)
+    std::ranges::move(blind::triedCases(arguments.keys_and_answers[i], arguments.keys_and_answers[i + 1]), std::back_inserter(cases));
+  const blind::Calibration result = blind::calibrate(cases);
+  fmt::print("{:<22} {:>8} {:>8}\n", "weight (nats)", "in force", "fitted");
+  const std::vector<std::string> names = blind::weightNames();
+  for (std::size_t i = 0; i < names.size(); ++i)
+    fmt::print("{:<22} {:>8.3f} {:>8.3f}\n", names[i], result.before[static_cast<Eigen::Index>(i)], result.after[static_cast<Eigen::Index>(i)]);
+  fmt::print("mean ln(probability of the truth): {:.3f}; fitted to four fifths and asked of the fifth: {:.3f}\n", result.mean_ln_before,
+             result.mean_ln_after);
+  fmt::print("truth first: {} and {} of {}\nused: {}\nnot used (the truth was not tried, or is unknown): {}\n", result.first_before,
+             result.first_after, result.used.size(), fmt::join(result.used, ", "), fmt::join(result.unused, ", "));
+  return done;
+}
+
+Action addCalibrate(CLI::App& command) {
+  auto arguments = std::make_shared<CalibrateArguments>();
+  command
+      .add_option("cases", arguments->keys_and_answers,
+                  "Pairs of a file of open keys and the folder of the answers (NAME.json): KEYS.json ANSWERS [KEYS.json ANSWERS ...]")
+      ->required();
+  return [arguments] { return calibrateWeights(*arguments); };
+}
+
 }  // namespace
 
 Action addBlind(CLI::App& command) {
@@ -170,7 +204,10 @@ Action addBlind(CLI::App& command) {
   CLI::App* follow = command.add_subcommand(
       "follow", "Follows up the answers: diagnoses without the true effect, makes the proposed experiment, predicts a fresh recording");
   const Action follow_action = addFollow(*follow);
-  return [=] { return make->parsed() ? make_action() : run->parsed() ? run_action() : score->parsed() ? score_action() : follow_action(); };
+  CLI::App* calibrate = command.add_subcommand(
+      "calibrate", "Fits the weights of the evidence to answers whose keys are open, and says which cases it used");
+  const Action calibrate_action = addCalibrate(*calibrate);
+  return [=] { return calibrate->parsed() ? calibrate_action() : make->parsed() ? make_action() : run->parsed() ? run_action() : score->parsed() ? score_action() : follow_action(); };
 }
 
 }  // namespace musclesim::program

@@ -22,7 +22,9 @@ struct KnownCause {
 
 std::vector<KnownCause> knownCausesIn(const json& key) {
   std::vector<KnownCause> causes;
-  const json &acceptable = key.at("acceptable"), &effects = key.at("effects");
+  const json& effects = key.at("effects");
+  json acceptable = key.at("acceptable");
+  if (!acceptable.empty() && acceptable.front().is_string()) acceptable = json::array({acceptable});  // of the only cause
   for (std::size_t i = 0; i < acceptable.size(); ++i)
     causes.push_back({acceptable[i].get<Labels>(), effects.at(i).value("demanded", true)});
   return causes;
@@ -108,6 +110,11 @@ SetJudgement judgeSet(const json& key, const json& answer) {
   judgeRemainder(j, key, answer);
   if (answer.value("verdict", "") != "failed") j.inclusion = inclusionClaims(causes, answer);
   return j;
+}
+
+bool isWholeTruth(const json& key, const std::vector<std::string>& effects) {
+  const std::string kind = key.value("kind", "");
+  return kind != "open" && kind != "mixed" && isFull(knownCausesIn(key), effects);
 }
 
 }  // namespace musclesim::blind

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "statistics.h"
@@ -29,5 +30,8 @@ struct SetJudgement {
 
 /// Key and answer as for judge(). The verdict "failed" finds nothing.
 SetJudgement judgeSet(const nlohmann::json& key, const nlohmann::json& answer);
+
+/// Whether a set of effects holds every demanded cause of the key or a look-alike, and nothing wrong. Never so with an unknown cause.
+bool isWholeTruth(const nlohmann::json& key, const std::vector<std::string>& effects);
 
 }  // namespace musclesim::blind

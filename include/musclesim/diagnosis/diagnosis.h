@@ -57,7 +57,7 @@ struct FoundEffect {
   std::string id, component;
   double probability = 0;
   std::map<std::string, Estimate> parameters;
-  double reduction_percent = 0;                     ///< reduction of the gap on the held-out data by this effect alone
+  std::optional<double> reduction_percent = {};     ///< reduction of the gap on the held-out data by this effect alone
   std::optional<double> removes_percent = {};       ///< of a chosen effect: what it removes of the gap while the others are present
   std::map<std::string, std::string> choices = {};  ///< parameters that are words, such as the end of a muscle or the side of a wall
   std::string label() const { return id + "@" + component; }
