@@ -175,7 +175,8 @@ namespace {
 
 /// power / 2 ln((s^2 + ms) / (s^2 + sigma^2)) of one tolerance.
 double misfitBeyond(const Tolerance& tolerance, const Comparison::Block& block, double mean_square) {
-  const double left = tolerance.share_of_gap * block.gap, noise_square = block.sigma * block.sigma, scale_square = noise_square + left * left;
+  const double left = tolerance.share_of_gap * block.gap, noise_square = block.sigma * block.sigma,
+               scale_square = noise_square + left * left;
   return 0.5 * block.power * std::log((scale_square + mean_square) / (scale_square + noise_square));
 }
 

@@ -97,6 +97,7 @@ class Comparison {
   double scale() const;
   /// The normalised gap and its parts per signal.
   Gap gap(const Eigen::VectorXd& residual) const;
+
  private:
   void addAverages();
   void shareEvidence();

@@ -174,9 +174,8 @@ class Run {
       diagnosis_.notes.push_back(fmt::format("of {} possible causes the {} nearest on the first recording were looked at on the others too",
                                              search_.hypotheses().size(), search_.catalogue().screened_count));
     if (plant_.interrupted()) return;
-    const FaultIsolation isolation =
-        isolateFault(search_.fitComparison(), search_.nominalResidual(), search_.screeningComparison(), search_.hypotheses(),
-                     search_.catalogue().sensitivities);
+    const FaultIsolation isolation = isolateFault(search_.fitComparison(), search_.nominalResidual(), search_.screeningComparison(),
+                                                  search_.hypotheses(), search_.catalogue().sensitivities);
     diagnosis_.where = isolation.places;
     diagnosis_.where_method = isolation.method;
     monitor_.phase("fitting the likely effects", 600);
@@ -210,9 +209,8 @@ class Run {
     const Eigen::VectorXd after = held_out_.measured() - predicted;
     measureControls(static_cast<int>(best.z.size()));
     if (plant_.interrupted()) return;
-    const Estimate interval =
-        gapReductionInterval({held_out_, before_residual_, after},
-                             {search_.fitComparison(), search_.nominalResidual(), best.residual}, options_.seed);
+    const Estimate interval = gapReductionInterval({held_out_, before_residual_, after},
+                                                   {search_.fitComparison(), search_.nominalResidual(), best.residual}, options_.seed);
     const Gap gap_after = held_out_.gap(after);
     const Attempt attempt{labelsOf(model), model.effects, gap_after, reductionOf(gap_after), interval.low, interval.high};
     // What they remove on unseen data bounds the probability that none of these effects acts.
@@ -265,12 +263,12 @@ class Run {
   /// What each chosen effect removes while the others are present.
   std::map<std::string, double> shares() const {
     std::map<std::string, double> result;
-    for (const ActiveEffect& effect : diagnosis_.chosen_effects) {
-      Model without = search_.modelOf(search_.explanations().front());
-      const std::string label = effect.id + "@" + effect.component;
-      std::erase_if(without.effects, [&](const ActiveEffect& other) { return other.id + "@" + other.component == label; });
-      const Eigen::VectorXd predicted = held_out_.predicted(without);
-      if (predicted.size()) result[label] = diagnosis_.reduction_percent - reductionOf(held_out_.gap(held_out_.measured() - predicted));
+    if (diagnosis_.chosen.empty()) return result;
+    const Explanation& chosen = search_.explanations().front();
+    for (std::size_t m = 0; m < chosen.members.size(); ++m) {
+      const Eigen::VectorXd predicted = held_out_.predicted(search_.modelOf(search_.causes().without(chosen, m)));
+      if (!predicted.size()) continue;
+      result[labelOf(chosen.members[m])] = diagnosis_.reduction_percent - reductionOf(held_out_.gap(held_out_.measured() - predicted));
     }
     return result;
   }
@@ -287,7 +285,9 @@ class Run {
       if (const double in_sigmas = overNoise(gap); in_sigmas > remainder.in_sigmas) {
         remainder.in_sigmas = in_sigmas;
         remainder.signal = signal;
-        remainder.stage = nameOf(signal.starts_with("pressure_") ? Stage::pressure : signal.starts_with("force_") ? Stage::force : Stage::body);
+        remainder.stage = nameOf(signal.starts_with("pressure_") ? Stage::pressure
+                                 : signal.starts_with("force_")  ? Stage::force
+                                                                 : Stage::body);
       }
     remainder.shape = shapeOfRest(diagnosis_, remainder.signal);
     if (const std::string phase = phaseOf(held_out_, after_residual_); !phase.empty())

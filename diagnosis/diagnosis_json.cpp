@@ -31,10 +31,7 @@ Json toJson(const FoundEffect& effect) {
     parameters[name] = {{"value", toJson(estimate.value)}, {"ci95", {toJson(estimate.low), toJson(estimate.high)}}};
     if (!estimate.is_determined) parameters[name]["determined"] = false;
   }
-  Json json = {{"id", effect.id},
-               {"component", effect.component},
-               {"probability", effect.probability},
-               {"parameters", parameters}};
+  Json json = {{"id", effect.id}, {"component", effect.component}, {"probability", effect.probability}, {"parameters", parameters}};
   if (effect.reduction_percent) json["shrink_percent"] = *effect.reduction_percent;
   if (effect.removes_percent) json["removes_percent"] = *effect.removes_percent;
   if (!effect.choices.empty()) json["choices"] = effect.choices;
@@ -66,11 +63,11 @@ void addInterval(Json& json, double low, double high) {
 
 Json gapJson(const Diagnosis& d) {
   Json json = {{"before", toJson(d.before)},
-          {"after", toJson(d.after)},
-          {"shrink_percent", d.reduction_percent},
-          {"held_out", true},
-          {"nominal_refit_shrink_percent", d.nominal_refit_percent},
-          {"sham_shrink_percent", d.negative_control_percent}};
+               {"after", toJson(d.after)},
+               {"shrink_percent", d.reduction_percent},
+               {"held_out", true},
+               {"nominal_refit_shrink_percent", d.nominal_refit_percent},
+               {"sham_shrink_percent", d.negative_control_percent}};
   addInterval(json, d.reduction_low_percent, d.reduction_high_percent);
   return json;
 }
@@ -140,8 +137,7 @@ std::string diagnosisJson(const Diagnosis& d, const std::string& schedule_file) 
   json["ambiguity_sets"] = d.ambiguity_sets;
   json["gap"] = gapJson(d);
   if (!d.attempt.effects.empty()) {
-    json["attempt"] = {
-        {"effects", d.attempt.effects}, {"after", toJson(d.attempt.after)}, {"shrink_percent", d.attempt.reduction_percent}};
+    json["attempt"] = {{"effects", d.attempt.effects}, {"after", toJson(d.attempt.after)}, {"shrink_percent", d.attempt.reduction_percent}};
     addInterval(json["attempt"], d.attempt.reduction_low_percent, d.attempt.reduction_high_percent);
   }
   if (d.remainder.in_sigmas > 0) json["remainder"] = toJson(d.remainder);

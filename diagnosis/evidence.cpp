@@ -32,11 +32,12 @@ Part partOf(const Hypothesis& hypothesis) {
 /// Whether a member shares its place with an earlier one: the same muscle, the same signal, or both the body.
 bool Evidence::actsWhereOthersDo(const Explanation& explanation, std::size_t member) const {
   const Hypothesis& one = causes_.hypotheses[explanation.members[member]];
-  return std::any_of(explanation.members.begin(), explanation.members.begin() + static_cast<std::ptrdiff_t>(member), [&](std::size_t index) {
-    const Hypothesis& other = causes_.hypotheses[index];
-    const Part part = partOf(one);
-    return part == partOf(other) && (part == Part::body || overlap(one.component(), other.component()));
-  });
+  return std::any_of(explanation.members.begin(), explanation.members.begin() + static_cast<std::ptrdiff_t>(member),
+                     [&](std::size_t index) {
+                       const Hypothesis& other = causes_.hypotheses[index];
+                       const Part part = partOf(one);
+                       return part == partOf(other) && (part == Part::body || overlap(one.component(), other.component()));
+                     });
 }
 
 Complexity Evidence::complexityOf(const Explanation& explanation) const {

@@ -30,14 +30,24 @@ std::set<std::string> Causes::labelsOf(const std::vector<std::size_t>& members) 
 }
 
 bool Causes::clash(std::size_t one, std::size_t other) const {
-  return hypotheses[one].info().id == hypotheses[other].info().id &&
-         overlap(hypotheses[one].component(), hypotheses[other].component());
+  return hypotheses[one].info().id == hypotheses[other].info().id && overlap(hypotheses[one].component(), hypotheses[other].component());
 }
 
 Eigen::Index Causes::firstCoordinate(const Explanation& explanation, std::size_t member) const {
   Eigen::Index first = 0;
   for (std::size_t i = 0; i < member; ++i) first += hypotheses[explanation.members[i]].coordinateCount();
   return first;
+}
+
+Explanation Causes::without(const Explanation& explanation, std::size_t member) const {
+  const Eigen::Index first = firstCoordinate(explanation, member), count = hypotheses[explanation.members[member]].coordinateCount();
+  Explanation result;
+  result.members = explanation.members;
+  result.members.erase(result.members.begin() + static_cast<std::ptrdiff_t>(member));
+  result.z.resize(explanation.z.size() - count);
+  result.z << explanation.z.head(first), explanation.z.tail(explanation.z.size() - first - count);
+  result.numbers = explanation.numbers;
+  return result;
 }
 
 Eigen::VectorXd Causes::clamped(const std::vector<std::size_t>& members, const Eigen::VectorXd& z) const {

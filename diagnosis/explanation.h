@@ -14,9 +14,9 @@
 namespace musclesim {
 
 struct Explanation {
-  std::vector<std::size_t> members;  ///< indices of hypotheses; empty: no effect
-  Eigen::VectorXd z;                 ///< coordinates of all members, one after the other
-  Eigen::VectorXd numbers;           ///< coordinates of the uncertain numbers (Plant::numbersAt)
+  std::vector<std::size_t> members;                ///< indices of hypotheses; empty: no effect
+  Eigen::VectorXd z;                               ///< coordinates of all members, one after the other
+  Eigen::VectorXd numbers;                         ///< coordinates of the uncertain numbers (Plant::numbersAt)
   Eigen::VectorXd half_width, numbers_half_width;  ///< of their 95 % intervals
   Eigen::VectorXd residual;                        ///< on the comparison that it was fitted to last
   Eigen::MatrixXd jacobian;                        ///< of the prediction there, by z and then numbers
@@ -40,6 +40,8 @@ class Causes {
   bool clash(std::size_t one, std::size_t other) const;
   /// Index of the first coordinate of a member.
   Eigen::Index firstCoordinate(const Explanation& explanation, std::size_t member) const;
+  /// The explanation without one of its members, the others unchanged.
+  Explanation without(const Explanation& explanation, std::size_t member) const;
   Eigen::VectorXd clamped(const std::vector<std::size_t>& members, const Eigen::VectorXd& z) const;
   /// The fit of all coordinates and numbers to a comparison. References must outlive the problem.
   FitProblem problemOf(const Explanation& explanation, const Comparison& comparison, Fidelity fidelity) const;

@@ -42,8 +42,7 @@ StageWeights byLikeness(const Comparison& comparison, const std::vector<Hypothes
     if (isSensorOf(hypotheses[i], acquitted)) continue;
     double& misfit = best[indexOf(hypotheses[i].info().stage)];
     const double further = std::max(0.0, static_cast<double>(hypotheses[i].strengths().size()) - 1);
-    misfit =
-        std::min(misfit, sensitivities[i].misfit / comparison.scale() + per_further_strength / per_misfit * further);
+    misfit = std::min(misfit, sensitivities[i].misfit / comparison.scale() + per_further_strength / per_misfit * further);
   }
   const double least = *std::ranges::min_element(best);
   StageWeights weights{};

@@ -14,7 +14,7 @@ class LinearModel {
   struct Column {
     Eigen::VectorXd change;
     double least, most;
-    double precision;   ///< of a normal prior of start + amount about 0
+    double precision;  ///< of a normal prior of start + amount about 0
     double start = 0;
   };
   struct Solution {

@@ -23,9 +23,9 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nats_per_misfit = 24;  ///< of all recordings together, per mean log misfit
-constexpr double scatter = 4;      ///< noise sigmas by which readings scatter
-constexpr double worth_it = 2e-4;  ///< least probability of distinguishing the rivals for a schedule to be proposed
-constexpr double apart = 0.5;      ///< least difference, in noise sigmas, of rivals that a schedule is said to separate
+constexpr double scatter = 4;           ///< noise sigmas by which readings scatter
+constexpr double worth_it = 2e-4;       ///< least probability of distinguishing the rivals for a schedule to be proposed
+constexpr double apart = 0.5;           ///< least difference, in noise sigmas, of rivals that a schedule is said to separate
 
 /// An interval of a signal's values; initially empty.
 struct Span {

@@ -26,7 +26,7 @@ struct FitProblem {
 
 struct FitResult {
   Eigen::VectorXd z;
-  Eigen::VectorXd residual;  ///< measured - predicted; empty if no prediction could be made
+  Eigen::VectorXd residual;    ///< measured - predicted; empty if no prediction could be made
   double cost = 0;             ///< misfit + sum of precision z^2 / 2, in nats
   Eigen::VectorXd half_width;  ///< half of the 95 % interval of every coordinate; infinite: not determined
   Eigen::MatrixXd jacobian;    ///< d(prediction)/dz at z, as far as the fit knows it
@@ -39,11 +39,11 @@ Eigen::MatrixXd derivatives(const Comparison& comparison, const FitProblem& prob
 /// The step of one coordinate that derivatives() tries first, within the bounds; 0 between two bounds.
 double stepOf(const FitProblem& problem, const Eigen::VectorXd& z, Eigen::Index coordinate);
 
-/// Minimises the misfit (Comparison) plus the prior's cost with Levenberg and Marquardt's method (Marquardt 1963) on residuals that are reweighted in every round.
-/// The response may have kinks, so the differences for derivatives are not small. Because simulations dominate the cost, derivatives are
-/// recomputed only when a step gains nothing; otherwise rank-one updates carry them on (Broyden 1965). The intervals are those of the
-/// linearised problem with the residual's own variance, widened by the number of samples over the effective number of samples (from the
-/// residual's autocorrelation).
+/// Minimises the misfit (Comparison) plus the prior's cost with Levenberg and Marquardt's method (Marquardt 1963) on residuals that are
+/// reweighted in every round. The response may have kinks, so the differences for derivatives are not small. Because simulations dominate
+/// the cost, derivatives are recomputed only when a step gains nothing; otherwise rank-one updates carry them on (Broyden 1965). The
+/// intervals are those of the linearised problem with the residual's own variance, widened by the number of samples over the effective
+/// number of samples (from the residual's autocorrelation).
 FitResult fit(const Comparison& comparison, const FitProblem& problem, int round_count);
 
 /// Two-fidelity fit: minimises the misfit of the cheap prediction plus the exact-minus-cheap difference at the start, predicts the result

@@ -134,10 +134,11 @@ std::string which(const Diagnosis& d) {
                         effect.removes_percent ? percentWords(*effect.removes_percent) : "");
   rows += fmt::format("<tr><td>none of these</td><td class=number>{}</td><td></td><td></td><td></td></tr>\n",
                       probabilityWords(d.none_of_these));
-  std::string text = heading("Which") + sliding(
-                                            "<table><tr><th>effect</th><th class=number>probability</th><th>parameters (95 % "
-                                            "interval)</th><th class=number>removes alone</th><th class=number>removes beside the others</th></tr>\n" +
-                                            rows + "</table>");
+  std::string text =
+      heading("Which") + sliding(
+                             "<table><tr><th>effect</th><th class=number>probability</th><th>parameters (95 % "
+                             "interval)</th><th class=number>removes alone</th><th class=number>removes beside the others</th></tr>\n" +
+                             rows + "</table>");
   if (!d.effects.empty())
     text += small(
         "The probability of an effect is the sum over all explanations that contain it, so effects that act together can all be probable." +

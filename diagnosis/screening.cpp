@@ -7,8 +7,8 @@
 #include <set>
 
 #include "../base/parallel.h"
-#include "search.h"
 #include "musclesim/base/error.h"
+#include "search.h"
 
 namespace musclesim {
 
@@ -49,8 +49,7 @@ void Search::keepNearestVariants(const Comparison& comparison, std::size_t kept,
     const std::size_t index = tried[static_cast<std::size_t>(i)];
     if (plant_.interrupted()) return;
     const Eigen::VectorXd predicted = comparison.predicted(Model{{all[index].at({})}, {}});
-    misfit[index] =
-        predicted.size() ? comparison.misfit(comparison.measured() - predicted) : std::numeric_limits<double>::infinity();
+    misfit[index] = predicted.size() ? comparison.misfit(comparison.measured() - predicted) : std::numeric_limits<double>::infinity();
     on_simulation_();
   });
   std::set<std::size_t> dropped;
@@ -95,8 +94,7 @@ void Search::screenHypotheses(const Eigen::VectorXd& nominal) {
   const std::vector<std::size_t> chosen = worthScreening();
   std::vector<Hypothesis> hypotheses;
   for (const std::size_t i : chosen) hypotheses.push_back(causes_.hypotheses[i]);
-  std::vector<Sensitivity> sensitivities =
-      sensitivitiesOf(screening_, hypotheses, nominal, Model{}, options_.job_count, on_simulation_);
+  std::vector<Sensitivity> sensitivities = sensitivitiesOf(screening_, hypotheses, nominal, Model{}, options_.job_count, on_simulation_);
   for (const Hypothesis& hypothesis : causes_.hypotheses) {
     Sensitivity unknown;
     unknown.per_strength.resize(std::max<std::size_t>(1, hypothesis.strengths().size()));

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -18,10 +19,10 @@ namespace musclesim {
 
 /// The catalogue's hypotheses on this plant with their sensitivities on the screening segments.
 struct ScreenedCatalogue {
-  std::vector<char> allowed;        ///< per hypothesis: it may be an answer
-  std::set<std::string> thinned;    ///< labels of hypotheses that lost some of their variants
+  std::vector<char> allowed;               ///< per hypothesis: it may be an answer
+  std::set<std::string> thinned;           ///< labels of hypotheses that lost some of their variants
   std::vector<Sensitivity> sensitivities;  ///< per hypothesis; without changes if it was not screened on all segments
-  std::size_t screened_count = 0;   ///< hypotheses that were screened on all screening segments
+  std::size_t screened_count = 0;          ///< hypotheses that were screened on all screening segments
 };
 
 class Search {
@@ -57,19 +58,18 @@ class Search {
   /// A set whose fit has not begun, and the linear estimate of what it will cost.
   struct Proposal {
     Explanation start;
-    double cost;                                ///< in nats, price included
-    std::vector<Eigen::VectorXd> known = {};    ///< FitProblem::known_derivatives
+    double cost;                              ///< in nats, price included
+    std::vector<Eigen::VectorXd> known = {};  ///< FitProblem::known_derivatives
   };
-  /// A linear model about one explanation and the meaning of its columns.
+  /// A linear model about one explanation, and the meaning of its columns.
   struct Surroundings {
     Explanation base;
-    LinearModel model;
+    std::optional<LinearModel> model;
     std::vector<std::vector<std::size_t>> of_hypothesis;  ///< columns of each hypothesis' strengths; empty: it cannot be added
     std::vector<std::vector<std::size_t>> of_member;      ///< columns of each member's coordinates
-    std::vector<std::size_t> removal_of_member;           ///< column of a member's removal
-    std::vector<std::size_t> of_numbers;
+    std::vector<std::size_t> removal_of_member, of_numbers;
+    std::vector<Eigen::VectorXd> derivatives;  ///< by the base's coordinates and the numbers
     std::vector<Sensitivity> sensitivities;
-    std::vector<Eigen::VectorXd> derivatives;             ///< by the base's coordinates and the numbers
   };
 
   // screening.cpp
@@ -81,32 +81,38 @@ class Search {
   void screenHypotheses(const Eigen::VectorXd& nominal);
   void checkExcitation(const std::vector<Hypothesis>& typical);
 
-  // search.cpp
+  // surroundings.cpp
   Surroundings surroundingsOf(const Explanation& base) const;
+  void addOwnColumns(Surroundings& around, std::vector<LinearModel::Column>& columns) const;
+  void addOtherColumns(Surroundings& around, std::vector<LinearModel::Column>& columns) const;
   std::vector<std::size_t> worthAdding(const Explanation& base) const;
-  void changesBeside(const Explanation& base, const Eigen::VectorXd& predicted, std::vector<Sensitivity>& sensitivities) const;
+  std::vector<Sensitivity> changesBeside(const Explanation& base) const;
   Proposal proposed(const Surroundings& around, const std::vector<std::size_t>& kept, const std::vector<std::size_t>& added) const;
+
+  // search.cpp
+  bool isKnown(const std::vector<std::size_t>& members) const;
+  bool fitsBeside(std::size_t hypothesis, const std::vector<std::size_t>& members) const;
+  std::vector<Proposal> nearest(std::vector<Proposal> proposals, std::size_t count, int most_variants = 1) const;
   std::vector<Proposal> singleEffects(const Surroundings& around) const;
   std::vector<Proposal> largerSets(const Surroundings& around) const;
   std::vector<Proposal> additions(const Surroundings& around) const;
   std::vector<Proposal> swaps(const Surroundings& around) const;
   std::vector<Proposal> drops(const Surroundings& around) const;
-  std::vector<Proposal> nearest(std::vector<Proposal> proposals, std::size_t count, int most_variants = 1) const;
-  bool isKnown(const std::vector<std::size_t>& members) const;
-  bool fitsBeside(std::size_t hypothesis, const std::vector<std::size_t>& members) const;
   void fitOnScreening(std::vector<Proposal> proposals);
   void expand(const Explanation& base);
   std::vector<std::size_t> bestOnScreening(std::size_t member_count, std::size_t count) const;
-  bool isDominated(const Explanation& explanation) const;
   Explanation earlierFinding() const;
-  std::vector<Explanation> otherVariants(const Explanation& explanation) const;
+  Evidence screeningEvidence() const { return {screening_, screening_residual_, causes_}; }
+
+  // finalists.cpp
   void fitFinalists();
-  void tryVariants();
+  bool isDominated(const Explanation& explanation) const;
   void fitToAll(Explanation& explanation) const;
   void takeFromCounterparts(Explanation& explanation) const;
   bool hasInactiveEffect(const Explanation& explanation) const;
+  std::vector<Explanation> otherVariants(const Explanation& explanation) const;
+  void tryVariants();
   void weigh();
-  Evidence screeningEvidence() const { return {screening_, screening_residual_, causes_}; }
 
   const Plant& plant_;
   const DiagnosisOptions& options_;

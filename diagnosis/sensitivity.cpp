@@ -12,9 +12,9 @@ namespace musclesim {
 
 namespace {
 
-constexpr double strong = 4;          ///< typical strengths at which a strength without response is tried again
-constexpr double nothing = 0.1;       ///< noise sigmas
-constexpr double late = 3;            ///< typical strengths at which delays and time constants are tried again
+constexpr double strong = 4;     ///< typical strengths at which a strength without response is tried again
+constexpr double nothing = 0.1;  ///< noise sigmas
+constexpr double late = 3;       ///< typical strengths at which delays and time constants are tried again
 
 /// A simulation whose result gives columns of one or more hypotheses.
 struct Probe {
@@ -395,6 +395,14 @@ std::vector<Sensitivity> sensitivitiesOf(const Comparison& comparison, std::vect
   }
   adaptOnlyStrengths([](std::size_t) { return true; }, [](OnlyStrength& it) { it.relinearise(); });
   return result;
+}
+
+Eigen::VectorXd startOf(const Hypothesis& hypothesis, const Sensitivity& sensitivity, const std::vector<double>& amounts) {
+  constexpr double least = 0.05;
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(hypothesis.coordinateCount());
+  for (std::size_t k = 0; k < hypothesis.strengths().size(); ++k)
+    z[hypothesis.strengths()[k]] = sensitivity.from_threshold ? 1 : std::abs(amounts[k]) < least ? least : amounts[k];
+  return z;
 }
 
 }  // namespace musclesim

@@ -19,7 +19,7 @@ struct Sensitivity {
   std::vector<Eigen::VectorXd> per_strength;
   Eigen::VectorXd amount;       ///< multiple of each strength that removes most
   bool from_threshold = false;  ///< z = 1 was set at the threshold of the effect, below which it may do nothing
-  double misfit = 0;        ///< log misfit of the remaining residual
+  double misfit = 0;            ///< log misfit of the remaining residual
   /// Largest RMS over sigma, in any residual block, of the change at typical strengths; empty if not all of them could be simulated.
   std::optional<double> excitation_ratio;
 };
@@ -47,5 +47,9 @@ double excitationRatio(const Comparison& comparison, const std::vector<Eigen::Ve
 /// Fits the amounts of a sensitivity to a residual by least squares, reweighted three times; amounts of unsigned strengths stay positive.
 /// Sets amount and misfit.
 void fitLinearly(const Comparison& comparison, const Hypothesis& hypothesis, const Eigen::VectorXd& residual, Sensitivity& sensitivity);
+
+/// Where a fit begins: at these amounts of the strengths, at the threshold if that is what the sensitivity was taken at; a vanishing
+/// strength would have no derivative by its shape.
+Eigen::VectorXd startOf(const Hypothesis& hypothesis, const Sensitivity& sensitivity, const std::vector<double>& amounts);
 
 }  // namespace musclesim

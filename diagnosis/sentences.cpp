@@ -213,8 +213,8 @@ std::string remainder(const Diagnosis& d, const Gap& after) {
   const std::string where =
       most == after.per_signal.end() ? "" : fmt::format(" ({:.1f} times in {})", overNoise(most->second), most->first);
   const bool together = d.chosen.size() > 1 || d.attempt.effects.size() > 1;
-  return fmt::format("The residual is still {:.1f} times the noise{}{}: another effect acts as well, or {} follows another law.", over_noise,
-                     where, d.remainder.shape.empty() ? "" : ", " + d.remainder.shape, together ? "one of these" : "this one");
+  return fmt::format("The residual is still {:.1f} times the noise{}{}: another effect acts as well, or {} follows another law.",
+                     over_noise, where, d.remainder.shape.empty() ? "" : ", " + d.remainder.shape, together ? "one of these" : "this one");
 }
 
 /// The numbers of the model that are off by more than their tolerance lets expect.
@@ -350,7 +350,10 @@ std::vector<std::string> foundSentences(const Diagnosis& d) {
           fmt::format("The best explanation ({} likely) is {}; adding {} to the model removes {}{} of the gap on held-out data.",
                       probabilityWords(best == d.explanations.end() ? 0 : best->probability), chosenWords(d),
                       d.chosen.size() > 1 ? "them" : "it", percentWords(d.reduction_percent), intervalWords(d)),
-          remainder(d, d.after), numbersWords(d), noneWords(d), otherwise(d)};
+          remainder(d, d.after),
+          numbersWords(d),
+          noneWords(d),
+          otherwise(d)};
 }
 
 }  // namespace
@@ -360,7 +363,8 @@ std::vector<std::string> verdictSentences(const Diagnosis& d) {
   switch (d.verdict) {
     case Verdict::no_gap:
       if (d.numbers.empty()) return {"No gap: the recordings agree with the model up to the noise."};
-      sentences = {"No gap that needs an effect: within the tolerances of its numbers the model agrees with the recordings.", numbersWords(d)};
+      sentences = {"No gap that needs an effect: within the tolerances of its numbers the model agrees with the recordings.",
+                   numbersWords(d)};
       break;
     case Verdict::not_excited:
       return {"I cannot tell: the commands do not change, so the recordings do not show how the plant responds."};

@@ -52,8 +52,8 @@ std::vector<TunedParameter> tunedParameters(const Plant& plant, const Eigen::Vec
   for (Eigen::Index i = 0; i < eta.size(); ++i) {
     const UncertainNumber& number = plant.numbers()[static_cast<std::size_t>(i)];
     if (!number.is_tuned) continue;
-    const Estimate fitted = {plant.numberAt(i, eta[i]), plant.numberAt(i, eta[i] - half_width[i]), plant.numberAt(i, eta[i] + half_width[i]),
-                             std::isfinite(half_width[i])};
+    const Estimate fitted = {plant.numberAt(i, eta[i]), plant.numberAt(i, eta[i] - half_width[i]),
+                             plant.numberAt(i, eta[i] + half_width[i]), std::isfinite(half_width[i])};
     result.push_back({number.parameter.name, number.parameter.unit, std::get<double>(number.parameter.value), fitted, fitted});
   }
   return result;

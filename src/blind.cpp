@@ -166,7 +166,8 @@ struct CalibrateArguments {
 };
 
 int calibrateWeights(const CalibrateArguments& arguments) {
-  if (arguments.keys_and_answers.size() % 2 != 0) throw BadParameter("calibrate", "an odd number of places", "name pairs: KEYS.json ANSWERS");
+  if (arguments.keys_and_answers.size() % 2 != 0)
+    throw BadParameter("calibrate", "an odd number of places", "name pairs: KEYS.json ANSWERS");
   std::vector<blind::TriedCase> cases;
   for (std::size_t i = 0; i < arguments.keys_and_answers.size(); i += 2)
     std::ranges::move(blind::triedCases(arguments.keys_and_answers[i], arguments.keys_and_answers[i + 1]), std::back_inserter(cases));
@@ -174,7 +175,8 @@ int calibrateWeights(const CalibrateArguments& arguments) {
   fmt::print("{:<22} {:>8} {:>8}\n", "weight (nats)", "in force", "fitted");
   const std::vector<std::string> names = blind::weightNames();
   for (std::size_t i = 0; i < names.size(); ++i)
-    fmt::print("{:<22} {:>8.3f} {:>8.3f}\n", names[i], result.before[static_cast<Eigen::Index>(i)], result.after[static_cast<Eigen::Index>(i)]);
+    fmt::print("{:<22} {:>8.3f} {:>8.3f}\n", names[i], result.before[static_cast<Eigen::Index>(i)],
+               result.after[static_cast<Eigen::Index>(i)]);
   fmt::print("mean ln(probability of the truth): {:.3f}; fitted to four fifths and asked of the fifth: {:.3f}\n", result.mean_ln_before,
              result.mean_ln_after);
   fmt::print("truth first: {} and {} of {}\nused: {}\nnot used (the truth was not tried, or is unknown): {}\n", result.first_before,
@@ -204,10 +206,16 @@ Action addBlind(CLI::App& command) {
   CLI::App* follow = command.add_subcommand(
       "follow", "Follows up the answers: diagnoses without the true effect, makes the proposed experiment, predicts a fresh recording");
   const Action follow_action = addFollow(*follow);
-  CLI::App* calibrate = command.add_subcommand(
-      "calibrate", "Fits the weights of the evidence to answers whose keys are open, and says which cases it used");
+  CLI::App* calibrate =
+      command.add_subcommand("calibrate", "Fits the weights of the evidence to answers whose keys are open, and says which cases it used");
   const Action calibrate_action = addCalibrate(*calibrate);
-  return [=] { return calibrate->parsed() ? calibrate_action() : make->parsed() ? make_action() : run->parsed() ? run_action() : score->parsed() ? score_action() : follow_action(); };
+  return [=] {
+    return calibrate->parsed() ? calibrate_action()
+           : make->parsed()    ? make_action()
+           : run->parsed()     ? run_action()
+           : score->parsed()   ? score_action()
+                               : follow_action();
+  };
 }
 
 }  // namespace musclesim::program

@@ -158,16 +158,14 @@ Action addDiagnose(CLI::App& command, ModelOptions& model) {
   addList(command, "--exclude", arguments->exclude, "Consider all effects except these, by id, separated by commas");
   addList(command, "--tune", arguments->tune,
           "Fit these unmeasured parameters of the model first, by name, separated by commas; written to nominal.toml");
-  command
-      .add_option("--max-effects", arguments->max_effects,
-                  "Largest number of effects that act together (default 4)")
+  command.add_option("--max-effects", arguments->max_effects, "Largest number of effects that act together (default 4)")
       ->check(CLI::Range(1, 6));
   command.add_option("--fixed-effects", arguments->fixed_effects, "JSON file with effects of the model that are not fitted");
   addList(command, "--ignore-columns", arguments->ignore_columns, "Columns to skip, separated by commas");
   addModelOptions(command, model);
   command.remove_option(command.get_option("--json"));
-  command.get_option("--effects")->description(
-      "JSON file with an earlier finding: its effects are fitted anew, and kept if they are still believed");
+  command.get_option("--effects")
+      ->description("JSON file with an earlier finding: its effects are fitted anew, and kept if they are still believed");
   command.add_option("--json", arguments->json, "Write a copy of diagnosis.json to FILE");
   return [&model, arguments] { return diagnoseCommand(model, *arguments); };
 }

@@ -19,9 +19,9 @@ struct TriedCase {
 };
 
 struct Calibration {
-  Eigen::VectorXd before, after;  ///< weights in nats: of the misfits, then of the complexity
-  double mean_ln_before = 0;      ///< mean over cases of ln(probability of the right explanations)
-  double mean_ln_after = 0;       ///< the same, each fifth of the cases with weights fitted to the others
+  Eigen::VectorXd before, after;          ///< weights in nats: of the misfits, then of the complexity
+  double mean_ln_before = 0;              ///< mean over cases of ln(probability of the right explanations)
+  double mean_ln_after = 0;               ///< the same, each fifth of the cases with weights fitted to the others
   int first_before = 0, first_after = 0;  ///< cases whose likeliest explanation is right
   std::vector<std::string> used;
   std::vector<std::string> unused;  ///< cases in which no explanation that was tried is right, or that have an unknown cause

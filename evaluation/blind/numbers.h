@@ -7,14 +7,7 @@
 #include "musclesim/base/random.h"
 #include "musclesim/log/recording.h"
 
-namespace musclesim {
-class Robot;
-}
-
 namespace musclesim::blind {
-
-/// What is known of a robot's numbers: relative standard deviation by the parameter's full name.
-std::map<std::string, double> tolerancesOf(const Robot& robot);
 
 /// The numbers of one plant and of the model that a diagnosis compares it with, by full name.
 struct NumberErrors {
@@ -22,7 +15,7 @@ struct NumberErrors {
   std::map<std::string, double> nominal, truth;
 };
 
-/// Draws truth = nominal exp(scale s z) for each number with a tolerance s, z normal; a number stays within its allowed range. 70 % of the
+/// Draws truth = nominal exp(scale s z) for each number with a tolerance s (Robot::parameterTolerances), z normal; a number stays within its allowed range. 70 % of the
 /// plants have the scale 1; 10 % have 2, so that a diagnosis must be honest about more than it expects; 20 % have no errors.
 /// `plan`: names robot and parameters of the model.
 NumberErrors drawNumbers(const Recording& plan, RandomStream& random);

@@ -24,14 +24,14 @@ struct DiagnosisProgress {
 };
 
 struct DiagnosisOptions {
-  ReplayOptions model;                                     ///< the user's model
-  std::vector<std::string> candidates;                     ///< ids of effects to consider; empty: the whole catalogue
-  std::vector<std::string> exclude;                        ///< ids not to consider
-  std::vector<std::string> tune;                           ///< names of parameters of the model that nobody measured; they are fitted first
-  int max_effects = 4;                                     ///< largest number of effects in an explanation, 1..6
-  std::vector<ActiveEffect> earlier;  ///< an earlier finding: a set that the search begins with, fitted anew and kept if it is believed
-  int job_count = 0;                                       ///< threads; 0: one per core. The answer does not depend on it
-  std::uint64_t seed = 1;                                  ///< of the bootstrap and the negative control
+  ReplayOptions model;                  ///< the user's model
+  std::vector<std::string> candidates;  ///< ids of effects to consider; empty: the whole catalogue
+  std::vector<std::string> exclude;     ///< ids not to consider
+  std::vector<std::string> tune;        ///< names of parameters of the model that nobody measured; they are fitted first
+  int max_effects = 4;                  ///< largest number of effects in an explanation, 1..6
+  std::vector<ActiveEffect> earlier;    ///< an earlier finding: a set that the search begins with, fitted anew and kept if it is believed
+  int job_count = 0;                    ///< threads; 0: one per core. The answer does not depend on it
+  std::uint64_t seed = 1;               ///< of the bootstrap and the negative control
   std::function<void(const DiagnosisProgress&)> progress;  ///< called from one thread at a time
   std::function<bool()> interrupted;                       ///< return true to stop soon; the result is then partial
 };
@@ -106,9 +106,9 @@ struct Trial {
   std::vector<std::string> effects;
   int parameter_count = 0;
   std::vector<double> rms;
-  std::vector<double> misfits, complexity;  ///< what its odds are computed from (Evidence), without weights
-  double numbers_cost = 0;                  ///< nats for numbers of the model that are off their value
-  double score = 0;                         ///< ln odds up to a constant
+  std::vector<double> misfits, complexity;            ///< what its odds are computed from (Evidence), without weights
+  double numbers_cost = 0;                            ///< nats for numbers of the model that are off their value
+  double score = 0;                                   ///< ln odds up to a constant
   std::vector<std::map<std::string, double>> values;  ///< parameters of each effect
 };
 

@@ -1,0 +1,156 @@
+// The likely explanations on all recordings: last fits, checks, probabilities.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "../base/parallel.h"
+#include "search.h"
+
+namespace musclesim {
+
+namespace {
+
+constexpr double far_behind = 8;  ///< nats behind the best on the screening segments: not fitted to all recordings
+constexpr std::size_t finalist_count = 10;
+constexpr std::size_t varied_count = 2;  ///< explanations of which other variants are tried
+constexpr int coarse_rounds = 4, fine_rounds = 3;
+
+}  // namespace
+
+/// Whether a part of its effects does clearly better alone.
+bool Search::isDominated(const Explanation& explanation) const {
+  constexpr double clearly = 2;  // nats
+  const std::set<std::string> labels = causes_.labelsOf(explanation.members);
+  return std::ranges::any_of(pool_, [&](const Explanation& other) {
+    return other.members.size() < explanation.members.size() && other.score > explanation.score + clearly &&
+           std::ranges::includes(labels, causes_.labelsOf(other.members));
+  });
+}
+
+/// The same effects with another variant of one of them: the search fits one variant only.
+std::vector<Explanation> Search::otherVariants(const Explanation& explanation) const {
+  std::vector<Explanation> result;
+  const Model model = causes_.modelOf(explanation);
+  for (std::size_t m = 0; m < explanation.members.size(); ++m)
+    for (std::size_t i = 0; i < causes_.hypotheses.size(); ++i) {
+      if (i == explanation.members[m] || causes_.hypotheses[i].label() != causes_.hypotheses[explanation.members[m]].label()) continue;
+      const Eigen::Index first = causes_.firstCoordinate(explanation, m);
+      const Eigen::Index after = first + causes_.hypotheses[explanation.members[m]].coordinateCount();
+      const Eigen::VectorXd own = causes_.hypotheses[i].coordinatesOf(model.effects[m].parameters);
+      Explanation other = explanation;
+      other.members[m] = i;
+      other.z.resize(explanation.z.size() - (after - first) + own.size());
+      other.z << explanation.z.head(first), own, explanation.z.tail(explanation.z.size() - after);
+      other.half_width.resize(0);
+      result.push_back(std::move(other));
+    }
+  return result;
+}
+
+/// Fits the likely explanations, and no effect, to all recordings in fine steps and weighs them.
+void Search::fitFinalists() {
+  std::vector<std::size_t> best = bestOnScreening(0, pool_.size());
+  std::erase_if(
+      best, [&](std::size_t index) { return pool_[index].score < pool_[best.front()].score - far_behind || isDominated(pool_[index]); });
+  if (best.size() > finalist_count) best.resize(finalist_count);
+  for (const std::size_t index : best) explanations_.push_back(pool_[index]);
+  explanations_.push_back(nothing_);
+  parallelFor(static_cast<int>(explanations_.size()), options_.job_count, [&](int i) {
+    if (!plant_.interrupted()) fitToAll(explanations_[static_cast<std::size_t>(i)]);
+  });
+  std::erase_if(explanations_, [&](const Explanation& explanation) { return explanation.residual.size() != fit_.size(); });
+  std::ranges::stable_sort(explanations_, std::greater<>{}, &Explanation::score);
+  tryVariants();
+  weigh();
+}
+
+/// Replaces the best explanations by other variants of themselves that are better.
+void Search::tryVariants() {
+  for (std::size_t rank = 0; rank < std::min(explanations_.size(), varied_count); ++rank) {
+    std::vector<Explanation> others = otherVariants(explanations_[rank]);
+    parallelFor(static_cast<int>(others.size()), options_.job_count, [&](int i) {
+      if (!plant_.interrupted()) fitToAll(others[static_cast<std::size_t>(i)]);
+    });
+    for (Explanation& other : others)
+      if (other.residual.size() == fit_.size() && other.score > explanations_[rank].score) explanations_[rank] = std::move(other);
+  }
+}
+
+/// Coarse steps first; the derivatives found there serve for fine ones too.
+void Search::fitToAll(Explanation& explanation) const {
+  causes_.refit(explanation, fit_, coarse_rounds, Fidelity::coarse);
+  if (explanation.residual.size() != fit_.size()) return;
+  std::vector<Eigen::VectorXd> known;
+  for (Eigen::Index k = 0; k < explanation.jacobian.cols(); ++k) known.emplace_back(explanation.jacobian.col(k));
+  causes_.refit(explanation, fit_, fine_rounds, Fidelity::fine, std::move(known));
+  if (explanation.residual.size() != fit_.size()) return;
+  takeFromCounterparts(explanation);
+  explanation.is_inactive = hasInactiveEffect(explanation);
+  explanation.score = evidence().score(explanation);
+}
+
+/// A parameter that the recordings do not determine takes the value of the other direction: a valve of which only the venting was recorded
+/// is taken to fill at the same rate.
+void Search::takeFromCounterparts(Explanation& explanation) const {
+  constexpr double noticeable = 0.1;  // nats
+  Explanation changed = explanation;
+  Eigen::Index first = 0;
+  for (const std::size_t index : explanation.members) {
+    const Hypothesis& hypothesis = causes_.hypotheses[index];
+    for (int k = 0; k < hypothesis.coordinateCount(); ++k) {
+      const int other = hypothesis.counterpartOf(k);
+      if (other < 0 || std::isfinite(explanation.half_width[first + k]) || !std::isfinite(explanation.half_width[first + other])) continue;
+      changed.z[first + k] = hypothesis.coordinateLike(k, other, explanation.z[first + other]);
+    }
+    first += hypothesis.coordinateCount();
+  }
+  changed.z = causes_.clamped(changed.members, changed.z);
+  if (changed.z == explanation.z || plant_.interrupted()) return;
+  causes_.refit(changed, fit_, 0, Fidelity::fine);
+  if (changed.residual.size() != fit_.size() || fit_.misfit(changed.residual) > fit_.misfit(explanation.residual) + noticeable) return;
+  changed.jacobian = explanation.jacobian;
+  explanation = changed;
+}
+
+/// True if an effect's strength can go to nearly zero at no noticeable loss: its shape parameters explain the data, not the effect. For
+/// example a leak without a leak is the lag of its regulator.
+bool Search::hasInactiveEffect(const Explanation& explanation) const {
+  constexpr double next_to_nothing = 1e-3, noticeable = 0.45;  // typical strengths; nats
+  const Eigen::VectorXd as_it_is = fit_.predicted(causes_.modelOf(explanation));
+  Eigen::Index first = 0;
+  for (const std::size_t index : explanation.members) {
+    const Hypothesis& hypothesis = causes_.hypotheses[index];
+    const auto strength_count = static_cast<int>(hypothesis.strengths().size());
+    if (strength_count > 0 && strength_count < hypothesis.coordinateCount() && as_it_is.size() && !plant_.interrupted()) {
+      Explanation weak = explanation;
+      for (const int strength : hypothesis.strengths()) weak.z[first + strength] = next_to_nothing;
+      weak.z = causes_.clamped(weak.members, weak.z);
+      const Eigen::VectorXd predicted = fit_.predicted(causes_.modelOf(weak));
+      on_simulation_();
+      if (predicted.size() == fit_.size() && predicted.allFinite() &&
+          fit_.misfit(explanation.residual + as_it_is - predicted) < fit_.misfit(explanation.residual) + noticeable)
+        return true;
+    }
+    first += hypothesis.coordinateCount();
+  }
+  return false;
+}
+
+/// Computes the probabilities of the explanations, no effect among them, and apart from them that of something else.
+void Search::weigh() {
+  if (explanations_.empty()) return;  // nothing is known yet
+  const double largest = std::ranges::max_element(explanations_, {}, &Explanation::score)->score;
+  if (!std::isfinite(largest)) return;
+  double sum = 0;
+  for (Explanation& explanation : explanations_) sum += explanation.probability = std::exp(explanation.score - largest);
+  for (Explanation& explanation : explanations_) explanation.probability /= sum;
+  none_of_these_ = 1 / (1 + std::exp(-evidence().ofSomethingElse(explanations_)));
+  std::ranges::stable_sort(explanations_, std::greater<>{}, &Explanation::probability);
+  const auto nothing = std::ranges::find_if(explanations_, [](const Explanation& explanation) { return explanation.members.empty(); });
+  if (nothing != explanations_.end()) {
+    nothing_ = *nothing;
+    explanations_.erase(nothing);
+  }
+}
+
+}  // namespace musclesim

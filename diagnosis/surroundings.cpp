@@ -1,0 +1,158 @@
+// The linear model about one explanation: its columns, and what it proposes.
+#include <algorithm>
+#include <iterator>
+#include <map>
+
+#include "../base/parallel.h"
+#include "search.h"
+
+namespace musclesim {
+
+namespace {
+
+constexpr std::size_t beside_count = 30;           ///< effects that are simulated beside an explanation
+constexpr std::size_t beside_per_stage_count = 2;  ///< and at least so many of every stage
+constexpr double strength_precision = 1.0 / 9;     ///< of a normal prior: three typical strengths are usual
+constexpr double largest_change = 3;               ///< of a coordinate or a number, up to which the prediction is taken as linear
+
+}  // namespace
+
+/// Columns of the base's own coordinates, of the removal of each effect, and of the numbers.
+void Search::addOwnColumns(Surroundings& around, std::vector<LinearModel::Column>& columns) const {
+  const Explanation& base = around.base;
+  const Eigen::VectorXd predicted = screening_.measured() - base.residual;
+  const FitProblem problem = causes_.problemOf(base, screening_, Fidelity::coarse);
+  const Eigen::MatrixXd slopes = derivatives(screening_, problem, problem.start);
+  for (Eigen::Index k = 0; k < slopes.cols(); ++k) around.derivatives.push_back(slopes.col(k));
+  for (std::size_t m = 0; m < base.members.size(); ++m) {
+    const Eigen::Index first = causes_.firstCoordinate(base, m);
+    const int count = causes_.hypotheses[base.members[m]].coordinateCount();
+    auto& own = around.of_member.emplace_back();
+    for (Eigen::Index k = first; k < first + count; ++k) {
+      own.push_back(columns.size());
+      columns.push_back({slopes.col(k), -largest_change, largest_change, strength_precision});
+    }
+    const Eigen::VectorXd left = screening_.predicted(causes_.modelOf(causes_.without(base, m)));
+    on_simulation_();
+    around.removal_of_member.push_back(columns.size());
+    columns.push_back({left.size() ? Eigen::VectorXd(left - predicted) : Eigen::VectorXd::Zero(predicted.size()), 1, 1, 0});
+  }
+  for (Eigen::Index k = 0; k < plant_.numberCount(); ++k) {
+    around.of_numbers.push_back(columns.size());
+    columns.push_back({slopes.col(base.z.size() + k), -largest_change, largest_change, 1, base.numbers[k]});
+  }
+}
+
+/// Columns of the hypotheses that may be added.
+void Search::addOtherColumns(Surroundings& around, std::vector<LinearModel::Column>& columns) const {
+  around.of_hypothesis.resize(causes_.hypotheses.size());
+  for (std::size_t i = 0; i < causes_.hypotheses.size(); ++i) {
+    const Hypothesis& hypothesis = causes_.hypotheses[i];
+    const auto& changes = around.sensitivities[i].per_strength;
+    const auto is_unknown = [&](const Eigen::VectorXd& change) { return change.size() != screening_.size(); };
+    if (!fitsBeside(i, around.base.members) || std::ranges::any_of(changes, is_unknown)) continue;
+    for (std::size_t k = 0; k < changes.size(); ++k) {
+      around.of_hypothesis[i].push_back(columns.size());
+      if (hypothesis.strengths().empty())  // present or absent
+        columns.push_back({changes[k], 1, 1, 0});
+      else
+        columns.push_back(
+            {changes[k], hypothesis.isSigned(hypothesis.strengths()[k]) ? -largest_amount : 0, largest_amount, strength_precision});
+    }
+  }
+}
+
+/// Simulates the hypotheses worth adding beside the base, and every change of the base itself.
+Search::Surroundings Search::surroundingsOf(const Explanation& base) const {
+  Surroundings around{base, {}, {}, {}, {}, {}, {}, base.members.empty() ? catalogue_.sensitivities : changesBeside(base)};
+  std::vector<LinearModel::Column> columns;
+  addOwnColumns(around, columns);
+  addOtherColumns(around, columns);
+  around.model.emplace(screening_, base.residual, std::move(columns));
+  return around;
+}
+
+/// The hypotheses that may be added to the base with most gain by the linear model about no effect, the nearest variant of each label, and
+/// some of each stage.
+std::vector<std::size_t> Search::worthAdding(const Explanation& base) const {
+  std::vector<std::pair<double, std::size_t>> costs;
+  for (std::size_t i = 0; i < causes_.hypotheses.size(); ++i)
+    if (!about_nothing_->of_hypothesis[i].empty() && fitsBeside(i, base.members)) costs.emplace_back(0, i);
+  parallelFor(static_cast<int>(costs.size()), options_.job_count, [&](int k) {
+    auto& [cost, index] = costs[static_cast<std::size_t>(k)];
+    std::vector<std::size_t> members = base.members;
+    members.push_back(index);
+    cost = proposed(*about_nothing_, {}, members).cost;
+  });
+  std::ranges::stable_sort(costs, {}, &std::pair<double, std::size_t>::first);
+  std::set<std::string> labels;
+  std::map<Stage, std::size_t> per_stage;
+  std::vector<std::size_t> result;
+  for (const auto& [cost, index] : costs) {
+    const Hypothesis& hypothesis = causes_.hypotheses[index];
+    std::size_t& of_stage = per_stage[hypothesis.info().stage];
+    if (labels.contains(hypothesis.label()) || (result.size() >= beside_count && of_stage >= beside_per_stage_count)) continue;
+    labels.insert(hypothesis.label());
+    ++of_stage;
+    result.push_back(index);
+  }
+  return result;
+}
+
+/// Sensitivities beside the base of the hypotheses worth adding; the others get no changes.
+std::vector<Sensitivity> Search::changesBeside(const Explanation& base) const {
+  const std::vector<std::size_t> indices = worthAdding(base);
+  std::vector<Hypothesis> others;
+  for (const std::size_t i : indices) others.push_back(causes_.hypotheses[i]);
+  std::vector<Sensitivity> beside =
+      changesOf(screening_, others, screening_.measured() - base.residual, causes_.modelOf(base), options_.job_count, on_simulation_);
+  std::vector<Sensitivity> all = catalogue_.sensitivities;
+  for (Sensitivity& sensitivity : all) std::ranges::fill(sensitivity.per_strength, Eigen::VectorXd());
+  for (std::size_t k = 0; k < indices.size(); ++k) all[indices[k]].per_strength = std::move(beside[k].per_strength);
+  return all;
+}
+
+/// The start of a fit of some members of the base, by their positions, and further hypotheses; its cost by the linear model.
+Search::Proposal Search::proposed(const Surroundings& around, const std::vector<std::size_t>& kept,
+                                  const std::vector<std::size_t>& added) const {
+  const Explanation& base = around.base;
+  std::vector<std::size_t> columns = around.of_numbers;
+  for (std::size_t m = 0; m < base.members.size(); ++m) {
+    if (std::ranges::find(kept, m) == kept.end())
+      columns.push_back(around.removal_of_member[m]);
+    else
+      std::ranges::copy(around.of_member[m], std::back_inserter(columns));
+  }
+  for (const std::size_t hypothesis : added) std::ranges::copy(around.of_hypothesis[hypothesis], std::back_inserter(columns));
+  const LinearModel::Solution solution = around.model->solve(columns);
+  std::map<std::size_t, double> amounts;
+  for (std::size_t i = 0; i < columns.size(); ++i) amounts[columns[i]] = solution.amounts[static_cast<Eigen::Index>(i)];
+  Proposal proposal;
+  std::vector<double> z;
+  for (const std::size_t m : kept) {
+    proposal.start.members.push_back(base.members[m]);
+    for (std::size_t k = 0; k < around.of_member[m].size(); ++k) {
+      const Eigen::Index coordinate = causes_.firstCoordinate(base, m) + static_cast<Eigen::Index>(k);
+      z.push_back(base.z[coordinate] + amounts[around.of_member[m][k]]);
+      proposal.known.push_back(around.derivatives[static_cast<std::size_t>(coordinate)]);
+    }
+  }
+  for (const std::size_t index : added) {
+    proposal.start.members.push_back(index);
+    std::vector<double> found;
+    for (const std::size_t column : around.of_hypothesis[index]) found.push_back(amounts[column]);
+    const Eigen::VectorXd own = startOf(causes_.hypotheses[index], around.sensitivities[index], found);
+    z.insert(z.end(), own.begin(), own.end());
+    proposal.known.resize(proposal.known.size() + static_cast<std::size_t>(own.size()));
+  }
+  proposal.start.z = Eigen::Map<const Eigen::VectorXd>(z.data(), static_cast<Eigen::Index>(z.size()));
+  proposal.start.numbers = base.numbers;
+  for (std::size_t k = 0; k < around.of_numbers.size(); ++k) {
+    proposal.start.numbers[static_cast<Eigen::Index>(k)] += amounts[around.of_numbers[k]];
+    proposal.known.push_back(around.derivatives[static_cast<std::size_t>(base.z.size()) + k]);
+  }
+  proposal.cost = solution.cost + screeningEvidence().price(proposal.start);
+  return proposal;
+}
+
+}  // namespace musclesim
