@@ -126,6 +126,24 @@ TEST(Diagnose, SaysNoGapWhereThereIsOnlyNoise) {
   EXPECT_TRUE(found.chosen.empty());
 }
 
+/// A load 3 % heavier than the model's: the robot's file says that it may be off by 2 %.
+TEST(Diagnose, SaysNoGapWhereTolerancesExplainIt) {
+  const std::vector<Recording> recordings = plant({{"payload", "hand", {{"mass_kg", 0.06}}}});
+  const Diagnosis found = diagnose(recordings, few({"valve_lag", "transport_delay"}));
+  EXPECT_EQ(found.verdict, Verdict::no_gap) << diagnosisSummary(found);
+  EXPECT_TRUE(found.chosen.empty());
+  EXPECT_GT(found.before.normalised, 1);
+  EXPECT_GT(found.reduction_percent, 90);
+  EXPECT_TRUE(
+      std::ranges::any_of(found.notes, [](const std::string& note) { return contains(note, "tolerances of the model's numbers"); }));
+  const auto load = std::ranges::find(found.numbers, "rig.load_kg", &FittedNumber::name);
+  ASSERT_NE(load, found.numbers.end());
+  EXPECT_EQ(load->start, 2);
+  EXPECT_NEAR(std::log(load->fitted.value / 2), 0.02 * load->in_tolerances, 1e-9);
+  EXPECT_LE(load->fitted.low, load->fitted.value);
+  EXPECT_GE(load->fitted.high, load->fitted.value);
+}
+
 TEST(Diagnose, OptionsOfTheModelHoldTheGroundPlane) {
   auto recordings = plant({});
   for (Recording& recording : recordings) recording.info.robot_parameters["world.plane_height_mm"] = -450.0;
