@@ -8,7 +8,9 @@
 
 #include "musclesim/base/random.h"
 #include "musclesim/diagnosis/diagnosis.h"
+#include "musclesim/robot/robot.h"
 #include "musclesim/simulation/replay.h"
+#include "musclesim/simulation/simulation.h"
 
 namespace musclesim::planted {
 
@@ -54,6 +56,15 @@ inline Recording recorded(const std::vector<ActiveEffect>& effects, double ampli
 
 inline std::vector<Recording> plant(const std::vector<ActiveEffect>& effects, Pressure pressure = Pressure::left_out) {
   return {recorded(effects, 0.15, 1, pressure), recorded(effects, 0.2, 2, pressure)};
+}
+
+/// The same recordings with sidecars that say that every number of the model is known to a millionth, whatever the robot's file says.
+inline std::vector<Recording> withExactModel(std::vector<Recording> recordings) {
+  Simulation simulation;
+  simulation.build(recordings.front().info.robot);
+  for (Recording& recording : recordings)
+    for (const auto& [name, tolerance] : simulation.robot().parameterTolerances()) recording.info.parameter_tolerance[name] = 1e-6;
+  return recordings;
 }
 
 inline DiagnosisOptions few(const std::vector<std::string>& candidates) {
