@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "musclesim/base/error.h"
 #include "planted.h"
 #include "support/support.h"
 
@@ -76,6 +78,73 @@ TEST(Plant, KnowsTheStagesOfWhatTheModelHoldsBeforehand) {
   EXPECT_FALSE(Plant(recordings, options).holds(Stage::pressure));
   recordings.back().info.active_effects = {{"valve_lag", "muscle_0", {{"fill_time_constant_s", 0.1}, {"vent_time_constant_s", 0.1}}}};
   EXPECT_TRUE(Plant(recordings, options).holds(Stage::pressure));
+}
+
+class NumbersOfAPlant : public testing::Test {
+ protected:
+  static const UncertainNumber* find(const Plant& plant, const std::string& name) {
+    const auto found = std::ranges::find_if(plant.numbers(), [&](const UncertainNumber& number) { return number.parameter.name == name; });
+    return found == plant.numbers().end() ? nullptr : &*found;
+  }
+  std::vector<Recording> recordings = planted::plant({});
+  DiagnosisOptions options;
+};
+
+/// robots/rig.toml says 0.02 of its load and 0.5 of its friction.
+TEST_F(NumbersOfAPlant, HaveTheTolerancesOfTheRobot) {
+  const Plant plant(recordings, options);
+  ASSERT_NE(find(plant, "rig.load_kg"), nullptr);
+  EXPECT_EQ(find(plant, "rig.load_kg")->tolerance, 0.02);
+  EXPECT_FALSE(find(plant, "rig.load_kg")->is_tuned);
+  ASSERT_NE(find(plant, "muscle.slider_friction_N"), nullptr);
+  EXPECT_EQ(find(plant, "muscle.slider_friction_N")->tolerance, 0.5);
+  options.model.parameters.set("muscle.slider_friction_N", 0.0, "test");
+  EXPECT_EQ(find(Plant(recordings, options), "muscle.slider_friction_N"), nullptr) << "a factor does not change 0";
+}
+
+TEST_F(NumbersOfAPlant, OfASidecarHaveItsTolerances) {
+  recordings.front().info.parameter_tolerance = {{"rig.load_kg", 0.1}, {"rig.minimum_length_mm", 0.01}};
+  const Plant plant(recordings, options);
+  EXPECT_EQ(find(plant, "rig.load_kg")->tolerance, 0.1);
+  ASSERT_NE(find(plant, "rig.minimum_length_mm"), nullptr);
+  EXPECT_EQ(std::ranges::count(plant.numbers(), "rig.load_kg", [](const UncertainNumber& number) { return number.parameter.name; }), 1);
+  recordings.front().info.parameter_tolerance = {{"rig.load", 0.1}};
+  EXPECT_TRUE(contains(messageOf<BadParameter>([&] { Plant(recordings, options); }), "did you mean \"rig.load_kg\""));
+}
+
+TEST_F(NumbersOfAPlant, ThatAreTunedMayBeOffByAFoldAndComeFirst) {
+  options.tune = {"rig.load_kg"};
+  const Plant plant(recordings, options);
+  EXPECT_EQ(plant.numbers().front().parameter.name, "rig.load_kg");
+  EXPECT_TRUE(plant.numbers().front().is_tuned);
+  EXPECT_EQ(plant.numbers().front().tolerance, 1);
+  EXPECT_EQ(std::ranges::count(plant.numbers(), "rig.load_kg", [](const UncertainNumber& number) { return number.parameter.name; }), 1);
+}
+
+TEST_F(NumbersOfAPlant, ThatVaryBetweenRecordingsAreKnown) {
+  for (Recording& recording : recordings) recording.info.varies = {"rig.load_kg"};
+  recordings.front().info.robot_parameters["rig.load_kg"] = 2.0;
+  recordings.back().info.robot_parameters["rig.load_kg"] = 2.5;
+  EXPECT_EQ(find(Plant(recordings, options), "rig.load_kg"), nullptr);
+  options.tune = {"rig.load_kg"};
+  EXPECT_TRUE(contains(messageOf<BadParameter>([&] { Plant(recordings, options); }), "varies between the recordings"));
+}
+
+/// Value in force times exp(tolerance eta), within the parameter's range; four tolerances at most.
+TEST_F(NumbersOfAPlant, AreFactorsOfTheValuesInForce) {
+  recordings.front().info.parameter_tolerance = {{"rig.load_kg", 5.0}};
+  const Plant plant(recordings, options);
+  Eigen::VectorXd eta = Eigen::VectorXd::Zero(plant.numberCount());
+  EXPECT_TRUE(plant.numbersAt(eta).empty()) << "all as they are";
+  EXPECT_TRUE(plant.numbersAt({}).empty());
+  const Eigen::Index load = find(plant, "rig.load_kg") - plant.numbers().data();
+  eta[load] = -0.3;
+  ASSERT_EQ(plant.numbersAt(eta).size(), 1U);
+  EXPECT_EQ(plant.numbersAt(eta).front().first, "rig.load_kg");
+  EXPECT_NEAR(plant.numbersAt(eta).front().second, 2 * std::exp(-1.5), 1e-12);
+  EXPECT_EQ(plant.numberAt(load, 3), 1e3) << "the most that the robot's file allows";
+  eta[load] = -7;
+  EXPECT_EQ(plant.clampedNumbers(eta)[load], -4);
 }
 
 }  // namespace

@@ -64,7 +64,7 @@ TEST(Report, RemarksOnNumbersThatNoPlantIsKnownToHave) {
 
 TEST(Report, TellsParametersThatAreWords) {
   Diagnosis d = answer(Verdict::effects_found);
-  d.effects = {{"attachment_offset", "muscle_0", 0.9, {{"offset_mm", {4.3, 4.2, 4.4}}}, 99, {{"attachment", "end"}}}};
+  d.effects = {{"attachment_offset", "muscle_0", 0.9, {{"offset_mm", {4.3, 4.2, 4.4}}}, 99, {}, {{"attachment", "end"}}}};
   d.chosen = {"attachment_offset@muscle_0"};
   EXPECT_TRUE(contains(diagnosisReport(d), "attachment = end<br>offset_<wbr>mm = 4.3"));
   EXPECT_TRUE(contains(diagnosisJson(d), "\"choices\": {"));

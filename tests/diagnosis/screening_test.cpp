@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <set>
 
-#include "diagnosis/attribute.h"
 #include "diagnosis/plant.h"
+#include "diagnosis/search.h"
 #include "musclesim/base/random.h"
 #include "planted.h"
 
@@ -57,22 +57,25 @@ class ScreeningOfHypotheses : public ::testing::Test {
     }();
     return all;
   }
-  static Attribution screened(const std::vector<Recording>& recordings, const DiagnosisOptions& options) {
+  struct Screened : ScreenedCatalogue {
+    std::vector<Hypothesis> hypotheses;
+  };
+  static Screened screened(const std::vector<Recording>& recordings, const DiagnosisOptions& options) {
     const Plant plant(recordings, options);
-    Attributor attributor(plant, options, [] {});
-    attributor.screen();
-    return attributor.result();
+    Search search(plant, options, [] {});
+    search.screen();
+    return {search.catalogue(), search.hypotheses()};
   }
 };
 
 TEST_F(ScreeningOfHypotheses, OfManyMusclesKeepsTheNearestAndEveryEffect) {
-  const Attribution screening = screened(weakMuscle(), planted::few({}));
+  const Screened screening = screened(weakMuscle(), planted::few({}));
   EXPECT_LT(screening.screened_count, screening.hypotheses.size() / 2);
   std::size_t count = 0;
   std::set<std::string> effects, all_effects;
   std::size_t best = 0;
   for (std::size_t i = 0; i < screening.hypotheses.size(); ++i) {
-    if (screening.sensitivities[i].log_misfit < screening.sensitivities[best].log_misfit) best = i;
+    if (screening.sensitivities[i].misfit < screening.sensitivities[best].misfit) best = i;
     all_effects.insert(screening.hypotheses[i].info().id);
     if (!wasScreened(screening.sensitivities[i])) continue;
     ++count;
@@ -84,13 +87,13 @@ TEST_F(ScreeningOfHypotheses, OfManyMusclesKeepsTheNearestAndEveryEffect) {
 }
 
 TEST_F(ScreeningOfHypotheses, DoesNotDependOnWhatMayBeAnAnswer) {
-  const Attribution all = screened(weakMuscle(), planted::few({})), creep = screened(weakMuscle(), planted::few({"creep"}));
+  const Screened all = screened(weakMuscle(), planted::few({})), creep = screened(weakMuscle(), planted::few({"creep"}));
   ASSERT_EQ(all.sensitivities.size(), creep.sensitivities.size());
-  for (std::size_t i = 0; i < all.sensitivities.size(); ++i) EXPECT_EQ(all.sensitivities[i].log_misfit, creep.sensitivities[i].log_misfit);
+  for (std::size_t i = 0; i < all.sensitivities.size(); ++i) EXPECT_EQ(all.sensitivities[i].misfit, creep.sensitivities[i].misfit);
 }
 
 TEST_F(ScreeningOfHypotheses, OfFewMusclesTakesAll) {
-  const Attribution screening = screened(planted::plant({{"payload", "hand", {{"mass_kg", 0.2}}}}), planted::few({}));
+  const Screened screening = screened(planted::plant({{"payload", "hand", {{"mass_kg", 0.2}}}}), planted::few({}));
   EXPECT_EQ(screening.screened_count, screening.hypotheses.size());
 }
 
@@ -115,7 +118,7 @@ TEST_P(NumbersOfBits, AreChosenByAllRecordingsOfTheLook) {
   const std::vector<ActiveEffect> quantised = {effect};
   const std::vector<Recording> recordings = {betweenTwo(quantised, 10.0 / 32, 15.0 / 32, 1), betweenTwo(quantised, 20.4 / 64, 30.7 / 64, 2),
                                              betweenTwo(quantised, 21.3 / 64, 29.2 / 64, 3), planted::recorded(quantised, 0.1, 4)};
-  const Attribution screening = screened(recordings, planted::few({}));
+  const Screened screening = screened(recordings, planted::few({}));
   std::vector<double> bits;
   for (const Hypothesis& hypothesis : screening.hypotheses)
     if (hypothesis.info().id == "command_quantisation" && hypothesis.component() == "muscle_0")

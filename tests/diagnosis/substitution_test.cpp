@@ -162,7 +162,7 @@ TEST(TensionTest, OfACommandedPressureAcquitsNoOtherMuscle) {
   ASSERT_TRUE(test);
   EXPECT_LT(test->found, agrees);
   EXPECT_TRUE(test->some_commanded && !test->all_commanded && test->of_all_muscles);
-  const FaultIsolation isolation = isolateFault(elbow.comparison, elbow.residual, elbow.comparison, {}, {}, elbow.residual);
+  const FaultIsolation isolation = isolateFault(elbow.comparison, elbow.residual, elbow.comparison, {}, {});
   for (const char* stage : {"command", "pressure"}) EXPECT_FALSE(isRuledOut(isolation, stage)) << isolation.method;
   EXPECT_TRUE(isRuledOut(isolation, "force")) << isolation.method;
 }
@@ -170,7 +170,7 @@ TEST(TensionTest, OfACommandedPressureAcquitsNoOtherMuscle) {
 TEST(TensionTest, OfSomeMusclesRulesNothingOut) {
   const ActiveEffect strong_pull{"external_force", "hand", {{"force_x_N", 4.0}}};
   const Compared elbow("elbow", {"length_0_mm", "length_1_mm", "force_0_N"}, {strong_pull});
-  const FaultIsolation isolation = isolateFault(elbow.comparison, elbow.residual, elbow.comparison, {}, {}, elbow.residual);
+  const FaultIsolation isolation = isolateFault(elbow.comparison, elbow.residual, elbow.comparison, {}, {});
   EXPECT_FALSE(isRuledOut(isolation, "force")) << isolation.method;
 }
 
@@ -196,7 +196,7 @@ TEST(Pressures, ThatAreNotThereInOneRecordingAreNotAsPredicted) {
                          std::erase_if(recording.signals, [](const Signal& s) { return s.name == "pressure_0"; });
                      });
   EXPECT_FALSE(allPressuresMeasured(lag.comparison));
-  const FaultIsolation isolation = isolateFault(lag.comparison, lag.residual, lag.comparison, {}, {}, lag.residual);
+  const FaultIsolation isolation = isolateFault(lag.comparison, lag.residual, lag.comparison, {}, {});
   EXPECT_FALSE(isRuledOut(isolation, "pressure")) << isolation.method;
 }
 
@@ -226,7 +226,7 @@ TEST(Pressures, ThatAreNoisyStillTellWhereAWeakGapArises) {
   ASSERT_TRUE(test);
   EXPECT_NEAR(test->share, 1, 0.25);
   EXPECT_GT(test->share_deviation, 0.02);
-  const FaultIsolation isolation = isolateFault(lag.comparison, lag.residual, lag.comparison, {}, {}, lag.residual);
+  const FaultIsolation isolation = isolateFault(lag.comparison, lag.residual, lag.comparison, {}, {});
   for (const char* stage : {"force", "body", "sensor"}) EXPECT_TRUE(isRuledOut(isolation, stage)) << isolation.method;
   for (const char* stage : {"command", "pressure"}) EXPECT_FALSE(isRuledOut(isolation, stage)) << isolation.method;
 }
@@ -238,7 +238,7 @@ TEST(Pressures, MakeNothingOfAGapBehindThem) {
   const auto test = testPressures(weak.comparison, weak.residual);
   ASSERT_TRUE(test);
   EXPECT_NEAR(test->share, 0, 0.1);
-  EXPECT_FALSE(isRuledOut(isolateFault(weak.comparison, weak.residual, weak.comparison, {}, {}, weak.residual), "force"));
+  EXPECT_FALSE(isRuledOut(isolateFault(weak.comparison, weak.residual, weak.comparison, {}, {}), "force"));
 }
 
 }  // namespace

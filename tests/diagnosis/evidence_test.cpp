@@ -1,0 +1,182 @@
+// How believable fitted explanations are.
+#include "diagnosis/evidence.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "planted.h"
+#include "tempered_misfit.h"
+
+namespace musclesim {
+namespace {
+
+/// Residuals are constant: the model without effects leaves 20 sigmas. One segment of one signal has a power of 3.
+class EvidenceOnARig : public testing::Test {
+ protected:
+  enum Index : std::size_t { payload, bias, gain, threshold, bits };
+  static constexpr double gap = 20, power = 3;
+
+  EvidenceOnARig() {
+    causes_.hypotheses = {{effectInfo("payload"), "hand", plant_},
+                          {effectInfo("sensor_bias"), "signal_length_0", plant_},
+                          {effectInfo("force_gain"), "muscle_0", plant_},
+                          {effectInfo("threshold_pressure"), "muscle_0", plant_}};
+    const Hypothesis counted(effectInfo("command_quantisation"), "muscle_0", plant_);
+    causes_.hypotheses.push_back(counted.variants(plant_).front());
+    comparison_.setGap(nominal_);
+  }
+
+  Eigen::VectorXd leaving(double sigmas) const { return Eigen::VectorXd::Constant(comparison_.size(), sigmas * planted::noise_mm); }
+
+  Explanation fitted(const std::vector<std::size_t>& members, double sigmas, double z = 0.1) const {
+    Explanation result;
+    result.members = members;
+    result.residual = leaving(sigmas);
+    Eigen::Index count = 0;
+    for (const std::size_t member : members) count += causes_.hypotheses[member].coordinateCount();
+    result.z = Eigen::VectorXd::Constant(count, z);
+    return result;
+  }
+
+  double ofSingle(std::size_t member, double sigmas) const { return evidence_.score(fitted({member}, sigmas)); }
+  double priceOf(const std::vector<std::size_t>& members, double z = 0.1) const { return evidence_.price(fitted(members, 1, z)); }
+
+  DiagnosisOptions options_;
+  OnSimulation on_simulation_ = [] {};
+  Plant plant_{planted::plant({}), options_};
+  Comparison comparison_{plant_, {{0, 0, 400}}};
+  Causes causes_{plant_, on_simulation_};
+  Eigen::VectorXd nominal_ = leaving(gap);
+  Evidence evidence_{comparison_, nominal_, causes_};
+  Weighing weighing_;
+};
+
+TEST_F(EvidenceOnARig, FollowsWhatIsLeft) {
+  for (const double sigmas : {0.5, 1.0, 2.0, 5.0, 10.0})
+    EXPECT_NEAR(ofSingle(payload, sigmas), -power * temperedMisfit(sigmas, gap) - weighing_.per_parameter, 1e-9) << sigmas;
+  EXPECT_GT(ofSingle(payload, 2) - ofSingle(payload, 4), 2 * (ofSingle(payload, 0.5) - ofSingle(payload, 1)))
+      << "what is left below the noise says little";
+}
+
+TEST_F(EvidenceOnARig, NoEffectCostsNothing) {
+  EXPECT_EQ(evidence_.price(fitted({}, 1)), 0);
+  EXPECT_NEAR(evidence_.score(fitted({}, gap)), -power * temperedMisfit(gap, gap), 1e-9);
+}
+
+TEST_F(EvidenceOnARig, CountsParameters) {
+  ASSERT_EQ(causes_.hypotheses[gain].coordinateCount(), 1);
+  ASSERT_EQ(causes_.hypotheses[threshold].coordinateCount(), 2);
+  EXPECT_NEAR(priceOf({gain}), weighing_.per_parameter, 1e-12);
+  EXPECT_NEAR(priceOf({threshold}), 2 * weighing_.per_parameter, 1e-12);
+  ASSERT_EQ(causes_.hypotheses[bits].coordinateCount(), 0);
+  EXPECT_NEAR(priceOf({bits}), static_cast<double>(effectInfo("command_quantisation").parameters.size()) * weighing_.per_parameter, 1e-12)
+      << "numbers that were tried one by one count as fitted ones";
+}
+
+TEST_F(EvidenceOnARig, AFurtherEffectThatGainsNothingCosts) {
+  const Explanation alone = fitted({payload}, 2), pair = fitted({payload, bias}, 2);
+  EXPECT_NEAR(evidence_.score(alone) - evidence_.score(pair), weighing_.per_effect + weighing_.per_parameter, 1e-9);
+  EXPECT_NEAR(priceOf({payload, bias, gain}), 2 * weighing_.per_effect + 3 * weighing_.per_parameter, 1e-9) << "the first one is free";
+}
+
+TEST_F(EvidenceOnARig, AFurtherEffectInTheSamePlaceCostsMore) {
+  EXPECT_NEAR(priceOf({gain, threshold}) - priceOf({gain, bias}), weighing_.per_same_place + weighing_.per_parameter, 1e-9);
+  EXPECT_EQ(priceOf({gain, threshold}), priceOf({threshold, gain}));
+}
+
+TEST_F(EvidenceOnARig, PlacesOverlapThroughAllAndThroughPairsOfMuscles) {
+  Causes on_two(plant_, on_simulation_);
+  on_two.hypotheses = {{effectInfo("force_gain"), "muscle_1", plant_},
+                       {effectInfo("leak"), "all", plant_},
+                       {effectInfo("channel_swap"), "muscle_0+muscle_1", plant_},
+                       {effectInfo("leak"), "muscle_10", plant_},
+                       {effectInfo("payload"), "hand", plant_},
+                       {effectInfo("base_tilt"), "base", plant_},
+                       {effectInfo("sensor_bias"), "all", plant_},
+                       {effectInfo("sensor_gain"), "signal_length_0", plant_},
+                       {effectInfo("sensor_bias"), "signal_angle_elbow", plant_}};
+  const Evidence evidence(comparison_, nominal_, on_two);
+  const auto priceOf = [&](const std::vector<std::size_t>& members) {
+    Explanation explanation;
+    explanation.members = members;
+    Eigen::Index count = 0;
+    for (const std::size_t member : members) count += on_two.hypotheses[member].coordinateCount();
+    explanation.z = Eigen::VectorXd::Zero(count);
+    return evidence.price(explanation);
+  };
+  const auto forPlace = [&](std::size_t one, std::size_t other) {
+    return priceOf({one, other}) - priceOf({one}) - priceOf({other}) - weighing_.per_effect;
+  };
+  EXPECT_NEAR(forPlace(0, 1), weighing_.per_same_place, 1e-9) << "a muscle and all";
+  EXPECT_NEAR(forPlace(0, 2), weighing_.per_same_place, 1e-9) << "a muscle and a pair with it";
+  EXPECT_NEAR(forPlace(4, 5), weighing_.per_same_place, 1e-9) << "both on the body";
+  EXPECT_NEAR(forPlace(6, 7), weighing_.per_same_place, 1e-9) << "all sensors and one of them";
+  EXPECT_NEAR(forPlace(0, 3), 0, 1e-9) << "another muscle";
+  EXPECT_NEAR(forPlace(0, 4), 0, 1e-9) << "the body";
+  EXPECT_NEAR(forPlace(1, 6), 0, 1e-9) << "all sensors are no muscle";
+  EXPECT_NEAR(forPlace(7, 8), 0, 1e-9) << "another sensor";
+  EXPECT_NEAR(priceOf({0, 1, 2}) - priceOf({0}) - priceOf({1}) - priceOf({2}), 2 * (weighing_.per_effect + weighing_.per_same_place), 1e-9)
+      << "each further effect pays once";
+  EXPECT_NEAR(priceOf({6}) - priceOf({8}), weighing_.shared_sensor, 1e-9) << "a fault that all sensors share";
+}
+
+/// A payload is usually up to 1 kg.
+TEST_F(EvidenceOnARig, WhatExceedsItsUsualRangeCosts) {
+  const EffectParameter& mass = effectInfo("payload").parameters.front();
+  const double largest_kg = std::max(std::abs(mass.usual_low), std::abs(mass.usual_high));
+  const Hypothesis& hypothesis = causes_.hypotheses[payload];
+  const double per_z_kg = hypothesis.valuesAt(Eigen::VectorXd::Constant(1, 1)).front().second;
+  EXPECT_NEAR(priceOf({payload}, 0.99 * largest_kg / per_z_kg), weighing_.per_parameter, 1e-9);
+  EXPECT_NEAR(priceOf({payload}, std::numbers::e * largest_kg / per_z_kg), weighing_.per_parameter + weighing_.per_excess, 1e-9);
+}
+
+/// In an explanation of two effects, each is judged by its own coordinates.
+TEST_F(EvidenceOnARig, FindsTheCoordinatesOfEveryEffect) {
+  const double per_z_kg = causes_.hypotheses[payload].valuesAt(Eigen::VectorXd::Constant(1, 1)).front().second;
+  Explanation pair = fitted({threshold, payload}, 1);
+  const double before = evidence_.price(pair);
+  pair.z[2] = std::numbers::e / per_z_kg;
+  EXPECT_NEAR(evidence_.price(pair) - before, weighing_.per_excess, 1e-9);
+}
+
+TEST_F(EvidenceOnARig, NumbersThatAreOffByTolerancesCostTheirSquares) {
+  Explanation off = fitted({payload}, 2);
+  off.numbers = Eigen::Vector2d(1, -2);
+  EXPECT_NEAR(ofSingle(payload, 2) - evidence_.score(off), 0.5 * (1 + 4), 1e-9);
+}
+
+TEST_F(EvidenceOnARig, IsThatOfWhatWasNotSeenWhereThatIsKnown) {
+  Explanation flexible = fitted({payload}, 1);
+  flexible.cross_validated = leaving(4);
+  EXPECT_NEAR(evidence_.score(flexible), ofSingle(payload, 4), 1e-9);
+}
+
+TEST_F(EvidenceOnARig, InactiveEffectsAndFailedFitsHaveNone) {
+  Explanation inactive = fitted({payload}, 1);
+  inactive.is_inactive = true;
+  EXPECT_EQ(evidence_.score(inactive), -std::numeric_limits<double>::infinity());
+  Explanation failed = fitted({payload}, 1);
+  failed.residual = {};
+  EXPECT_EQ(evidence_.score(failed), -std::numeric_limits<double>::infinity());
+}
+
+TEST_F(EvidenceOnARig, SomethingElseIsLikelyWhereTheBestLeavesMuch) {
+  const auto somethingElse = [&](double best_sigmas) {
+    std::vector<Explanation> explanations = {fitted({gain}, 16), fitted({payload}, best_sigmas), fitted({}, gap)};
+    for (Explanation& explanation : explanations) explanation.score = evidence_.score(explanation);
+    return evidence_.ofSomethingElse(explanations);
+  };
+  for (const double sigmas : {1.0, 2.5, 5.0, 15.0}) {
+    const double share = temperedMisfit(sigmas, gap) / temperedMisfit(gap, gap);
+    EXPECT_NEAR(somethingElse(sigmas), weighing_.per_share_left * (share - weighing_.share_of_unknown), 1e-9) << sigmas;
+  }
+  EXPECT_GT(somethingElse(15), 2);
+  EXPECT_LT(somethingElse(1.2), -2);
+  EXPECT_NEAR(somethingElse(0.5), somethingElse(1), 1e-9) << "less than noise is no less";
+}
+
+}  // namespace
+}  // namespace musclesim
