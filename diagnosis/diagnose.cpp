@@ -213,8 +213,9 @@ class Run {
                                                    {search_.fitComparison(), search_.nominalResidual(), best.residual}, options_.seed);
     const Gap gap_after = held_out_.gap(after);
     const Attempt attempt{labelsOf(model), model.effects, gap_after, reductionOf(gap_after), interval.low, interval.high};
-    // What they remove on unseen data bounds the probability that none of these effects acts.
-    diagnosis_.none_of_these = std::clamp(1 - attempt.reduction_percent / 100, 0.0, search_.noneOfThese());
+    // The share of the RMS that they leave on unseen data bounds the probability that none of these effects acts.
+    const double left = std::sqrt(std::max(0.0, 1 - attempt.reduction_percent / 100));
+    diagnosis_.none_of_these = std::min(left, search_.noneOfThese());
     const bool found = diagnosis_.none_of_these <= named &&
                        clearlyBeats(attempt.reduction_percent, diagnosis_.nominal_refit_percent, diagnosis_.negative_control_percent);
     // Not offered, because it does not hold on the held-out data or gains no more than a control.
@@ -256,7 +257,10 @@ class Run {
         negative_control = negativeControlResidual(comparison, held_out_, parameter_count, options_.seed, count);
     });
     const auto percentOf = [&](const Eigen::VectorXd& residual) { return residual.size() ? reductionOf(held_out_.gap(residual)) : 0.0; };
-    diagnosis_.nominal_refit_percent = percentOf(nominal);
+    // Within their tolerances the numbers are fitted with every explanation, so what they gain is no merit of the effects.
+    const Eigen::VectorXd with_numbers = held_out_.predicted(search_.modelOf(search_.nothing()));
+    const double by_numbers = with_numbers.size() ? reductionOf(held_out_.gap(held_out_.measured() - with_numbers)) : 0;
+    diagnosis_.nominal_refit_percent = std::max(percentOf(nominal), by_numbers);
     diagnosis_.negative_control_percent = percentOf(negative_control);
   }
 
@@ -444,22 +448,16 @@ class Run {
       diagnosis_.ambiguity_sets.emplace_back(labels.begin(), labels.end());
     }
     for (const Explanation* fitted : likely)
-      if (likely.size() > 1) diagnosis_.alternatives.push_back(ownWords(*fitted, likely));
+      if (likely.size() > 1) diagnosis_.alternatives.push_back(wordsOf(*fitted));
     for (const Explanation* fitted : likely)
       for (const std::size_t index : fitted->members)
         if (std::ranges::find(diagnosis_.ambiguity_set, labelOf(index)) == diagnosis_.ambiguity_set.end())
           diagnosis_.ambiguity_set.push_back(labelOf(index));
   }
 
-  /// The effects of a fitted hypothesis that not all the others have.
-  std::string ownWords(const Explanation& fitted, const std::vector<const Explanation*>& others) const {
-    std::vector<std::string> own;
-    for (const std::size_t index : fitted.members)
-      if (!std::ranges::all_of(others, [&](const Explanation* other) {
-            return std::ranges::any_of(other->members, [&](std::size_t member) { return labelOf(member) == labelOf(index); });
-          }))
-        own.push_back(labelOf(index));
-    return fmt::format("{}", fmt::join(own, " + "));
+  /// "a@x + b@y"
+  std::string wordsOf(const Explanation& explanation) const {
+    return fmt::format("{}", fmt::join(search_.causes().labelsOf(explanation.members), " + "));
   }
 
   std::optional<double> singleReduction(const std::string& label) const {
@@ -479,7 +477,7 @@ class Run {
     likely.resize(std::min(most, likely.size()));
     monitor_.phase("planning the next experiment", static_cast<long>(2 * scheduleBank().size() * likely.size()));
     std::vector<Rival> rivals;
-    for (const Explanation* fitted : likely) rivals.push_back(search_.rival(*fitted, ownWords(*fitted, likely)));
+    for (const Explanation* fitted : likely) rivals.push_back(search_.rival(*fitted, wordsOf(*fitted)));
     const Fidelity fidelity = std::min(search_.screeningComparison().fidelity(), Fidelity::coarse);
     diagnosis_.next_experiment = nextExperiment(plant_, rivals, fidelity, options_.job_count, [this] { monitor_.count(); });
   }

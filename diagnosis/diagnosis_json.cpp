@@ -99,7 +99,7 @@ Json listOf(const std::vector<Value>& values) {
   return list;
 }
 
-/// The hypotheses that were tried and their residuals: enough to compute other odds without simulating again.
+/// The explanations that were fitted, and what they are weighed by: enough to weigh them anew without simulating.
 Json fittedJson(const Diagnosis& d) {
   Json json = {{"looks", Json::array()}, {"cells", Json::array()}, {"trials", Json::array()}};
   for (const Screening& screening : d.screenings) json["looks"].push_back({screening.effect, screening.removed});

@@ -62,6 +62,23 @@ void Search::fitFinalists() {
   std::ranges::stable_sort(explanations_, std::greater<>{}, &Explanation::score);
   tryVariants();
   weigh();
+  findIntervals();
+}
+
+/// Fresh intervals for the explanations that are listed, and for the numbers without any effect.
+void Search::findIntervals() {
+  constexpr double listed = 0.01;
+  std::vector<Explanation*> chosen = {&nothing_};
+  for (Explanation& explanation : explanations_)
+    if (explanation.probability >= listed) chosen.push_back(&explanation);
+  parallelFor(static_cast<int>(chosen.size()), options_.job_count, [&](int i) {
+    Explanation& explanation = *chosen[static_cast<std::size_t>(i)];
+    if (plant_.interrupted() || explanation.residual.size() != fit_.size()) return;
+    const Eigen::VectorXd half = halfWidths(fit_, causes_.problemOf(explanation, fit_, Fidelity::coarse), explanation.residual);
+    if (plant_.interrupted()) return;
+    explanation.half_width = half.head(explanation.z.size());
+    explanation.numbers_half_width = half.tail(explanation.numbers.size());
+  });
 }
 
 /// Replaces the best explanations by other variants of themselves that are better.

@@ -159,7 +159,7 @@ class InSigmas {
     return difference.segment(signal * perSignal(), row_count_).squaredNorm() / static_cast<double>(row_count_);
   }
   /// Mean over signals and averages of ln(RMS / sigma), where sigma combines the noise and the share of the gap that the right cause may
-  /// leave because its law differs from ours (Odds).
+  /// leave because its law differs from ours.
   double logMisfit(const Eigen::VectorXd& difference, const Eigen::VectorXd& gap) const {
     const double mismatch = tolerances.front().share_of_gap;
     double sum = 0;

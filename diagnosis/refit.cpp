@@ -11,7 +11,7 @@ namespace musclesim {
 
 namespace {
 
-constexpr double enough = 0.05;  ///< nats: a decrease that does not justify another round
+constexpr double enough = 0.02;  ///< nats: a decrease that does not justify another round
 constexpr double normal_95 = 1.96;
 /// Differences for derivatives, in coordinates. Wide ones first: dry friction hides small changes, so that the tangent is flatter than the
 /// secant.
@@ -61,6 +61,15 @@ Eigen::MatrixXd derivatives(const Comparison& comparison, const FitProblem& prob
   return jacobian;
 }
 
+/// 1 / max(sigma, RMS) of each row's block; 0 for averages, which repeat the rows.
+Eigen::VectorXd perSample(const Comparison& comparison, const Eigen::VectorXd& residual) {
+  Eigen::VectorXd result(comparison.size());
+  for (const Comparison::Block& block : comparison.blocks())
+    result.segment(block.first, block.count())
+        .setConstant(block.averaged_rows > 0 ? 0 : 1 / std::max(block.sigma, std::sqrt(comparison.meanSquare(block, residual))));
+  return result;
+}
+
 /// Number of samples per independent sample, from the autocorrelation up to its first zero, averaged over blocks.
 double samplesPerIndependent(const Comparison& comparison, const Eigen::VectorXd& residual) {
   double sum = 0;
@@ -83,19 +92,24 @@ double samplesPerIndependent(const Comparison& comparison, const Eigen::VectorXd
 }
 
 /// Half of the 95 % interval of every coordinate; infinite if the data do not determine it, alone or together with the others.
-Eigen::VectorXd halfWidths(const Comparison& comparison, const FitProblem& problem, const Point& point, const Eigen::MatrixXd& jacobian) {
+/// `error`: relative error of each column of the Jacobian. A direction in which the columns cancel to less than their errors is not known.
+Eigen::VectorXd halfWidths(const Comparison& comparison, const FitProblem& problem, const Eigen::VectorXd& residual,
+                           const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& error) {
   constexpr double nothing = 1e-12, flat = 1e-8, takes_part = 0.1;
-  Eigen::VectorXd per_sample(comparison.size());
-  for (const Comparison::Block& block : comparison.blocks())
-    per_sample.segment(block.first, block.count())
-        .setConstant(block.averaged_rows > 0 ? 0 : 1 / std::max(block.sigma, std::sqrt(comparison.meanSquare(block, point.residual))));
-  const Eigen::MatrixXd weighted = per_sample.asDiagonal() * jacobian;
-  Eigen::MatrixXd information = weighted.transpose() * weighted / samplesPerIndependent(comparison, point.residual);
-  if (problem.precision.size()) information.diagonal() += problem.precision;
-  const Eigen::ArrayXd size = information.diagonal().array().max(0).sqrt();
+  const Eigen::MatrixXd weighted = perSample(comparison, residual).asDiagonal() * jacobian;
+  const Eigen::MatrixXd information = weighted.transpose() * weighted / samplesPerIndependent(comparison, residual);
+  const Eigen::VectorXd precision = problem.precision.size() ? problem.precision : Eigen::VectorXd::Zero(jacobian.cols());
+  const Eigen::ArrayXd size = (information.diagonal() + precision).array().max(0).sqrt();
   // Scaled to unit size, so that a direction without influence shows in any units.
   const Eigen::VectorXd per_size = (size > nothing).select(size.inverse(), 0.0);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> directions(per_size.asDiagonal() * information * per_size.asDiagonal());
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> of_data(per_size.asDiagonal() * information * per_size.asDiagonal());
+  Eigen::MatrixXd known = precision.cwiseProduct(per_size.cwiseAbs2()).asDiagonal();
+  for (Eigen::Index k = 0; k < size.size(); ++k) {
+    const Eigen::VectorXd direction = of_data.eigenvectors().col(k);
+    const double certain = of_data.eigenvalues()[k] - direction.cwiseAbs2().dot(error.cwiseAbs2());
+    if (certain > 0) known += certain * direction * direction.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> directions(known);
   constexpr double unbounded = std::numeric_limits<double>::infinity();
   Eigen::ArrayXd variance = Eigen::ArrayXd::Zero(size.size());
   for (Eigen::Index k = 0; k < size.size(); ++k) {
@@ -180,7 +194,20 @@ FitResult fit(const Comparison& comparison, const FitProblem& problem, int round
     }
     fresh = settled;
   }
-  return {best.z, best.residual, best.cost, halfWidths(comparison, problem, best, jacobian), jacobian};
+  return {best.z, best.residual, best.cost, halfWidths(comparison, problem, best.residual, jacobian, Eigen::VectorXd::Zero(best.z.size())),
+          jacobian};
+}
+
+Eigen::VectorXd halfWidths(const Comparison& comparison, const FitProblem& problem, const Eigen::VectorXd& residual) {
+  const Point at = evaluate(comparison, problem, problem.start);
+  if (!at.residual.size()) return Eigen::VectorXd::Constant(problem.start.size(), std::numeric_limits<double>::infinity());
+  const Eigen::MatrixXd far = derivatives(comparison, problem, at, wide), near = derivatives(comparison, problem, at, narrow);
+  const Eigen::VectorXd weights = perSample(comparison, residual);
+  Eigen::VectorXd error = Eigen::VectorXd::Zero(near.cols());
+  for (Eigen::Index k = 0; k < near.cols(); ++k)
+    if (const double norm = weights.cwiseProduct(near.col(k)).norm(); norm > 0)
+      error[k] = weights.cwiseProduct(far.col(k) - near.col(k)).norm() / norm;
+  return halfWidths(comparison, problem, residual, near, error);
 }
 
 FitResult fitCorrected(const Comparison& comparison, const FitProblem& cheap, const Predicted& exact, int round_count) {

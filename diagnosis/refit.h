@@ -46,6 +46,11 @@ double stepOf(const FitProblem& problem, const Eigen::VectorXd& z, Eigen::Index 
 /// number of samples (from the residual's autocorrelation).
 FitResult fit(const Comparison& comparison, const FitProblem& problem, int round_count);
 
+/// Half of the 95 % interval of every coordinate at problem.start from fresh derivatives, with differences of two sizes: what these
+/// disagree in is taken for the error of the derivatives, below which two coordinates that act alike are not told apart. `residual`:
+/// measured minus the exact prediction there.
+Eigen::VectorXd halfWidths(const Comparison& comparison, const FitProblem& problem, const Eigen::VectorXd& residual);
+
 /// Two-fidelity fit: minimises the misfit of the cheap prediction plus the exact-minus-cheap difference at the start, predicts the result
 /// exactly, and repeats once from there (additive correction, Alexandrov and Lewis 2001). The residual is that of the exact prediction,
 /// never worse than at the start.

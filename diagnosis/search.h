@@ -112,6 +112,7 @@ class Search {
   bool hasInactiveEffect(const Explanation& explanation) const;
   std::vector<Explanation> otherVariants(const Explanation& explanation) const;
   void tryVariants();
+  void findIntervals();
   void weigh();
 
   const Plant& plant_;

@@ -258,12 +258,11 @@ std::string otherwise(const Diagnosis& d) {
   if (d.alternatives.size() < 2) return "";
   std::vector<std::string> others;
   for (auto other = d.alternatives.begin() + 1; other != d.alternatives.end(); ++other) others.push_back(explanationWords(*other));
-  const std::string place = d.chosen.size() > 1 ? " in place of " + explanationWords(d.alternatives.front()) : "";
   others.front().front() = static_cast<char>(std::toupper(static_cast<unsigned char>(others.front().front())));
   const bool pairs = std::ranges::any_of(d.alternatives, [](const std::string& labels) { return labels.find(" + ") != std::string::npos; });
   std::string experiment;
   if (!d.next_experiment.commands.empty()) experiment = "; record the schedule in next.csv to tell " + separatedWords(d);
-  return fmt::format("{} would explain the gap as well{}{}.", fmt::join(others, pairs ? "; or " : " or "), place, experiment);
+  return fmt::format("{} would explain the gap as well{}.", fmt::join(others, pairs ? "; or " : " or "), experiment);
 }
 
 /// A warning if the motion is so sensitive that the time step changes it by a noticeable share of the gap.

@@ -15,12 +15,15 @@ namespace musclesim {
 namespace {
 
 constexpr int tuning_round_count = 20;
+/// Of the half width of a 95 % interval, in tolerances, if the data say something; without data it is 1.96.
+constexpr double determined = 1;
 
 }  // namespace
 
 Tuning tune(const std::vector<Recording>& recordings, DiagnosisOptions& options) {
   const Plant plant(recordings, options);
-  const Comparison fitted(plant, plant.split().fit);
+  Comparison fitted(plant, plant.split().fit);
+  if (const Eigen::VectorXd nominal = fitted.predicted(Model{}); nominal.size()) fitted.setGap(fitted.measured() - nominal);
   std::mutex mutex;  // derivatives are simulated by several threads
   DiagnosisProgress progress{"fitting parameters of the model", 0, tuning_round_count * static_cast<long>(plant.numberCount() + 2)};
   FitProblem problem;

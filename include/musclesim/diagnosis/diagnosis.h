@@ -198,7 +198,7 @@ struct Diagnosis {
   std::vector<std::vector<std::string>> ambiguity_sets;  ///< sets of effects that the data cannot tell from the chosen one, that one first
   Remainder remainder;
   std::vector<FittedNumber> numbers;
-  std::vector<std::string> alternatives;  ///< explanations that the data cannot distinguish, each without the effects common to all
+  std::vector<std::string> alternatives;  ///< the same as words, "a@x + b@y"; empty if there is only the chosen one
   std::string model_options;              ///< options of the program for the robot of the recordings: "--robot rig --set rig.load_kg=2"
   std::vector<std::string> refitted;      ///< parameters of the model that the nominal refit re-tunes
   double nominal_refit_percent = 0, negative_control_percent = 0, unexplained_percent = 0;
