@@ -9,9 +9,6 @@ namespace musclesim {
 
 namespace {
 
-/// ln odds of something else per share of the misfit that the best explanation leaves, and the share at which it is as likely as not.
-constexpr double per_share_left = 12, share_of_unknown = 0.3;
-
 enum class Part { muscle, body, sensor };
 
 Part partOf(const Hypothesis& hypothesis) {
@@ -56,8 +53,8 @@ Complexity Evidence::complexityOf(const Explanation& explanation) const {
 }
 
 double Evidence::price(const Explanation& explanation) const {
-  const std::array<double, prices.size()> amounts = complexityOf(explanation).asArray();
-  return std::inner_product(prices.begin(), prices.end(), amounts.begin(), 0.0);
+  const auto amounts = complexityOf(explanation).asArray(), nats = prices.asArray();
+  return std::inner_product(nats.begin(), nats.end(), amounts.begin(), 0.0);
 }
 
 double Evidence::score(const Explanation& explanation) const {

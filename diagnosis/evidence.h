@@ -9,17 +9,19 @@
 
 namespace musclesim {
 
-/// What the price of an explanation is made of, in the order of `prices`.
+/// What the price of an explanation is made of, one number each.
 struct Complexity {
   double parameters = 0;     ///< fitted coordinates, or numbers that were counted or tried
   double effects = 0;        ///< beyond the first
   double same_place = 0;     ///< effects that share their place with an earlier one: they may only correct that one's law
   double excess = 0;         ///< e-folds by which strengths exceed their usual range
   double shared_sensor = 0;  ///< faults that all sensors share
-  std::array<double, 5> asArray() const { return {parameters, effects, same_place, excess, shared_sensor}; }
+  constexpr std::array<double, 5> asArray() const { return {parameters, effects, same_place, excess, shared_sensor}; }
 };
 /// Nats for one of each; docs/developer/diagnosis.md says on which plants they were found.
-inline constexpr std::array<double, 5> prices = {1.0, 3.1, 1.0, 1.0, 4.0};
+inline constexpr Complexity prices = {.parameters = 1.0, .effects = 3.1, .same_place = 1.0, .excess = 1.0, .shared_sensor = 4.0};
+/// ln odds of something else per share of the misfit that the best explanation leaves, and the share at which it is as likely as not.
+inline constexpr double per_share_left = 12, share_of_unknown = 0.3;
 
 class Evidence {
  public:

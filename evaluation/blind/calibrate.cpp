@@ -18,9 +18,10 @@ constexpr double ridge = 0.5;  ///< nats for an e-fold of one weight: a few doze
 constexpr int fold_count = 5;
 
 Eigen::VectorXd weightsInForce() {
-  Eigen::VectorXd result(tolerances.size() + prices.size());
+  const auto nats = prices.asArray();
+  Eigen::VectorXd result(tolerances.size() + nats.size());
   for (std::size_t i = 0; i < tolerances.size(); ++i) result[static_cast<Eigen::Index>(i)] = tolerances[i].nats;
-  for (std::size_t i = 0; i < prices.size(); ++i) result[static_cast<Eigen::Index>(tolerances.size() + i)] = prices[i];
+  for (std::size_t i = 0; i < nats.size(); ++i) result[static_cast<Eigen::Index>(tolerances.size() + i)] = nats[i];
   return result;
 }
 

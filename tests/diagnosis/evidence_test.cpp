@@ -51,12 +51,11 @@ class EvidenceOnARig : public testing::Test {
   Causes causes_{plant_, on_simulation_};
   Eigen::VectorXd nominal_ = leaving(gap);
   Evidence evidence_{comparison_, nominal_, causes_};
-  Weighing weighing_;
 };
 
 TEST_F(EvidenceOnARig, FollowsWhatIsLeft) {
   for (const double sigmas : {0.5, 1.0, 2.0, 5.0, 10.0})
-    EXPECT_NEAR(ofSingle(payload, sigmas), -power * temperedMisfit(sigmas, gap) - weighing_.per_parameter, 1e-9) << sigmas;
+    EXPECT_NEAR(ofSingle(payload, sigmas), -power * temperedMisfit(sigmas, gap) - prices.parameters, 1e-9) << sigmas;
   EXPECT_GT(ofSingle(payload, 2) - ofSingle(payload, 4), 2 * (ofSingle(payload, 0.5) - ofSingle(payload, 1)))
       << "what is left below the noise says little";
 }
@@ -69,21 +68,21 @@ TEST_F(EvidenceOnARig, NoEffectCostsNothing) {
 TEST_F(EvidenceOnARig, CountsParameters) {
   ASSERT_EQ(causes_.hypotheses[gain].coordinateCount(), 1);
   ASSERT_EQ(causes_.hypotheses[threshold].coordinateCount(), 2);
-  EXPECT_NEAR(priceOf({gain}), weighing_.per_parameter, 1e-12);
-  EXPECT_NEAR(priceOf({threshold}), 2 * weighing_.per_parameter, 1e-12);
+  EXPECT_NEAR(priceOf({gain}), prices.parameters, 1e-12);
+  EXPECT_NEAR(priceOf({threshold}), 2 * prices.parameters, 1e-12);
   ASSERT_EQ(causes_.hypotheses[bits].coordinateCount(), 0);
-  EXPECT_NEAR(priceOf({bits}), static_cast<double>(effectInfo("command_quantisation").parameters.size()) * weighing_.per_parameter, 1e-12)
+  EXPECT_NEAR(priceOf({bits}), static_cast<double>(effectInfo("command_quantisation").parameters.size()) * prices.parameters, 1e-12)
       << "numbers that were tried one by one count as fitted ones";
 }
 
 TEST_F(EvidenceOnARig, AFurtherEffectThatGainsNothingCosts) {
   const Explanation alone = fitted({payload}, 2), pair = fitted({payload, bias}, 2);
-  EXPECT_NEAR(evidence_.score(alone) - evidence_.score(pair), weighing_.per_effect + weighing_.per_parameter, 1e-9);
-  EXPECT_NEAR(priceOf({payload, bias, gain}), 2 * weighing_.per_effect + 3 * weighing_.per_parameter, 1e-9) << "the first one is free";
+  EXPECT_NEAR(evidence_.score(alone) - evidence_.score(pair), prices.effects + prices.parameters, 1e-9);
+  EXPECT_NEAR(priceOf({payload, bias, gain}), 2 * prices.effects + 3 * prices.parameters, 1e-9) << "the first one is free";
 }
 
 TEST_F(EvidenceOnARig, AFurtherEffectInTheSamePlaceCostsMore) {
-  EXPECT_NEAR(priceOf({gain, threshold}) - priceOf({gain, bias}), weighing_.per_same_place + weighing_.per_parameter, 1e-9);
+  EXPECT_NEAR(priceOf({gain, threshold}) - priceOf({gain, bias}), prices.same_place + prices.parameters, 1e-9);
   EXPECT_EQ(priceOf({gain, threshold}), priceOf({threshold, gain}));
 }
 
@@ -108,19 +107,19 @@ TEST_F(EvidenceOnARig, PlacesOverlapThroughAllAndThroughPairsOfMuscles) {
     return evidence.price(explanation);
   };
   const auto forPlace = [&](std::size_t one, std::size_t other) {
-    return priceOf({one, other}) - priceOf({one}) - priceOf({other}) - weighing_.per_effect;
+    return priceOf({one, other}) - priceOf({one}) - priceOf({other}) - prices.effects;
   };
-  EXPECT_NEAR(forPlace(0, 1), weighing_.per_same_place, 1e-9) << "a muscle and all";
-  EXPECT_NEAR(forPlace(0, 2), weighing_.per_same_place, 1e-9) << "a muscle and a pair with it";
-  EXPECT_NEAR(forPlace(4, 5), weighing_.per_same_place, 1e-9) << "both on the body";
-  EXPECT_NEAR(forPlace(6, 7), weighing_.per_same_place, 1e-9) << "all sensors and one of them";
+  EXPECT_NEAR(forPlace(0, 1), prices.same_place, 1e-9) << "a muscle and all";
+  EXPECT_NEAR(forPlace(0, 2), prices.same_place, 1e-9) << "a muscle and a pair with it";
+  EXPECT_NEAR(forPlace(4, 5), prices.same_place, 1e-9) << "both on the body";
+  EXPECT_NEAR(forPlace(6, 7), prices.same_place, 1e-9) << "all sensors and one of them";
   EXPECT_NEAR(forPlace(0, 3), 0, 1e-9) << "another muscle";
   EXPECT_NEAR(forPlace(0, 4), 0, 1e-9) << "the body";
   EXPECT_NEAR(forPlace(1, 6), 0, 1e-9) << "all sensors are no muscle";
   EXPECT_NEAR(forPlace(7, 8), 0, 1e-9) << "another sensor";
-  EXPECT_NEAR(priceOf({0, 1, 2}) - priceOf({0}) - priceOf({1}) - priceOf({2}), 2 * (weighing_.per_effect + weighing_.per_same_place), 1e-9)
+  EXPECT_NEAR(priceOf({0, 1, 2}) - priceOf({0}) - priceOf({1}) - priceOf({2}), 2 * (prices.effects + prices.same_place), 1e-9)
       << "each further effect pays once";
-  EXPECT_NEAR(priceOf({6}) - priceOf({8}), weighing_.shared_sensor, 1e-9) << "a fault that all sensors share";
+  EXPECT_NEAR(priceOf({6}) - priceOf({8}), prices.shared_sensor, 1e-9) << "a fault that all sensors share";
 }
 
 /// A payload is usually up to 1 kg.
@@ -129,8 +128,8 @@ TEST_F(EvidenceOnARig, WhatExceedsItsUsualRangeCosts) {
   const double largest_kg = std::max(std::abs(mass.usual_low), std::abs(mass.usual_high));
   const Hypothesis& hypothesis = causes_.hypotheses[payload];
   const double per_z_kg = hypothesis.valuesAt(Eigen::VectorXd::Constant(1, 1)).front().second;
-  EXPECT_NEAR(priceOf({payload}, 0.99 * largest_kg / per_z_kg), weighing_.per_parameter, 1e-9);
-  EXPECT_NEAR(priceOf({payload}, std::numbers::e * largest_kg / per_z_kg), weighing_.per_parameter + weighing_.per_excess, 1e-9);
+  EXPECT_NEAR(priceOf({payload}, 0.99 * largest_kg / per_z_kg), prices.parameters, 1e-9);
+  EXPECT_NEAR(priceOf({payload}, std::numbers::e * largest_kg / per_z_kg), prices.parameters + prices.excess, 1e-9);
 }
 
 /// In an explanation of two effects, each is judged by its own coordinates.
@@ -139,19 +138,13 @@ TEST_F(EvidenceOnARig, FindsTheCoordinatesOfEveryEffect) {
   Explanation pair = fitted({threshold, payload}, 1);
   const double before = evidence_.price(pair);
   pair.z[2] = std::numbers::e / per_z_kg;
-  EXPECT_NEAR(evidence_.price(pair) - before, weighing_.per_excess, 1e-9);
+  EXPECT_NEAR(evidence_.price(pair) - before, prices.excess, 1e-9);
 }
 
 TEST_F(EvidenceOnARig, NumbersThatAreOffByTolerancesCostTheirSquares) {
   Explanation off = fitted({payload}, 2);
   off.numbers = Eigen::Vector2d(1, -2);
   EXPECT_NEAR(ofSingle(payload, 2) - evidence_.score(off), 0.5 * (1 + 4), 1e-9);
-}
-
-TEST_F(EvidenceOnARig, IsThatOfWhatWasNotSeenWhereThatIsKnown) {
-  Explanation flexible = fitted({payload}, 1);
-  flexible.cross_validated = leaving(4);
-  EXPECT_NEAR(evidence_.score(flexible), ofSingle(payload, 4), 1e-9);
 }
 
 TEST_F(EvidenceOnARig, InactiveEffectsAndFailedFitsHaveNone) {
@@ -171,7 +164,7 @@ TEST_F(EvidenceOnARig, SomethingElseIsLikelyWhereTheBestLeavesMuch) {
   };
   for (const double sigmas : {1.0, 2.5, 5.0, 15.0}) {
     const double share = temperedMisfit(sigmas, gap) / temperedMisfit(gap, gap);
-    EXPECT_NEAR(somethingElse(sigmas), weighing_.per_share_left * (share - weighing_.share_of_unknown), 1e-9) << sigmas;
+    EXPECT_NEAR(somethingElse(sigmas), per_share_left * (share - share_of_unknown), 1e-9) << sigmas;
   }
   EXPECT_GT(somethingElse(15), 2);
   EXPECT_LT(somethingElse(1.2), -2);
