@@ -214,10 +214,10 @@ class Run {
     const Gap gap_after = held_out_.gap(after);
     const Attempt attempt{labelsOf(model), model.effects, gap_after, reductionOf(gap_after), interval.low, interval.high};
     // The share of the RMS that they leave on unseen data bounds the probability that none of these effects acts.
-    const double left = std::sqrt(std::max(0.0, 1 - attempt.reduction_percent / 100));
-    diagnosis_.none_of_these = std::min(left, search_.noneOfThese());
-    const bool found = diagnosis_.none_of_these <= named &&
-                       clearlyBeats(attempt.reduction_percent, diagnosis_.nominal_refit_percent, diagnosis_.negative_control_percent);
+    const double none = std::min(std::sqrt(std::max(0.0, 1 - attempt.reduction_percent / 100)), search_.noneOfThese());
+    const bool found =
+        none <= named && clearlyBeats(attempt.reduction_percent, diagnosis_.nominal_refit_percent, diagnosis_.negative_control_percent);
+    if (found) diagnosis_.none_of_these = none;
     // Not offered, because it does not hold on the held-out data or gains no more than a control.
     if (!found && attempt.reduction_percent <= std::max({0.0, diagnosis_.nominal_refit_percent, diagnosis_.negative_control_percent}))
       return;

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <limits>
 #include <mutex>
 
@@ -56,7 +55,7 @@ std::vector<TunedParameter> tunedParameters(const Plant& plant, const Eigen::Vec
     const UncertainNumber& number = plant.numbers()[static_cast<std::size_t>(i)];
     if (!number.is_tuned) continue;
     const Estimate fitted = {plant.numberAt(i, eta[i]), plant.numberAt(i, eta[i] - half_width[i]),
-                             plant.numberAt(i, eta[i] + half_width[i]), std::isfinite(half_width[i])};
+                             plant.numberAt(i, eta[i] + half_width[i]), half_width[i] < determined};
     result.push_back({number.parameter.name, number.parameter.unit, std::get<double>(number.parameter.value), fitted, fitted});
   }
   return result;
