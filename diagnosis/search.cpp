@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t single_count = 9;                    ///< single effects that are fitted
 constexpr std::size_t per_stage_count = 2;                 ///< and at least so many of every stage
 constexpr std::size_t beam_width = 5;                      ///< sets of each size that the linear search keeps
-constexpr std::size_t addition_count = 4, swap_count = 4;  ///< sets that are fitted about one explanation
+constexpr std::size_t addition_count = 3, swap_count = 4;  ///< sets that are fitted about one explanation, besides one of each stage
 constexpr std::size_t base_counts[] = {3, 2, 2, 1, 1, 1};  ///< explanations of each size that are extended
 constexpr double hopeless = 4;                             ///< nats behind the best: sets of this size are not extended any more
 constexpr int screening_rounds = 4;
@@ -58,20 +58,27 @@ std::vector<Search::Proposal> Search::nearest(std::vector<Proposal> proposals, s
   return result;
 }
 
-std::vector<Search::Proposal> Search::singleEffects(const Surroundings& around) const {
-  std::vector<Proposal> all;
-  for (std::size_t i = 0; i < around.of_hypothesis.size(); ++i)
-    if (!around.of_hypothesis[i].empty()) all.push_back(proposed(around, {}, {i}));
-  std::vector<Proposal> result = nearest(all, single_count, 2);
+/// The nearest proposals, and the nearest whose last effect is of each stage: faults of sensors resemble a little of everything, and would
+/// fill the list alone.
+std::vector<Search::Proposal> Search::nearestOfStages(const std::vector<Proposal>& all, std::size_t count, std::size_t per_stage,
+                                                      int most_variants) const {
+  std::vector<Proposal> result = nearest(all, count, most_variants);
   for (const Stage stage : {Stage::command, Stage::pressure, Stage::force, Stage::body, Stage::sensor}) {
     std::vector<Proposal> of_stage;
     for (const Proposal& proposal : all)
-      if (causes_.hypotheses[proposal.start.members.front()].info().stage == stage) of_stage.push_back(proposal);
-    for (Proposal& proposal : nearest(std::move(of_stage), per_stage_count, 2))
+      if (causes_.hypotheses[proposal.start.members.back()].info().stage == stage) of_stage.push_back(proposal);
+    for (Proposal& proposal : nearest(std::move(of_stage), per_stage, most_variants))
       if (std::ranges::none_of(result, [&](const Proposal& other) { return other.start.members == proposal.start.members; }))
         result.push_back(std::move(proposal));
   }
   return result;
+}
+
+std::vector<Search::Proposal> Search::singleEffects(const Surroundings& around) const {
+  std::vector<Proposal> all;
+  for (std::size_t i = 0; i < around.of_hypothesis.size(); ++i)
+    if (!around.of_hypothesis[i].empty()) all.push_back(proposed(around, {}, {i}));
+  return nearestOfStages(all, single_count, per_stage_count, 2);
 }
 
 /// The best sets of two and more effects of the linear model, by a beam search.
@@ -178,7 +185,7 @@ void Search::expand(const Explanation& base) {
   if (!expanded_.insert(causes_.labelsOf(base.members)).second || plant_.interrupted()) return;
   const Explanation copy = base;  // the pool grows below
   const Surroundings around = surroundingsOf(copy);
-  std::vector<Proposal> proposals = nearest(additions(around), addition_count);
+  std::vector<Proposal> proposals = nearestOfStages(additions(around), addition_count, 1, 1);
   std::ranges::move(nearest(swaps(around), swap_count), std::back_inserter(proposals));
   std::ranges::move(nearest(drops(around), swap_count), std::back_inserter(proposals));
   fitOnScreening(std::move(proposals));

@@ -93,6 +93,8 @@ class Search {
   bool isKnown(const std::vector<std::size_t>& members) const;
   bool fitsBeside(std::size_t hypothesis, const std::vector<std::size_t>& members) const;
   std::vector<Proposal> nearest(std::vector<Proposal> proposals, std::size_t count, int most_variants = 1) const;
+  std::vector<Proposal> nearestOfStages(const std::vector<Proposal>& all, std::size_t count, std::size_t per_stage,
+                                        int most_variants) const;
   std::vector<Proposal> singleEffects(const Surroundings& around) const;
   std::vector<Proposal> largerSets(const Surroundings& around) const;
   std::vector<Proposal> additions(const Surroundings& around) const;
