@@ -28,11 +28,11 @@ def outcome(case):
     """Effects, normalised gap after, shrink and its interval: of what was found, or of what comes nearest."""
     if case['chosen']:
         gap = case['gap']
-        return case['chosen'], gap['after'], gap['shrink_percent'], gap['shrink_ci95_percent']
+        return case['chosen'], gap['after'], gap['shrink_percent'], gap.get('shrink_ci95_percent')
     attempt = case.get('attempt')
     if attempt:
-        return attempt['effects'], attempt['after'], attempt['shrink_percent'], attempt['shrink_ci95_percent']
-    return [], case['gap']['before'], 0.0, [0.0, 0.0]
+        return attempt['effects'], attempt['after'], attempt['shrink_percent'], attempt.get('shrink_ci95_percent')
+    return [], case['gap']['before'], 0.0, None
 
 
 def effects_of(name):
@@ -84,8 +84,9 @@ def summary():
     for name, (title, fitted, measured) in CASES.items():
         labels, after, shrink, interval = outcome(d[name])
         gap = d[name]['gap']
+        range_words = f' ({interval[0]:.1f} to {interval[1]:.1f})' if interval else ''
         print(f'| {title} | {fitted} | {measured} | {d[name]["verdict"]} | {", ".join(f"`{e}`" for e in labels)} | '
-              f'{gap["before"]["normalised"]:.1f} | {after["normalised"]:.2f} | {shrink:.1f} % ({interval[0]:.1f} to {interval[1]:.1f}) | '
+              f'{gap["before"]["normalised"]:.1f} | {after["normalised"]:.2f} | {shrink:.1f} %{range_words} | '
               f'{gap["nominal_refit_shrink_percent"]:.1f} % | {gap["sham_shrink_percent"]:.1f} % |')
 
 

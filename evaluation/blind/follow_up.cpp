@@ -117,10 +117,11 @@ json freshReduction(const Answered& one, const fs::path& effects_file) {
                after = meanSquareOverNoise(measured, added.simulated, one.key.at("noise_std"));
   if (before <= 0) return nullptr;
   const json& gap = one.answer.at("gap");
-  return {{"shrink_percent", 100 * (1 - after / before)},
-          {"reported_percent", gap.at("shrink_percent")},
-          {"interval_percent", gap.at("shrink_ci95_percent")},
-          {"diverged", added.divergence.has_value()}};
+  json result = {{"shrink_percent", 100 * (1 - after / before)},
+                 {"reported_percent", gap.at("shrink_percent")},
+                 {"diverged", added.divergence.has_value()}};
+  if (gap.contains("shrink_ci95_percent")) result["interval_percent"] = gap["shrink_ci95_percent"];
+  return result;
 }
 
 /// Empty if it was interrupted.

@@ -20,8 +20,9 @@ namespace {
 constexpr double confident_probability = 0.9, wide_points = 20;
 
 FreshReduction freshOf(const json& object) {
-  const json& interval = object.at("interval_percent");
-  return {object.at("shrink_percent"), object.at("reported_percent"), interval.at(0), interval.at(1), object.at("diverged")};
+  FreshReduction fresh{object.at("shrink_percent"), object.at("reported_percent"), {}, object.at("diverged")};
+  if (object.contains("interval_percent")) fresh.interval_percent = object["interval_percent"].get<std::pair<double, double>>();
+  return fresh;
 }
 
 FollowUp followUpOf(const fs::path& folder, const std::string& name, const json& key) {
@@ -72,16 +73,16 @@ void putFresh(json& totals, const std::vector<FollowUp>& follow_ups) {
     putRate(totals, name, follow_ups,
             [&](const FollowUp& one) { return one.fresh && counts(*one.fresh) ? std::optional(hit(*one.fresh)) : std::nullopt; });
   };
-  auto any = [](const FreshReduction&) { return true; };
-  auto narrow = [](const FreshReduction& fresh) { return fresh.width() <= wide_points; };
+  auto any = [](const FreshReduction& fresh) { return fresh.interval_percent.has_value(); };
+  auto narrow = [](const FreshReduction& fresh) { return fresh.interval_percent && fresh.width() <= wide_points; };
   put("fresh_within", any, [](const FreshReduction& fresh) { return fresh.isWithin(); });
-  put("fresh_narrow", any, narrow);
+  put("fresh_narrow", any, [](const FreshReduction& fresh) { return fresh.width() <= wide_points; });
   put("fresh_within_narrow", narrow, [](const FreshReduction& fresh) { return fresh.isWithin(); });
   std::vector<double> difference, width;
   for (const FollowUp& one : follow_ups) {
     if (!one.fresh) continue;
     if (!one.fresh->diverged) difference.push_back(std::abs(one.fresh->reduction_percent - one.fresh->reported_percent));
-    width.push_back(one.fresh->width());
+    if (one.fresh->interval_percent) width.push_back(one.fresh->width());
   }
   if (const auto median = medianOf(difference)) totals["fresh_median_difference_points"] = *median;
   if (const auto median = medianOf(width)) totals["fresh_median_width_points"] = *median;
@@ -131,11 +132,11 @@ std::vector<std::string> missesOf(const FollowUp& follow_up) {
       misses.push_back("without the true effect: " + said(*follow_up.left_out));
   if (follow_up.experiment && !namesTruth(*follow_up.experiment))
     misses.push_back("after the proposed schedule: " + said(*follow_up.experiment));
-  if (const auto& fresh = follow_up.fresh; fresh && !fresh->isWithin())
-    misses.push_back(fresh->diverged
-                         ? std::string("on a fresh recording the model with the effects diverged")
-                         : fmt::format("on a fresh recording {:.1f} % instead of {:.1f} ({:.1f} to {:.1f})", fresh->reduction_percent,
-                                       fresh->reported_percent, fresh->low_percent, fresh->high_percent));
+  if (const auto& fresh = follow_up.fresh; fresh && fresh->diverged)
+    misses.push_back("on a fresh recording the model with the effects diverged");
+  else if (fresh && fresh->interval_percent && !fresh->isWithin())
+    misses.push_back(fmt::format("on a fresh recording {:.1f} % instead of {:.1f} ({:.1f} to {:.1f})", fresh->reduction_percent,
+                                 fresh->reported_percent, fresh->interval_percent->first, fresh->interval_percent->second));
   return misses;
 }
 

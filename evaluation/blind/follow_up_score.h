@@ -13,10 +13,14 @@ namespace musclesim::blind {
 
 /// Gap reduction by an answer's effects on a new recording of the same plant, and the reduction that the answer reported.
 struct FreshReduction {
-  double reduction_percent = 0, reported_percent = 0, low_percent = 0, high_percent = 0;
-  bool diverged = false;  ///< the model with the effects diverged
-  bool isWithin() const { return !diverged && reduction_percent >= low_percent && reduction_percent <= high_percent; }
-  double width() const { return high_percent - low_percent; }
+  double reduction_percent = 0, reported_percent = 0;
+  std::optional<std::pair<double, double>> interval_percent = {};  ///< empty if the answer gives none
+  bool diverged = false;                                           ///< the model with the effects diverged
+  /// Both for an answer with an interval.
+  bool isWithin() const {
+    return !diverged && reduction_percent >= interval_percent->first && reduction_percent <= interval_percent->second;
+  }
+  double width() const { return interval_percent->second - interval_percent->first; }
 };
 
 /// The follow-up of one answer; parts that were not tried are empty.

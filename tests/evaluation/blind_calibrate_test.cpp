@@ -1,11 +1,10 @@
 /// The fit of the evidence's weights to open answers.
-#include "evaluation/blind/calibrate.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <fstream>
 
+#include "evaluation/blind/calibrate.h"
 #include "log/log_fixture.h"
 #include "musclesim/base/error.h"
 
@@ -52,8 +51,8 @@ TEST(BlindCalibrate, ReadsKeysAndAnswers) {
   const auto trial = [](const std::string& effects) {
     return R"({"effects": [)" + effects + R"(], "misfits": [1, 2, 3], "complexity": [4, 1, 0, 0.5, 0], "numbers_cost": 0.25})";
   };
-  writeText(folder.file("case01.json"), R"({"fitted": {"trials": [)" + trial(R"("valve_lag@all", "payload@hand")") + "," +
-                                            trial(R"("valve_lag@all")") + "]}}");
+  writeText(folder.file("case01.json"),
+            R"({"fitted": {"trials": [)" + trial(R"("valve_lag@all", "payload@hand")") + "," + trial(R"("valve_lag@all")") + "]}}");
   const std::vector<TriedCase> cases = triedCases(folder.file("keys.json"), folder.file(""));
   ASSERT_EQ(cases.size(), 1U);
   EXPECT_EQ(cases[0].is_right, (std::vector<bool>{true, false}));

@@ -55,17 +55,20 @@ TEST(BlindFollowUp, WantsTheTruthToBeTheSingleBest) {
 }
 
 TEST(BlindFollowUp, AsksWhetherAnIntervalSaysAnything) {
-  FollowUp narrow = followUp(rightSingle()), wide = narrow, diverged = narrow, missed = narrow;
-  narrow.fresh = FreshReduction{91, 90, 88, 92, false};
-  wide.fresh = FreshReduction{-500, 90, -1000, 99, false};
-  diverged.fresh = FreshReduction{90, 90, 88, 92, true};
-  missed.fresh = FreshReduction{80, 90, 88, 92, false};
-  const json totals = followUpTotals({narrow, wide, diverged, missed});
+  FollowUp narrow = followUp(rightSingle()), wide = narrow, diverged = narrow, missed = narrow, without = narrow;
+  narrow.fresh = FreshReduction{91, 90, std::pair(88.0, 92.0), false};
+  wide.fresh = FreshReduction{-500, 90, std::pair(-1000.0, 99.0), false};
+  diverged.fresh = FreshReduction{90, 90, std::pair(88.0, 92.0), true};
+  missed.fresh = FreshReduction{80, 90, std::pair(88.0, 92.0), false};
+  without.fresh = FreshReduction{80, 90, {}, false};  // claims nothing
+  const json totals = followUpTotals({narrow, wide, diverged, missed, without});
   EXPECT_EQ(totals["fresh_within"]["hits"], 2);
   EXPECT_EQ(totals["fresh_narrow"]["hits"], 3);
   EXPECT_EQ(totals["fresh_within_narrow"]["hits"], 1);
   EXPECT_DOUBLE_EQ(totals["fresh_median_width_points"], 4);
   EXPECT_DOUBLE_EQ(totals["fresh_median_difference_points"], 10);
+  EXPECT_EQ(totals["fresh_within"]["count"], 4);
+  EXPECT_TRUE(missesOf(without).empty());
   EXPECT_EQ(missesOf(missed), Labels{"on a fresh recording 80.0 % instead of 90.0 (88.0 to 92.0)"});
   EXPECT_TRUE(followUpTotals({}).empty());
 }

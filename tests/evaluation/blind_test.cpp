@@ -258,6 +258,7 @@ TEST_F(Blind, RefusesAKeyAndRecordingsThatWereChanged) {
 TEST_F(Blind, FollowsUpOnAnswersOnce) {
   MakeOptions single = tiny({"single"}, 7);
   single.duration_s = 2;
+  single.causes = {"transport_delay"};  // nothing that the tolerances of the model's numbers could explain
   const fs::path key_file = make(cases(), keys(), single);
   const std::string truth = readObject(key_file)["cases"]["case001"]["effects"][0]["id"];
   RunOptions options = few();
@@ -277,9 +278,13 @@ TEST_F(Blind, FollowsUpOnAnswersOnce) {
   ASSERT_EQ(readObject(cases() / "answers" / "case001.json")["verdict"], "effects_found");
   // What an effect gains under other commands is the study's question; here it must be a gain, and be compared as it says.
   const double reduction = found["fresh"]["shrink_percent"];
-  const std::vector<double> interval = found["fresh"]["interval_percent"];
   EXPECT_GT(reduction, 50);
-  EXPECT_EQ(totals["fresh_within"]["hits"], interval[0] <= reduction && reduction <= interval[1] ? 1 : 0);
+  if (found["fresh"].contains("interval_percent")) {
+    const std::vector<double> interval = found["fresh"]["interval_percent"];
+    EXPECT_EQ(totals["fresh_within"]["hits"], interval[0] <= reduction && reduction <= interval[1] ? 1 : 0);
+  } else {
+    EXPECT_FALSE(totals.contains("fresh_within"));
+  }
   append(file, " ");
   const std::string mark = sha256OfFile(file);
   followUp(cases(), key_file, follow);
