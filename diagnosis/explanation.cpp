@@ -4,6 +4,12 @@
 
 namespace musclesim {
 
+namespace {
+
+constexpr double roughly_enough = 0.02;  ///< nats: for fits that only rank explanations
+
+}  // namespace
+
 bool overlap(const std::string& one, const std::string& other) {
   if (one == "all" || other == "all") return true;
   // A pair of muscles, "muscle_0+muscle_1", overlaps with either.
@@ -93,6 +99,7 @@ void Causes::refit(Explanation& explanation, const Comparison& comparison, int r
     problem.known_derivatives = std::move(known);
     problem.renewed_count = fidelity == Fidelity::fine ? 0 : effect_count;
     problem.narrow_differences = false;
+    if (fidelity != Fidelity::fine) problem.enough = roughly_enough;
   }
   const FitResult result = fidelity == Fidelity::fine
                                ? fitCorrected(comparison, problem, problemOf(explanation, comparison, Fidelity::fine).predicted, rounds)

@@ -13,7 +13,7 @@ namespace {
 constexpr double far_behind = 8;  ///< nats behind the best on the screening segments: not fitted to all recordings
 constexpr std::size_t finalist_count = 10;
 constexpr std::size_t varied_count = 2;  ///< explanations of which other variants are tried
-constexpr int coarse_rounds = 4, fine_rounds = 3;
+constexpr int coarse_rounds = 6, fine_rounds = 4;
 
 }  // namespace
 

@@ -11,7 +11,6 @@ namespace musclesim {
 
 namespace {
 
-constexpr double enough = 0.02;  ///< nats: a decrease that does not justify another round
 constexpr double normal_95 = 1.96;
 /// Differences for derivatives, in coordinates. Wide ones first: dry friction hides small changes, so that the tangent is flatter than the
 /// secant.
@@ -182,7 +181,7 @@ FitResult fit(const Comparison& comparison, const FitProblem& problem, int round
   for (int round = 0; round < round_count && !comparison.plant().interrupted(); ++round) {
     const Point before = best;
     const bool down = stepDown(comparison, problem, jacobian, damping, best);
-    const bool settled = best.cost > before.cost - enough;
+    const bool settled = best.cost > before.cost - problem.enough;
     if ((settled && fresh && (difference == narrow || !problem.narrow_differences)) || round + 1 == round_count) break;
     if (settled) {
       if (fresh && problem.narrow_differences) difference = narrow;
@@ -229,9 +228,9 @@ FitResult fitCorrected(const Comparison& comparison, const FitProblem& cheap, co
     const FitResult fitted = fit(comparison, corrected, round_count);
     result.half_width = fitted.half_width;
     result.jacobian = fitted.jacobian;
-    if (fitted.cost > best.cost - enough) break;
+    if (fitted.cost > best.cost - cheap.enough) break;
     Point next = evaluate(comparison, exactly, fitted.z);
-    if (next.cost > best.cost - enough) break;
+    if (next.cost > best.cost - cheap.enough) break;
     best = std::move(next);
   }
   result.z = best.z;

@@ -21,6 +21,8 @@ struct FitProblem {
   std::vector<Eigen::VectorXd> known_derivatives = {};
   /// Only so many of the first coordinates get new derivatives later on; the known ones of the others are only updated. -1: all do.
   Eigen::Index renewed_count = -1;
+  double enough =
+      5e-4;  ///< nats: a decrease that does not justify another round. The misfit is tempered, so that intervals end far below 1
   bool narrow_differences = true;  ///< whether the last rounds use narrow differences
 };
 
