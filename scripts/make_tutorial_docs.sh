@@ -159,7 +159,7 @@ text <<'TEXT'
 
 Real machines have several causes at once, laws that differ from any catalogue's, and faulty data. The [case studies](../research/case_studies.md) show how much of the gap then remains and what to do:
 
-- `--max-effects 3` looks for further effects. `--effects answer/effects.json --config answer/nominal.toml` includes the findings in the next diagnosis.
+- Up to four effects are looked for at once. `--effects answer/effects.json --config answer/nominal.toml` begins the next diagnosis with what this one found.
 - A gap that grows with time may have another cause than creep or drift. If readings lag more and more behind the commands, a clock is slow: look at the curves in the report before you believe a number.
 - Correct known faults of a sensor in the mapping (`offset`, `factor`).
 - "I cannot explain" with a probability is an answer, too. `attempt.json`, if there is one, holds the nearest explanation.
