@@ -42,7 +42,7 @@ diagnose() {
   shift 2
   [[ -e $answers/$name/diagnosis.json ]] && return
   echo "$name" >&2
-  (cd "$answers/recordings" && "$program" diagnose "${@/%/.csv}" --tune "$tuned" ${excluded:+--exclude "$excluded"} --max-effects 3 --jobs 1 --out "$answers/$name" --quiet)
+  (cd "$answers/recordings" && "$program" diagnose "${@/%/.csv}" --tune "$tuned" ${excluded:+--exclude "$excluded"} --jobs 1 --out "$answers/$name" --quiet)
   git -C "$root" rev-parse --short HEAD >"$answers/$name/version"
 }
 lever=wrist.lever_mm,wrist.rest_length_0_mm,wrist.rest_length_1_mm
