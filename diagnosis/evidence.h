@@ -11,7 +11,7 @@ namespace musclesim {
 
 /// What the price of an explanation is made of, one number each.
 struct Complexity {
-  double parameters = 0;     ///< fitted coordinates, or numbers that were counted or tried
+  double parameters = 0;     ///< coordinates that the data determine, or numbers that were counted or tried
   double effects = 0;        ///< beyond the first
   double same_place = 0;     ///< effects that share their place with an earlier one: they may only correct that one's law
   double excess = 0;         ///< e-folds by which strengths exceed their usual range

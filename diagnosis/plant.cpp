@@ -270,9 +270,9 @@ void Plant::findNumbers() {
     });
   });
   for (const Recording& recording : recordings_)
-    for (const auto& [name, tolerance] : recording.info.parameter_tolerance) {
-      const auto meant = std::ranges::find_if(declared, [&](const Parameter& parameter) { return means(name, parameter.name); });
-      by_name[meant == declared.end() ? name : meant->name] = tolerance;
+    for (const auto& given : recording.info.parameter_tolerance) {
+      const auto meant = std::ranges::find_if(declared, [&](const Parameter& parameter) { return means(given.first, parameter.name); });
+      by_name[meant == declared.end() ? given.first : meant->name] = given.second;
     }
   for (const auto& [name, tolerance] : by_name)
     if (!varies(name) && std::ranges::find(options_.tune, name) == options_.tune.end())

@@ -15,9 +15,9 @@ struct NumberErrors {
   std::map<std::string, double> nominal, truth;
 };
 
-/// Draws truth = nominal exp(scale s z) for each number with a tolerance s (Robot::parameterTolerances), z normal; a number stays within its allowed range. 70 % of the
-/// plants have the scale 1; 10 % have 2, so that a diagnosis must be honest about more than it expects; 20 % have no errors.
-/// `plan`: names robot and parameters of the model.
+/// Draws truth = nominal exp(scale s z) for each number with a tolerance s (Robot::parameterTolerances), z normal; a number stays within
+/// its allowed range. 70 % of the plants have the scale 1; 10 % have 2, so that a diagnosis must be honest about more than it expects; 20 %
+/// have no errors. `plan`: names robot and parameters of the model.
 NumberErrors drawNumbers(const Recording& plan, RandomStream& random);
 
 }  // namespace musclesim::blind

@@ -75,6 +75,12 @@ TEST_F(EvidenceOnARig, CountsParameters) {
       << "numbers that were tried one by one count as fitted ones";
 }
 
+TEST_F(EvidenceOnARig, WhatTheDataDoNotDetermineCostsNothing) {
+  Explanation half_known = fitted({threshold}, 1);
+  half_known.half_width = Eigen::Vector2d(0.1, std::numeric_limits<double>::infinity());
+  EXPECT_NEAR(evidence_.price(half_known), prices.parameters, 1e-12);
+}
+
 TEST_F(EvidenceOnARig, AFurtherEffectThatGainsNothingCosts) {
   const Explanation alone = fitted({payload}, 2), pair = fitted({payload, bias}, 2);
   EXPECT_NEAR(evidence_.score(alone) - evidence_.score(pair), prices.effects + prices.parameters, 1e-9);
