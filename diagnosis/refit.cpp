@@ -198,6 +198,7 @@ FitResult fit(const Comparison& comparison, const FitProblem& problem, int round
 }
 
 Eigen::VectorXd halfWidths(const Comparison& comparison, const FitProblem& problem, const Eigen::VectorXd& residual) {
+  constexpr double largest_error = 0.3;  // secants that differ more show a bend of the response, as dry friction makes it
   const Point at = evaluate(comparison, problem, problem.start);
   if (!at.residual.size()) return Eigen::VectorXd::Constant(problem.start.size(), std::numeric_limits<double>::infinity());
   const Eigen::MatrixXd far = derivatives(comparison, problem, at, wide), near = derivatives(comparison, problem, at, narrow);
@@ -205,7 +206,7 @@ Eigen::VectorXd halfWidths(const Comparison& comparison, const FitProblem& probl
   Eigen::VectorXd error = Eigen::VectorXd::Zero(near.cols());
   for (Eigen::Index k = 0; k < near.cols(); ++k)
     if (const double norm = weights.cwiseProduct(near.col(k)).norm(); norm > 0)
-      error[k] = weights.cwiseProduct(far.col(k) - near.col(k)).norm() / norm;
+      error[k] = std::min(largest_error, weights.cwiseProduct(far.col(k) - near.col(k)).norm() / norm);
   return halfWidths(comparison, problem, residual, near, error);
 }
 
