@@ -198,6 +198,7 @@ FitResult fit(const Comparison& comparison, const FitProblem& problem, int round
 }
 
 Eigen::VectorXd halfWidths(const Comparison& comparison, const FitProblem& problem, const Eigen::VectorXd& residual) {
+  if (problem.start.size() == 0) return {};
   constexpr double largest_error = 0.3;  // secants that differ more show a bend of the response, as dry friction makes it
   const Point at = evaluate(comparison, problem, problem.start);
   if (!at.residual.size()) return Eigen::VectorXd::Constant(problem.start.size(), std::numeric_limits<double>::infinity());
