@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 
 #include "../base/parallel.h"
 
@@ -65,18 +66,30 @@ void Comparison::addAverages() {
   }
 }
 
-/// Every channel of a segment has the same power: each pressure, each tension, and all signals of motion together, because these are
-/// functions of each other. Blocks of a channel share it. A single recording, or two, count as three: they hold as many motions.
+/// A pressure or a tension is a channel of power 1 per segment. Signals of motion are functions of each other, so n of them are one
+/// channel, but their sensors fail one by one: it has the power sqrt(n). Blocks of a channel share its power. A single recording, or two,
+/// count as three: they hold as many motions.
 void Comparison::shareEvidence() {
   constexpr double usual_recordings = 3;
   const auto channelOf = [this](const Block& block) {
     const std::string& name = plant_.signals()[static_cast<std::size_t>(block.signal)].name;
     return name.starts_with("pressure_") || name.starts_with("force_") ? name : std::string("motion");
   };
-  std::map<std::pair<std::size_t, std::string>, double> counts;
-  for (const Block& block : blocks_) ++counts[{block.segment, channelOf(block)}];
+  struct Channel {
+    double blocks = 0;
+    std::set<int> signals;
+  };
+  std::map<std::pair<std::size_t, std::string>, Channel> channels;
+  for (const Block& block : blocks_) {
+    Channel& channel = channels[{block.segment, channelOf(block)}];
+    ++channel.blocks;
+    channel.signals.insert(block.signal);
+  }
   const double per_segment = std::max(1.0, usual_recordings / static_cast<double>(segments_.size()));
-  for (Block& block : blocks_) block.power = per_segment / counts[{block.segment, channelOf(block)}];
+  for (Block& block : blocks_) {
+    const Channel& channel = channels[{block.segment, channelOf(block)}];
+    block.power = per_segment * std::sqrt(static_cast<double>(channel.signals.size())) / channel.blocks;
+  }
 }
 
 void Comparison::average(Eigen::VectorXd& values) const {

@@ -97,7 +97,7 @@ void Causes::refit(Explanation& explanation, const Comparison& comparison, int r
   FitProblem problem = problemOf(explanation, comparison, Fidelity::coarse);
   if (!known.empty()) {
     problem.known_derivatives = std::move(known);
-    problem.renewed_count = fidelity == Fidelity::fine ? 0 : effect_count;
+    problem.renewed_count = effect_count;
     problem.narrow_differences = false;
     if (fidelity != Fidelity::fine) problem.enough = roughly_enough;
   }

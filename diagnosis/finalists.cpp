@@ -12,6 +12,7 @@ namespace {
 
 constexpr double far_behind = 8;  ///< nats behind the best on the screening segments: not fitted to all recordings
 constexpr std::size_t finalist_count = 10;
+constexpr std::size_t always_count = 2;  ///< of each size
 constexpr std::size_t varied_count = 2;  ///< explanations of which other variants are tried
 constexpr int coarse_rounds = 6, fine_rounds = 4;
 
@@ -50,9 +51,13 @@ std::vector<Explanation> Search::otherVariants(const Explanation& explanation) c
 /// Fits the likely explanations, and no effect, to all recordings in fine steps and weighs them.
 void Search::fitFinalists() {
   std::vector<std::size_t> best = bestOnScreening(0, pool_.size());
-  std::erase_if(
-      best, [&](std::size_t index) { return pool_[index].score < pool_[best.front()].score - far_behind || isDominated(pool_[index]); });
+  const double least = best.empty() ? 0 : pool_[best.front()].score - far_behind;
+  std::erase_if(best, [&](std::size_t index) { return pool_[index].score < least || isDominated(pool_[index]); });
   if (best.size() > finalist_count) best.resize(finalist_count);
+  // Coarse steps may make much of a motion that is sensitive; there further effects seem to help.
+  for (int size = 1; size <= options_.max_effects; ++size)
+    for (const std::size_t index : bestOnScreening(static_cast<std::size_t>(size), always_count))
+      if (std::ranges::find(best, index) == best.end()) best.push_back(index);
   for (const std::size_t index : best) explanations_.push_back(pool_[index]);
   explanations_.push_back(nothing_);
   parallelFor(static_cast<int>(explanations_.size()), options_.job_count, [&](int i) {
