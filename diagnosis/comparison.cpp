@@ -171,11 +171,6 @@ Eigen::VectorXd Comparison::gathered(const std::vector<Prediction>& per_segment)
   return result;
 }
 
-const Comparison::Block& Comparison::blockLike(const Block& other) const {
-  return *std::ranges::find_if(
-      blocks_, [&](const Block& block) { return block.signal == other.signal && block.averaged_rows == other.averaged_rows; });
-}
-
 double Comparison::meanSquare(const Block& block, const Eigen::VectorXd& residual) const {
   return residual.segment(block.first, block.count()).squaredNorm() / static_cast<double>(block.count());
 }

@@ -52,8 +52,6 @@ class Comparison {
   const Plant& plant() const { return plant_; }
   const std::vector<Segment>& segments() const { return segments_; }
   const std::vector<Block>& blocks() const { return blocks_; }
-  /// The block of this one-segment comparison with the signal and averaging of a block of another comparison.
-  const Block& blockLike(const Block& other) const;
   Eigen::Index size() const { return size_; }
 
   enum class Purpose { fitting, screening };  ///< screening only chooses what is fitted further

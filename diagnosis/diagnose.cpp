@@ -277,7 +277,7 @@ class Run {
     return result;
   }
 
-  /// Where what is left stands out most.
+  /// Names the signal in which the rest stands out most, and its stage.
   void describeRemainder() {
     if (!after_residual_.size() || diagnosis_.before.normalised <= 0) return;
     const Gap left = held_out_.gap(after_residual_);
@@ -332,7 +332,7 @@ class Run {
 
   /// Lists probabilities per effect and per explanation, and the ambiguity set.
   void list() {
-    const double known = 1 - diagnosis_.none_of_these;  // probability that one of the explanations below holds
+    const double known = 1 - diagnosis_.none_of_these;  // probability that the catalogue holds the cause
     const double no_effect = known * search_.nothing().probability;
     if (no_effect >= listed) diagnosis_.explanations.push_back({{}, no_effect});
     const std::map<std::string, double> removed = plant_.interrupted() ? std::map<std::string, double>() : shares();
@@ -432,7 +432,7 @@ class Run {
     return result;
   }
 
-  /// The best explanation and those that are not much less probable.
+  /// The best explanation, and all with at least the share as_good of its probability.
   std::vector<const Explanation*> asGood() const {
     std::vector<const Explanation*> result;
     const auto& all = search_.explanations();

@@ -13,7 +13,7 @@ namespace musclesim {
 struct Complexity {
   double parameters = 0;     ///< coordinates that the data determine, or numbers that were counted or tried
   double effects = 0;        ///< beyond the first
-  double same_place = 0;     ///< effects that share their place with an earlier one: they may only correct that one's law
+  double same_place = 0;     ///< effects on the same muscle or signal as an earlier one, or both on the body: they may only mend its law
   double excess = 0;         ///< e-folds by which strengths exceed their usual range
   double shared_sensor = 0;  ///< faults that all sensors share
   constexpr std::array<double, 5> asArray() const { return {parameters, effects, same_place, excess, shared_sensor}; }

@@ -27,12 +27,11 @@ struct BeforeAndAfter {
 /// held out. It extends to 100 % if its upper end leaves no more gap than noise alone may.
 Estimate gapReductionInterval(const BeforeAndAfter& held_out, const BeforeAndAfter& fitted, std::uint64_t seed);
 
-/// Negative control: residual on held_out after fitting a disturbance of the commands without physical meaning, a sum of `parameter_count`
-/// sines of random frequency (0.1 .. 2 Hz) and phase with fitted amplitudes.
+/// Nominal refit: residual on held_out after fitting the plant's nominalParameters(), without any effect or prior.
 Eigen::VectorXd nominalRefitResidual(const Comparison& fitted, const Comparison& held_out, const OnSimulation& on_simulation);
 
-/// Residual on held_out after fitting a disturbance of the commands without physical meaning: a sum of `parameter_count` sines of random
-/// frequency (0.1 .. 2 Hz) and phase, their amplitudes fitted.
+/// Negative control: residual on held_out after fitting a disturbance of the commands without physical meaning: a sum of `parameter_count`
+/// sines of random frequency (0.1 .. 2 Hz) and phase, their amplitudes fitted.
 Eigen::VectorXd negativeControlResidual(const Comparison& fitted, const Comparison& held_out, int parameter_count, std::uint64_t seed,
                                         const OnSimulation& on_simulation);
 

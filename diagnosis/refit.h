@@ -31,7 +31,7 @@ struct FitResult {
   Eigen::VectorXd residual;    ///< measured - predicted; empty if no prediction could be made
   double cost = 0;             ///< misfit + sum of precision z^2 / 2, in nats
   Eigen::VectorXd half_width;  ///< half of the 95 % interval of every coordinate; infinite: not determined
-  Eigen::MatrixXd jacobian;    ///< d(prediction)/dz at z, as far as the fit knows it
+  Eigen::MatrixXd jacobian;    ///< d(prediction)/dz near z: the last derivatives, with rank-one updates since
 };
 
 /// d(prediction)/dz at z, column by column, from one-sided differences: 20 % of the coordinate, at least 0.2, to the side where the model

@@ -148,7 +148,7 @@ std::vector<Search::Proposal> Search::drops(const Surroundings& around) const {
   return result;
 }
 
-/// Fits proposals to the screening segments. A start that costs more than without its last effect is weakened first.
+/// Fits proposals to the screening segments. Where the start costs more than no effect at all, its last effect is weakened first.
 void Search::fitOnScreening(std::vector<Proposal> proposals) {
   const double without = screening_.misfit(screening_residual_);
   parallelFor(static_cast<int>(proposals.size()), options_.job_count, [&](int i) {
@@ -214,9 +214,10 @@ Explanation Search::earlierFinding() const {
   for (const ActiveEffect& effect : options_.earlier) {
     const std::string label = effect.id + "@" + effect.component;
     const auto found = std::ranges::find(causes_.hypotheses, label, &Hypothesis::label);
-    if (found == causes_.hypotheses.end())
-      throw BadParameter("--effects", label, "be an effect that these recordings can show; --fixed-effects takes any");
-    result.members.push_back(static_cast<std::size_t>(found - causes_.hypotheses.begin()));
+    const auto index = static_cast<std::size_t>(found - causes_.hypotheses.begin());
+    if (found == causes_.hypotheses.end() || !catalogue_.allowed[index])
+      throw BadParameter("--effects", label, "be a candidate that these recordings can show; --fixed-effects takes any effect");
+    result.members.push_back(index);
     const Eigen::VectorXd own = found->coordinatesOf(effect.parameters);
     z.insert(z.end(), own.begin(), own.end());
   }

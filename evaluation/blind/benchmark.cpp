@@ -17,7 +17,7 @@ struct Measure {
   bool most = false;  ///< the bounds are upper ones
 };
 
-/// Bounds are those that the design of the search over sets set itself before it was built.
+/// The bounds were fixed before the search over sets of causes was built.
 constexpr Measure measures[] = {
     {"full set, two causes", "double", "full_set", 0.70, 0.85},
     {"full set, three causes", "triple", "full_set", 0.50, 0.70},

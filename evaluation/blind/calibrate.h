@@ -9,7 +9,7 @@
 
 namespace musclesim::blind {
 
-/// The explanations that one answer tried.
+/// All explanations that the diagnosis of one case fitted, and which of them are right.
 struct TriedCase {
   std::string name;
   Eigen::MatrixXd features;      ///< per explanation: misfit beyond each tolerance, then complexity (diagnosis.json: fitted.trials)

@@ -182,32 +182,6 @@ TEST(Diagnose, DoesNotBlameAnotherEffectWhenTheTrueOneIsLeftOut) {
   EXPECT_TRUE(contains(diagnosisSummary(found), "The best rejected hypothesis"));
 }
 
-/// The arm knows no tolerances, so that "no effect" has nothing to fit.
-TEST(Diagnose, NeedsNoNumbersWithATolerance) {
-  Recording plan;
-  plan.info.robot = "arm";
-  plan.info.robot_parameters = {{"muscle.model", std::string("line")}};
-  for (int muscle = 0; muscle < 10; ++muscle) {
-    Signal& command = plan.signals.emplace_back(Signal{"command_" + std::to_string(muscle), {}});
-    for (int row = 0; row < 60; ++row) command.values.push_back(row < 20 ? 0.3 : 0.3 + 0.03 * muscle);
-  }
-  for (int row = 0; row < 60; ++row) plan.time_s.push_back(0.01 * row);
-  std::vector<Recording> recordings;
-  for (const char* file : {"first.csv", "second.csv"}) {
-    for (Signal& command : plan.signals)
-      for (double& value : command.values) value += 0.01;
-    recordings.push_back(replayRecording(plan).simulated);
-    recordings.back().file = file;
-    std::erase_if(recordings.back().signals, [](const Signal& s) { return !s.name.starts_with("command_") && s.name != "length_3_mm"; });
-    recordings.back().info.noise_std = {{"length_3_mm", 0.05}};
-    recordings.back().info.active_effects.clear();
-    for (double& value : recordings.back().signals.back().values) value *= 1.02;
-  }
-  const Diagnosis found = diagnose(recordings, few({"sensor_gain", "force_gain"}));
-  EXPECT_EQ(found.chosen, std::vector<std::string>{"sensor_gain@signal_length_3"}) << diagnosisSummary(found);
-  EXPECT_TRUE(found.numbers.empty());
-}
-
 TEST(Diagnose, DoesNotDependOnTheNumberOfThreads) {
   DiagnosisOptions options = few({"payload", "valve_lag"});
   std::vector<std::string> answers;
