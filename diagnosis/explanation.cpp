@@ -6,7 +6,7 @@ namespace musclesim {
 
 namespace {
 
-constexpr double roughly_enough = 0.02;  ///< nats: for fits that only rank explanations
+constexpr double roughly_enough = 0.02, roughly_valid = 0.2;  ///< nats: for fits that only rank explanations
 
 }  // namespace
 
@@ -91,15 +91,19 @@ FitProblem Causes::problemOf(const Explanation& explanation, const Comparison& c
   return problem;
 }
 
-void Causes::refit(Explanation& explanation, const Comparison& comparison, int rounds, Fidelity fidelity,
-                   std::vector<Eigen::VectorXd> known) const {
+void Causes::refit(Explanation& explanation, const Comparison& comparison, int rounds, Fidelity fidelity, Accuracy accuracy,
+                   std::vector<Eigen::VectorXd> known, Known known_from) const {
   const Eigen::Index effect_count = explanation.z.size(), number_count = plant_.numberCount();
   FitProblem problem = problemOf(explanation, comparison, Fidelity::coarse);
   if (!known.empty()) {
     problem.known_derivatives = std::move(known);
     problem.renewed_count = effect_count;
     problem.narrow_differences = false;
-    if (fidelity != Fidelity::fine) problem.enough = roughly_enough;
+  }
+  problem.known_elsewhere = known_from == Known::elsewhere;
+  if (accuracy == Accuracy::ranking) {
+    problem.enough = roughly_enough;
+    problem.still_valid = roughly_valid;
   }
   const FitResult result = fidelity == Fidelity::fine
                                ? fitCorrected(comparison, problem, problemOf(explanation, comparison, Fidelity::fine).predicted, rounds)

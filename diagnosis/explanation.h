@@ -26,6 +26,11 @@ struct Explanation {
 };
 
 /// The hypotheses of a plant, and what a set of them means.
+/// What a fit is for: a misfit that ranks explanations, or parameters that are reported.
+enum class Accuracy { ranking, estimates };
+/// Where known derivatives were computed: at the parameters from which a fit begins, or at others.
+enum class Known { here, elsewhere };
+
 class Causes {
  public:
   Causes(const Plant& plant, const OnSimulation& on_simulation) : plant_(plant), on_simulation_(on_simulation) {}
@@ -46,8 +51,8 @@ class Causes {
   /// The fit of all coordinates and numbers to a comparison. References must outlive the problem.
   FitProblem problemOf(const Explanation& explanation, const Comparison& comparison, Fidelity fidelity) const;
   /// Fits on, from where the explanation is; `known` as FitProblem::known_derivatives.
-  void refit(Explanation& explanation, const Comparison& comparison, int rounds, Fidelity fidelity,
-             std::vector<Eigen::VectorXd> known = {}) const;
+  void refit(Explanation& explanation, const Comparison& comparison, int rounds, Fidelity fidelity, Accuracy accuracy,
+             std::vector<Eigen::VectorXd> known = {}, Known known_from = Known::elsewhere) const;
 
  private:
   const Plant& plant_;

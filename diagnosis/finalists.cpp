@@ -14,6 +14,7 @@ constexpr double far_behind = 8;  ///< nats behind the best on the screening seg
 constexpr std::size_t finalist_count = 10;
 constexpr std::size_t always_count = 2;  ///< of each size
 constexpr std::size_t varied_count = 2;  ///< explanations of which other variants are tried
+constexpr double worth_polishing = 2;    ///< nats that fine steps may give a variant
 constexpr int coarse_rounds = 6, fine_rounds = 4;
 
 }  // namespace
@@ -48,6 +49,24 @@ std::vector<Explanation> Search::otherVariants(const Explanation& explanation) c
   return result;
 }
 
+/// Fits explanations side by side, drops those that could not be simulated, and puts the best first.
+void Search::fitAll(std::vector<Explanation>& explanations, const std::function<void(Explanation&)>& fit) const {
+  parallelFor(static_cast<int>(explanations.size()), options_.job_count, [&](int i) {
+    if (!plant_.interrupted()) fit(explanations[static_cast<std::size_t>(i)]);
+  });
+  std::erase_if(explanations, [&](const Explanation& explanation) { return explanation.residual.size() != fit_.size(); });
+  std::ranges::stable_sort(explanations, std::greater<>{}, &Explanation::score);
+}
+
+/// Drops what even a fit in fine steps cannot bring near the best. No effect, and the best of each size, stay.
+void Search::dropHopeless() {
+  std::set<std::size_t> sizes = {0};
+  std::erase_if(explanations_, [&](const Explanation& explanation) {
+    const bool is_first = sizes.insert(explanation.members.size()).second;
+    return !explanation.members.empty() && !is_first && explanation.score < explanations_.front().score - far_behind;
+  });
+}
+
 /// Fits the likely explanations, and no effect, to all recordings in fine steps and weighs them.
 void Search::fitFinalists() {
   std::vector<std::size_t> best = bestOnScreening(0, pool_.size());
@@ -60,18 +79,16 @@ void Search::fitFinalists() {
       if (std::ranges::find(best, index) == best.end()) best.push_back(index);
   for (const std::size_t index : best) explanations_.push_back(pool_[index]);
   explanations_.push_back(nothing_);
-  parallelFor(static_cast<int>(explanations_.size()), options_.job_count, [&](int i) {
-    if (!plant_.interrupted()) fitToAll(explanations_[static_cast<std::size_t>(i)]);
-  });
-  std::erase_if(explanations_, [&](const Explanation& explanation) { return explanation.residual.size() != fit_.size(); });
-  std::ranges::stable_sort(explanations_, std::greater<>{}, &Explanation::score);
+  fitAll(explanations_, [this](Explanation& explanation) { fitRoughly(explanation); });
+  dropHopeless();
+  fitAll(explanations_, [this](Explanation& explanation) { fitFinely(explanation); });
   tryVariants();
   weigh();
-  findIntervals();
+  polish();
 }
 
-/// Fresh intervals for the explanations that are listed, and for the numbers without any effect.
-void Search::findIntervals() {
+/// Exact parameters and fresh intervals for the explanations that are listed, and for the numbers without any effect.
+void Search::polish() {
   constexpr double listed = 0.01;
   std::vector<Explanation*> chosen = {&nothing_};
   for (Explanation& explanation : explanations_)
@@ -79,6 +96,9 @@ void Search::findIntervals() {
   parallelFor(static_cast<int>(chosen.size()), options_.job_count, [&](int i) {
     Explanation& explanation = *chosen[static_cast<std::size_t>(i)];
     if (plant_.interrupted() || explanation.residual.size() != fit_.size()) return;
+    const Explanation before = explanation;
+    goOn(explanation, Accuracy::estimates);
+    if (explanation.residual.size() != fit_.size()) explanation = before;
     const Eigen::VectorXd half = halfWidths(fit_, causes_.problemOf(explanation, fit_, Fidelity::coarse), explanation.residual);
     if (plant_.interrupted()) return;
     explanation.half_width = half.head(explanation.z.size());
@@ -90,25 +110,33 @@ void Search::findIntervals() {
 void Search::tryVariants() {
   for (std::size_t rank = 0; rank < std::min(explanations_.size(), varied_count); ++rank) {
     std::vector<Explanation> others = otherVariants(explanations_[rank]);
-    parallelFor(static_cast<int>(others.size()), options_.job_count, [&](int i) {
-      if (!plant_.interrupted()) fitToAll(others[static_cast<std::size_t>(i)]);
-    });
-    for (Explanation& other : others)
-      if (other.residual.size() == fit_.size() && other.score > explanations_[rank].score) explanations_[rank] = std::move(other);
+    fitAll(others, [this](Explanation& other) { fitRoughly(other); });
+    std::erase_if(others, [&](const Explanation& other) { return other.score < explanations_[rank].score - worth_polishing; });
+    fitAll(others, [this](Explanation& other) { fitFinely(other); });
+    if (!others.empty() && others.front().score > explanations_[rank].score) explanations_[rank] = std::move(others.front());
   }
 }
 
-/// Coarse steps first; the derivatives found there serve for fine ones too.
-void Search::fitToAll(Explanation& explanation) const {
-  causes_.refit(explanation, fit_, coarse_rounds, Fidelity::coarse);
-  if (explanation.residual.size() != fit_.size()) return;
-  std::vector<Eigen::VectorXd> known;
-  for (Eigen::Index k = 0; k < explanation.jacobian.cols(); ++k) known.emplace_back(explanation.jacobian.col(k));
-  causes_.refit(explanation, fit_, fine_rounds, Fidelity::fine, std::move(known));
+/// In coarse steps.
+void Search::fitRoughly(Explanation& explanation) const {
+  causes_.refit(explanation, fit_, coarse_rounds, Fidelity::coarse, Accuracy::ranking);
+  if (explanation.residual.size() == fit_.size()) explanation.score = evidence().score(explanation);
+}
+
+/// In fine steps.
+void Search::fitFinely(Explanation& explanation) const {
+  goOn(explanation, Accuracy::ranking);
   if (explanation.residual.size() != fit_.size()) return;
   takeFromCounterparts(explanation);
   explanation.is_inactive = hasInactiveEffect(explanation);
   explanation.score = evidence().score(explanation);
+}
+
+/// Fits on in fine steps; the derivatives found last, in whatever steps, serve at first.
+void Search::goOn(Explanation& explanation, Accuracy accuracy) const {
+  std::vector<Eigen::VectorXd> known;
+  for (Eigen::Index k = 0; k < explanation.jacobian.cols(); ++k) known.emplace_back(explanation.jacobian.col(k));
+  causes_.refit(explanation, fit_, fine_rounds, Fidelity::fine, accuracy, std::move(known), Known::here);
 }
 
 /// A parameter that the recordings do not determine takes the value of the other direction: a valve of which only the venting was recorded
@@ -128,7 +156,7 @@ void Search::takeFromCounterparts(Explanation& explanation) const {
   }
   changed.z = causes_.clamped(changed.members, changed.z);
   if (changed.z == explanation.z || plant_.interrupted()) return;
-  causes_.refit(changed, fit_, 0, Fidelity::fine);
+  causes_.refit(changed, fit_, 0, Fidelity::fine, Accuracy::ranking);
   if (changed.residual.size() != fit_.size() || fit_.misfit(changed.residual) > fit_.misfit(explanation.residual) + noticeable) return;
   changed.jacobian = explanation.jacobian;
   explanation = changed;

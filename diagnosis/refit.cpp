@@ -125,7 +125,7 @@ Eigen::VectorXd halfWidths(const Comparison& comparison, const FitProblem& probl
 
 namespace {
 
-/// One step that decreases the misfit, with at most three dampings; false if there is none.
+/// One step that decreases the misfit, with at most three dampings; false if there is none, or if it should gain less than is enough.
 bool stepDown(const Comparison& comparison, const FitProblem& problem, const Eigen::MatrixXd& jacobian, double& damping, Point& best) {
   const Eigen::VectorXd weights = comparison.weights(best.residual);
   const Eigen::MatrixXd weighted = weights.asDiagonal() * jacobian;
@@ -139,7 +139,9 @@ bool stepDown(const Comparison& comparison, const FitProblem& problem, const Eig
     Eigen::MatrixXd damped = normal;
     damped.diagonal() *= 1 + damping;
     damped.diagonal().array() += 1e-9;
-    Point next = evaluate(comparison, problem, best.z + damped.ldlt().solve(slope));
+    const Eigen::VectorXd step = damped.ldlt().solve(slope);
+    if (slope.dot(step) - 0.5 * step.dot(normal * step) < problem.enough) return false;
+    Point next = evaluate(comparison, problem, best.z + step);
     if (next.cost < best.cost) {
       best = std::move(next);
       damping *= 0.2;
@@ -176,18 +178,23 @@ FitResult fit(const Comparison& comparison, const FitProblem& problem, int round
     return {best.z, best.residual, best.cost, Eigen::VectorXd::Zero(best.z.size()), {}};
   double difference = wide;
   Eigen::MatrixXd jacobian = derivatives(comparison, problem, best, difference, problem.known_derivatives);
-  bool fresh = problem.known_derivatives.empty();
+  const bool is_known = !problem.known_derivatives.empty();
+  bool fresh = !is_known;
+  double gained = is_known && problem.known_elsewhere ? std::numeric_limits<double>::infinity() : 0;  // since the derivatives
   double damping = 0.01;
   for (int round = 0; round < round_count && !comparison.plant().interrupted(); ++round) {
     const Point before = best;
     const bool down = stepDown(comparison, problem, jacobian, damping, best);
     const bool settled = best.cost > before.cost - problem.enough;
+    gained += before.cost - best.cost;
+    if (settled && gained < problem.still_valid) break;
     if ((settled && fresh && (difference == narrow || !problem.narrow_differences)) || round + 1 == round_count) break;
     if (settled) {
       if (fresh && problem.narrow_differences) difference = narrow;
       std::vector<Eigen::VectorXd> kept(static_cast<std::size_t>(jacobian.cols()));
       for (Eigen::Index k = problem.renewed_count; k >= 0 && k < jacobian.cols(); ++k) kept[static_cast<std::size_t>(k)] = jacobian.col(k);
       jacobian = derivatives(comparison, problem, best, difference, kept);
+      gained = 0;
     } else if (down) {
       update(jacobian, before, best);
     }

@@ -21,8 +21,11 @@ struct FitProblem {
   std::vector<Eigen::VectorXd> known_derivatives = {};
   /// Only so many of the first coordinates get new derivatives later on; the known ones of the others are only updated. -1: all do.
   Eigen::Index renewed_count = -1;
-  double enough =
-      5e-4;  ///< nats: a decrease that does not justify another round. The misfit is tempered, so that intervals end far below 1
+  /// Nats: a decrease that does not justify another round. The misfit is tempered, so that intervals end far below 1.
+  double enough = 5e-4;
+  /// Nats that may be gained since the derivatives were computed without computing them again at the end.
+  double still_valid = 0;
+  bool known_elsewhere = true;  ///< the known derivatives are those of another place, so that still_valid does not hold for them
   bool narrow_differences = true;  ///< whether the last rounds use narrow differences
 };
 
@@ -43,7 +46,8 @@ double stepOf(const FitProblem& problem, const Eigen::VectorXd& z, Eigen::Index 
 
 /// Minimises the misfit (Comparison) plus the prior's cost with Levenberg and Marquardt's method (Marquardt 1963) on residuals that are
 /// reweighted in every round. The response may have kinks, so the differences for derivatives are not small. Because simulations dominate
-/// the cost, derivatives are recomputed only when a step gains nothing; otherwise rank-one updates carry them on (Broyden 1965). The
+/// the cost, no step is tried that should gain less than FitProblem::enough by the derivatives, and these are recomputed only when no step
+/// gains more; otherwise rank-one updates carry them on (Broyden 1965). The
 /// intervals are those of the linearised problem with the residual's own variance, widened by the number of samples over the effective
 /// number of samples (from the residual's autocorrelation).
 FitResult fit(const Comparison& comparison, const FitProblem& problem, int round_count);

@@ -165,7 +165,7 @@ void Search::fitOnScreening(std::vector<Proposal> proposals) {
       if (predicted.size() == screening_.size() && screening_.misfit(screening_.measured() - predicted) < without) break;
       for (const int strength : last.strengths()) start.z.tail(last.coordinateCount())[strength] *= share;
     }
-    causes_.refit(start, screening_, screening_rounds, Fidelity::coarse, std::move(proposal.known));
+    causes_.refit(start, screening_, screening_rounds, Fidelity::coarse, Accuracy::ranking, std::move(proposal.known));
     if (start.residual.size() == screening_.size()) start.score = screeningEvidence().score(start);
   });
   for (Proposal& proposal : proposals) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
@@ -109,12 +110,16 @@ class Search {
   // finalists.cpp
   void fitFinalists();
   bool isDominated(const Explanation& explanation) const;
-  void fitToAll(Explanation& explanation) const;
+  void fitAll(std::vector<Explanation>& explanations, const std::function<void(Explanation&)>& fit) const;
+  void dropHopeless();
+  void fitRoughly(Explanation& explanation) const;
+  void fitFinely(Explanation& explanation) const;
+  void goOn(Explanation& explanation, Accuracy accuracy) const;
   void takeFromCounterparts(Explanation& explanation) const;
   bool hasInactiveEffect(const Explanation& explanation) const;
   std::vector<Explanation> otherVariants(const Explanation& explanation) const;
   void tryVariants();
-  void findIntervals();
+  void polish();
   void weigh();
 
   const Plant& plant_;
