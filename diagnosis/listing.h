@@ -1,0 +1,29 @@
+/// What a diagnosis lists: effects with their probabilities, ambiguity, trials, numbers of the model, the held-out rows.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "musclesim/diagnosis/diagnosis.h"
+#include "search.h"
+#include "verdict.h"
+
+namespace musclesim {
+
+/// The best explanation, and all that cannot be distinguished from it by these recordings.
+std::vector<const Explanation*> asGood(const Search& search);
+/// "a@x + b@y"
+std::string wordsOf(const Search& search, const Explanation& explanation);
+
+/// Labels none of whose variants would have shown; labels that were never simulated are not listed.
+void listNotExcited(const Search& search, Diagnosis& diagnosis);
+/// Probabilities per effect and per explanation, what each chosen effect removes, and the ambiguity sets.
+void listEffects(const Search& search, const HeldOut& held_out, const DiagnosisOptions& options, Diagnosis& diagnosis);
+/// The screened and the fitted hypotheses.
+void listTrials(const Search& search, Diagnosis& diagnosis);
+/// The numbers of the model as fitted with an explanation: those known within tolerances, and the tuned ones.
+void listNumbers(const Plant& plant, const Explanation& fitted, Diagnosis& diagnosis);
+/// Curves of the held-out rows, the gap by actuation phase, and what is left of it (`after`; may be empty).
+void listHeldOut(const Search& search, const HeldOut& held_out, const Eigen::VectorXd& after, Diagnosis& diagnosis);
+
+}  // namespace musclesim

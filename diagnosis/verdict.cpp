@@ -1,0 +1,101 @@
+#include "verdict.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "../base/parallel.h"
+#include "gap_reduction.h"
+
+namespace musclesim {
+
+namespace {
+
+constexpr double named = 0.5;  ///< least probability of none_of_these that makes the verdict `unexplained`
+
+std::vector<std::string> labelsOf(const Model& model) {
+  std::vector<std::string> labels;
+  for (const ActiveEffect& effect : model.effects) labels.push_back(effect.id + "@" + effect.component);
+  return labels;
+}
+
+void accept(const Attempt& attempt, Diagnosis& diagnosis) {
+  diagnosis.verdict = Verdict::effects_found;
+  diagnosis.after = attempt.after;
+  diagnosis.chosen = attempt.effects;
+  diagnosis.chosen_effects = attempt.active_effects;
+  diagnosis.reduction_percent = attempt.reduction_percent;
+  diagnosis.reduction_low_percent = attempt.reduction_low_percent;
+  diagnosis.reduction_high_percent = attempt.reduction_high_percent;
+}
+
+/// With as many disturbances as the best explanation has coordinates.
+void measureControls(const Search& search, const HeldOut& held_out, const DiagnosisOptions& options, const OnSimulation& on_simulation,
+                     Diagnosis& diagnosis) {
+  const auto parameter_count = static_cast<int>(search.explanations().front().z.size());
+  const Comparison& comparison = search.fitComparison();
+  Eigen::VectorXd nominal, negative_control;
+  parallelFor(2, options.job_count, [&](int i) {
+    if (i == 0)
+      nominal = nominalRefitResidual(comparison, held_out.comparison, on_simulation);
+    else
+      negative_control = negativeControlResidual(comparison, held_out.comparison, parameter_count, options.seed, on_simulation);
+  });
+  const auto percentOf = [&](const Eigen::VectorXd& residual) { return residual.size() ? held_out.reductionPercent(residual) : 0.0; };
+  // Within their tolerances the numbers are fitted with every explanation, so what they gain is no merit of the effects.
+  const Eigen::VectorXd with_numbers = held_out.comparison.predicted(search.modelOf(search.nothing()));
+  const double by_numbers = with_numbers.size() ? held_out.reductionPercent(held_out.comparison.measured() - with_numbers) : 0;
+  diagnosis.nominal_refit_percent = std::max(percentOf(nominal), by_numbers);
+  diagnosis.negative_control_percent = percentOf(negative_control);
+}
+
+/// What the tolerances of the model's numbers allow explains the gap better than any effect.
+Offer judgeNothing(const Search& search, const HeldOut& held_out, Diagnosis& diagnosis) {
+  const Explanation& numbers_only = search.nothing();
+  const Eigen::VectorXd predicted = held_out.comparison.predicted(search.modelOf(numbers_only));
+  if (!predicted.size()) return {};
+  const Eigen::VectorXd after = held_out.comparison.measured() - predicted;
+  diagnosis.after = held_out.comparison.gap(after);
+  diagnosis.reduction_percent = diagnosis.reduction_low_percent = diagnosis.reduction_high_percent = held_out.reductionPercent(after);
+  if (!isWithinNoise(held_out.comparison, after)) return {numbers_only, after};
+  diagnosis.verdict = Verdict::no_gap;
+  diagnosis.notes.push_back("the gap is no larger than the tolerances of the model's numbers explain");
+  return {numbers_only, after};
+}
+
+}  // namespace
+
+double HeldOut::reductionPercent(const Eigen::VectorXd& residual) const {
+  return gapReductionPercent(comparison.gap(before), comparison.gap(residual));
+}
+
+Offer judge(const Search& search, const HeldOut& held_out, const DiagnosisOptions& options, const OnSimulation& on_simulation,
+            Diagnosis& diagnosis) {
+  if (search.explanations().empty()) return {};
+  const Explanation& best = search.explanations().front();
+  if (search.nothing().probability > best.probability) return judgeNothing(search, held_out, diagnosis);
+  const Model model = search.modelOf(best);
+  const Eigen::VectorXd predicted = held_out.comparison.predicted(model);
+  if (!predicted.size()) return {};
+  const Eigen::VectorXd after = held_out.comparison.measured() - predicted;
+  measureControls(search, held_out, options, on_simulation, diagnosis);
+  if (search.causes().plant().interrupted()) return {};
+  const Estimate interval = gapReductionInterval({held_out.comparison, held_out.before, after},
+                                                 {search.fitComparison(), search.nominalResidual(), best.residual}, options.seed);
+  const Gap gap_after = held_out.comparison.gap(after);
+  const Attempt attempt{labelsOf(model), model.effects, gap_after, held_out.reductionPercent(after), interval.low, interval.high};
+  // The share of the RMS that they leave on unseen data bounds the probability that none of these effects acts.
+  const double none = std::min(std::sqrt(std::max(0.0, 1 - attempt.reduction_percent / 100)), search.noneOfThese());
+  const bool found =
+      none <= named && clearlyBeats(attempt.reduction_percent, diagnosis.nominal_refit_percent, diagnosis.negative_control_percent);
+  if (found) diagnosis.none_of_these = none;
+  // Not offered, because it does not hold on the held-out data or gains no more than a control.
+  if (!found && attempt.reduction_percent <= std::max({0.0, diagnosis.nominal_refit_percent, diagnosis.negative_control_percent}))
+    return {};
+  if (found)
+    accept(attempt, diagnosis);
+  else
+    diagnosis.attempt = attempt;
+  return {best, after};
+}
+
+}  // namespace musclesim
