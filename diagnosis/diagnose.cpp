@@ -103,6 +103,8 @@ class Run {
       diagnosis_.recordings.push_back(recording.file);
       for (const std::string& note : recording.notes) diagnosis_.notes.push_back(note);
     }
+    for (const ActiveEffect& effect : plant_.recordings().front().info.active_effects)
+      diagnosis_.model_effects.push_back(effect.id + "@" + effect.component);
     for (const std::string& note : plant_.notes()) diagnosis_.notes.push_back(note);
     for (const auto& [name, value] : plant_.nominalParameters()) diagnosis_.refitted.push_back(name);
     diagnosis_.held_out = plant_.split().held_out_words;

@@ -150,6 +150,7 @@ std::string diagnosisJson(const Diagnosis& d, const std::string& schedule_file) 
         {"separates", d.next_experiment.separates}, {"name", d.next_experiment.schedule}, {"amplitude", d.next_experiment.amplitude},
         {"level", d.next_experiment.level},         {"why", d.next_experiment.why},       {"schedule", schedule_file}};
   json["fitted"] = fittedJson(d);
+  if (!d.model_effects.empty()) json["model_effects"] = d.model_effects;
   json["notes"] = d.notes;
   if (!d.unsteady.signal.empty())
     json["unsteady"] = {

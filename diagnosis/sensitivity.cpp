@@ -203,11 +203,12 @@ class OnlyStrength {
         hypothesis_(hypothesis),
         sensitivity_(sensitivity) {}
 
-  /// For a typical strength that shows nothing: increases it, in both directions if it is signed, until it shows, then bisects the
-  /// threshold and refines around the strength with the least misfit. Makes that strength the typical one. Derivatives at the threshold say
-  /// little.
+  /// For a typical strength that shows nothing: increases it, in both directions if it is signed, until it shows, bisects the threshold,
+  /// tries ever larger strengths, because a little more may be worse and much more right, and refines around the strength with the least
+  /// misfit. Makes that strength the typical one. Derivatives at the threshold say little.
   void searchThreshold() {
-    constexpr double growth = 4;
+    constexpr double growth = 4, grid = 1.25;
+    constexpr double farthest = 32;  // typical strengths
     constexpr int halvings = 3;
     for (const double side : {1.0, -1.0}) {
       if (side < 0 && !hypothesis_.isSigned(coordinate())) continue;
@@ -220,6 +221,7 @@ class OnlyStrength {
         (showing(between) == Showing::none ? hidden : visible) = between;
         keepIfNearer(between);
       }
+      for (double larger = grid * visible; std::abs(larger) <= farthest && !isBound(larger); larger *= grid) keepIfNearer(larger);
     }
     if (best_.strength != 0 && best_.misfit < worth_refining * comparison_.misfit(residual())) refine();
     if (best_.strength == 0) return;

@@ -357,7 +357,10 @@ std::vector<std::string> foundSentences(const Diagnosis& d) {
 
 }  // namespace
 
-std::vector<std::string> verdictSentences(const Diagnosis& d) {
+namespace {
+
+/// The answer in the sense of Diagnosis::verdict.
+std::vector<std::string> answerSentences(const Diagnosis& d) {
   std::vector<std::string> sentences;
   switch (d.verdict) {
     case Verdict::no_gap:
@@ -374,6 +377,21 @@ std::vector<std::string> verdictSentences(const Diagnosis& d) {
       sentences = foundSentences(d);
   }
   sentences.push_back(unsteadyWords(d.unsteady));
+  return sentences;
+}
+
+/// A recording of a simulated machine with effects is compared with a model that has them too, which surprises who looks for them.
+std::string modelEffectsWords(const Diagnosis& d) {
+  if (d.model_effects.empty()) return "";
+  return fmt::format("The model has {} from the recordings' active_effects already; to look for {}, diagnose --without-active-effects.",
+                     listWords(d.model_effects), d.model_effects.size() == 1 ? "it" : "them");
+}
+
+}  // namespace
+
+std::vector<std::string> verdictSentences(const Diagnosis& d) {
+  std::vector<std::string> sentences = answerSentences(d);
+  sentences.insert(sentences.begin(), modelEffectsWords(d));
   std::erase(sentences, "");
   return sentences;
 }

@@ -24,6 +24,7 @@ struct DiagnoseArguments {
   std::vector<std::string> recordings, candidates, exclude, ignore_columns, tune;
   std::optional<std::string> out, json, fixed_effects;
   int jobs = 0, max_effects = 4;
+  bool without_active_effects = false;
 };
 
 std::filesystem::path folderFor(const DiagnoseArguments& arguments) {
@@ -119,6 +120,7 @@ int diagnoseCommand(const ModelOptions& model, const DiagnoseArguments& argument
   std::vector<Recording> recordings;
   for (const std::string& file : arguments.recordings) {
     recordings.push_back(readRecording(file, {arguments.ignore_columns}));
+    if (arguments.without_active_effects) recordings.back().info.active_effects.clear();
     for (const auto& note : recordings.back().notes) say(model, note);
   }
   requirePlaces(folder, model, arguments);
@@ -161,6 +163,8 @@ Action addDiagnose(CLI::App& command, ModelOptions& model) {
   command.add_option("--max-effects", arguments->max_effects, "Largest number of effects that act together (default 4)")
       ->check(CLI::Range(1, 6));
   command.add_option("--fixed-effects", arguments->fixed_effects, "JSON file with effects of the model that are not fitted");
+  command.add_flag("--without-active-effects", arguments->without_active_effects,
+                   "Compare with the model without the active_effects of the recordings' sidecars: look for them");
   addList(command, "--ignore-columns", arguments->ignore_columns, "Columns to skip, separated by commas");
   addModelOptions(command, model);
   command.remove_option(command.get_option("--json"));

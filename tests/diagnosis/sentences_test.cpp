@@ -246,4 +246,11 @@ TEST(VerdictSentence, AdmitsWhatItCannotTell) {
 }
 
 }  // namespace
+TEST(VerdictSentence, BeginsWithTheEffectsThatTheModelHasAlready) {
+  Diagnosis d = lagFound();
+  d.model_effects = {"creep@all"};
+  EXPECT_TRUE(verdictSentence(d).starts_with("The model has ")) << verdictSentence(d);
+  EXPECT_TRUE(contains(verdictSentence(d), "--without-active-effects"));
+}
+
 }  // namespace musclesim
