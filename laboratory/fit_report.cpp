@@ -14,12 +14,17 @@ namespace {
 
 /// A relative squared error with three digits, or a dash if it is not defined.
 std::string share(const FitError& error) {
-  return error.count > 0 && error.measured_squares_N2 > 0 ? fmt::format("{:.2e}", error.relativeSquaredError()) : "-";
+  return error.isDefined() ? fmt::format("{:.2e}", error.relativeSquaredError()) : "-";
 }
 
 nlohmann::json shareJson(const FitError& error) {
-  if (error.count == 0 || !(error.measured_squares_N2 > 0)) return nullptr;
+  if (!error.isDefined()) return nullptr;
   return error.relativeSquaredError();
+}
+
+/// The cross-validated relative squared error.
+double errorOf(const LawReport& report) {
+  return report.validation.both().relativeSquaredError();
 }
 
 std::string pressureText(const StaticPoints& points) {
@@ -76,7 +81,33 @@ std::string constantsText(const LawReport& report) {
         "  {:<6} {:>12.6g} {:<4} {}\n", constant.name, constant.value, constant.unit,
         constant.low ? fmt::format("95 %: {:.6g} .. {:.6g}", *constant.low, *constant.high) : std::string("not determined by the points"));
   for (const auto& warning : report.fit.warnings) out += "  warning: " + warning + "\n";
+  for (const auto& note : report.validation.notes) out += "  note: " + note + "\n";
   return out;
+}
+
+const LawReport* lawToTake(const std::vector<LawReport>& reports) {
+  constexpr double about_equal = 1.2;
+  const LawReport* best = nullptr;
+  for (const LawReport& report : reports)
+    if (report.failure.empty() && report.validation.both().isDefined() && (!best || errorOf(report) < errorOf(*best))) best = &report;
+  if (!best) return nullptr;
+  const LawReport* simplest = best;
+  for (const LawReport& report : reports)
+    if (report.failure.empty() && report.validation.both().isDefined() && errorOf(report) <= about_equal * errorOf(*best) &&
+        report.model->parameters().size() < simplest->model->parameters().size())
+      simplest = &report;
+  return simplest;
+}
+
+std::string adviceText(const std::vector<LawReport>& reports) {
+  const LawReport* taken = lawToTake(reports);
+  if (!taken) return "take   none: too few points to cross-validate a law; measure more pressures and lengths\n";
+  std::string next;
+  for (const LawReport& report : reports)
+    if (&report != taken && report.failure.empty() && report.validation.both().isDefined())
+      next += fmt::format("{}{} {:.2e}", next.empty() ? "" : ", ", report.model->name(), errorOf(report));
+  return fmt::format("take   {}: predicts pressures and lengths that it was not fitted to with the error {:.2e}, by {} constants{}{}\n",
+                     taken->model->name(), errorOf(*taken), taken->model->parameters().size(), next.empty() ? "" : "; others: ", next);
 }
 
 nlohmann::json toJson(const LawReport& report) {
@@ -100,6 +131,7 @@ nlohmann::json toJson(const LawReport& report) {
       entry["interval_95"] = constant.low ? nlohmann::json({*constant.low, *constant.high}) : nlohmann::json(nullptr);
   }
   json["warnings"] = report.fit.warnings;
+  json["notes"] = report.validation.notes;
   return json;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../base/parallel.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/units.h"
 
@@ -109,17 +110,20 @@ class Frame {
   dJointFeedback feedback_{};
 };
 
-/// Calls `measure(frame, i, way)` for i = 0 .. 10 and back to 0 at each pressure.
+/// Calls `measure(frame, i, way)` for i = 0 .. 10 and back to 0 at each pressure, on all cores.
 template <class Measure>
 std::vector<FramePoint> thereAndBack(const FrameSpecimen& specimen, const Parameters& parameters, const std::vector<double>& pressures,
                                      const Measure& measure) {
-  std::vector<FramePoint> points;
-  for (const double pressure_ratio : pressures) {
-    Frame frame(specimen, pressure_ratio, parameters);
-    for (int i = 0; i <= step_count; ++i) points.push_back(measure(frame, i, FrameWay::loading));
-    for (int i = step_count - 1; i >= 0; --i) points.push_back(measure(frame, i, FrameWay::unloading));
-  }
-  return points;
+  std::vector<std::vector<FramePoint>> points(pressures.size());
+  parallelFor(static_cast<int>(pressures.size()), 0, [&](int index) {
+    const auto k = static_cast<std::size_t>(index);
+    Frame frame(specimen, pressures[k], parameters);
+    for (int i = 0; i <= step_count; ++i) points[k].push_back(measure(frame, i, FrameWay::loading));
+    for (int i = step_count - 1; i >= 0; --i) points[k].push_back(measure(frame, i, FrameWay::unloading));
+  });
+  std::vector<FramePoint> all;
+  for (const auto& at_pressure : points) all.insert(all.end(), at_pressure.begin(), at_pressure.end());
+  return all;
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ TEST(StaticPoints, MissingUnitsAreExplained) {
   EXPECT_TRUE(contains(message, "column length has no unit; allowed: length_mm, length_cm, length_m"));
   EXPECT_TRUE(contains(refusal(table("pressure,length_mm,force")), "column force has no unit; allowed: force_N"));
   EXPECT_TRUE(contains(refusal(table("p,length_mm,force_N")), "no column holds the pressure"));
-  EXPECT_TRUE(contains(refusal(table("pressure,length_inch,force_N")), "length_mm, length_cm, length_m"));
+  EXPECT_TRUE(contains(refusal(table("pressure,length_feet,force_N")), "length_mm, length_cm, length_m"));
   const std::string pressures_without_unit = refusal("pressure,length_mm,force_N\n600,200,5\n" + table().substr(27));
   EXPECT_TRUE(contains(pressures_without_unit, "data.csv:2:1"));
   EXPECT_TRUE(contains(pressures_without_unit, "600 must lie in -0.05 .. 1.05"));

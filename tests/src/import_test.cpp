@@ -63,7 +63,7 @@ TEST_F(ImportCommand, EndsWithStatus3ForABadTableAndWritesNothing) {
   std::ofstream(folder_ / "table.csv") << "t,v\n0,0.2\n";
   const ProgramResult made = runProgram({"import", "table.csv", "map.toml", "out.csv"}, folder_);
   EXPECT_EQ(made.status, 3);
-  EXPECT_TRUE(contains(made.err, "has no column \"u\""));
+  EXPECT_TRUE(contains(made.err, "there is no column \"u\""));
   EXPECT_FALSE(fs::exists(folder_ / "out.csv"));
 }
 
