@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "data_table.h"
+#include "musclesim/log/import.h"
 #include "static_points.h"
 
 namespace musclesim {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "musclesim/log/csv.h"
-#include "musclesim/log/import.h"
 
 namespace musclesim {
 

@@ -108,7 +108,7 @@ class Import {
     if (std::ranges::all_of(mapping_.columns, [](const ImportColumn& column) { return column.from.empty(); }))
       throw BadFile(mapping_.file, "columns: at least one must come from the table");
     const DataTable& first = table("");
-    clock_ = timesOf(first, mapping_.clock.value_or(ImportClock{}));
+    clock_ = timesOf(first, mapping_.clock.value_or(TableClock{}));
     const auto first_time = std::ranges::find_if(clock_, [](double time_s) { return !std::isnan(time_s); });
     if (first_time == clock_.end()) throw BadFile(csv_file_, "no row has a time");
     setZero(*first_time);
@@ -132,7 +132,7 @@ class Import {
     std::erase_if(clock_, [](double time_s) { return std::isnan(time_s); });
   }
 
-  std::vector<double> timesOf(const DataTable& table, const ImportClock& clock) { return rowTimes(table, clock, notes_); }
+  std::vector<double> timesOf(const DataTable& table, const TableClock& clock) { return rowTimes(table, clock, notes_); }
 
   /// A clock that counts from 1970 begins at 0 in the recording.
   void setZero(double first_s) {

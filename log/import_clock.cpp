@@ -57,7 +57,7 @@ class DateFormat {
 };
 
 /// The clock's readings before factor and offset.
-std::vector<double> readings(const DataTable& table, const ImportClock& clock) {
+std::vector<double> readings(const DataTable& table, const TableClock& clock) {
   std::vector<double> values(table.rowCount());
   if (clock.from.empty()) {
     for (std::size_t row = 0; row < values.size(); ++row) values[row] = static_cast<double>(row);
@@ -86,7 +86,7 @@ std::vector<double> readings(const DataTable& table, const ImportClock& clock) {
 
 }  // namespace
 
-std::vector<double> rowTimes(const DataTable& table, const ImportClock& clock, std::vector<std::string>& notes) {
+std::vector<double> rowTimes(const DataTable& table, const TableClock& clock, std::vector<std::string>& notes) {
   std::vector<double> times_s = readings(table, clock);
   double last_s = -std::numeric_limits<double>::infinity(), turns_s = 0;
   int turn_count = 0;

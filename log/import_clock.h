@@ -10,7 +10,7 @@ namespace musclesim {
 
 /// The time of each row in s by this clock; NaN for a row without one. Times may repeat. Adds a note where a counter began again.
 /// Throws BadFile where a cell is no time, or where the time runs backwards.
-std::vector<double> rowTimes(const DataTable& table, const ImportClock& clock, std::vector<std::string>& notes);
+std::vector<double> rowTimes(const DataTable& table, const TableClock& clock, std::vector<std::string>& notes);
 
 /// The median of the steps between times that grow; 0 if there is none.
 double usualStep(const std::vector<double>& times_s);

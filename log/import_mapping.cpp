@@ -59,8 +59,8 @@ class Members {
 };
 
 /// The clock of another table without word of it.
-ImportClock plainClock() {
-  ImportClock clock;
+TableClock plainClock() {
+  TableClock clock;
   clock.from.name = "time_s";
   return clock;
 }
@@ -82,8 +82,8 @@ ColumnName columnMember(Members& members, const toml::table& table, const std::s
 }
 
 /// A clock: a column, or a table. `unit_s`: the unit in which factor and offset are.
-ImportClock readClock(const toml::node& node, const std::string& place, double unit_s, const std::string& file) {
-  ImportClock clock;
+TableClock readClock(const toml::node& node, const std::string& place, double unit_s, const std::string& file) {
+  TableClock clock;
   clock.factor = unit_s;
   static const toml::table none;
   const toml::table* table = node.as_table();
@@ -109,8 +109,8 @@ ImportClock readClock(const toml::node& node, const std::string& place, double u
 }
 
 /// The clock that a table's members give as time_s, time_ms, time_us or time_min.
-std::optional<ImportClock> clockMember(Members* members, const toml::table& table, const std::string& file) {
-  std::optional<ImportClock> clock;
+std::optional<TableClock> clockMember(Members* members, const toml::table& table, const std::string& file) {
+  std::optional<TableClock> clock;
   for (const ReadingUnit& unit : readingUnits()) {
     if (unit.quantity != "time") continue;
     const std::string name = fmt::format("time_{}", unit.name);
@@ -217,13 +217,13 @@ void readFormat(Members& members, const toml::table& table, TableFormat& format)
 }
 
 /// The section [table], and [tables."file"] for other tables. Returns the clocks of these.
-std::map<std::string, ImportClock> readTables(const toml::table& document, ImportMapping& mapping) {
+std::map<std::string, TableClock> readTables(const toml::table& document, ImportMapping& mapping) {
   if (const toml::table* table = document["table"].as_table()) {
     Members members(*table, mapping.file, "table");
     readFormat(members, *table, mapping.format);
     members.requireAllKnown();
   }
-  std::map<std::string, ImportClock> clocks;
+  std::map<std::string, TableClock> clocks;
   const toml::table* tables = document["tables"].as_table();
   if (!tables) return clocks;
   for (const auto& [key, node] : *tables) {
@@ -241,7 +241,7 @@ std::map<std::string, ImportClock> readTables(const toml::table& document, Impor
   return clocks;
 }
 
-void readColumns(const toml::table& columns, const std::map<std::string, ImportClock>& clocks, ImportMapping& mapping) {
+void readColumns(const toml::table& columns, const std::map<std::string, TableClock>& clocks, ImportMapping& mapping) {
   mapping.clock = clockMember(nullptr, columns, mapping.file);
   for (const auto& [key, node] : columns) {
     const std::string name(key.str());

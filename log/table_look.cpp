@@ -350,7 +350,7 @@ class ClockLook {
   }
 
   void measure() {
-    ImportClock clock = clock_.clock;
+    TableClock clock = clock_.clock;
     clock.from = {"", static_cast<int>(clock_.column) + 1};
     std::vector<double> times_s;
     try {

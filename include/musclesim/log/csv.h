@@ -10,25 +10,9 @@
 #include <string_view>
 #include <vector>
 
+#include "musclesim/log/table_format.h"
+
 namespace musclesim {
-
-/// How a program wrote a table. In a foreign table quotes around cells are removed, comments and empty lines may stand anywhere, and empty
-/// cells at the end of a row may be missing or too many.
-struct TableFormat {
-  bool is_foreign = true;            ///< false: the format of recordings
-  char separator = ',';              ///< ' ' stands for any number of spaces and tabs
-  char decimal = '.';                ///< or ','
-  bool has_header = true;            ///< false: the columns have numbers only
-  int skip_before_header = 0;        ///< lines
-  int skip_after_header = 0;         ///< lines, for example one with units
-  std::string comment = "#";         ///< begins lines to leave out; empty: there are none
-  std::string encoding;              ///< as iconv names it, "latin1"; empty: UTF-8, or UTF-16 with a byte order mark
-  std::vector<std::string> missing;  ///< cells that stand for no reading, besides empty ones and nan; "-999" also stands for -999.0
-  std::string variable;              ///< MATLAB file: the table holds all arrays as long as this one; empty: most arrays
-
-  /// The format of recordings.
-  static TableFormat recording();
-};
 
 /// Size limits of a CSV file. A file beyond a limit is refused, never read in part.
 struct CsvLimits {

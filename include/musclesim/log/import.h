@@ -7,36 +7,19 @@
 #include <string>
 #include <vector>
 
-#include "musclesim/log/csv.h"
 #include "musclesim/log/recording.h"
+#include "musclesim/log/table_format.h"
 
 namespace musclesim {
 
-/// Names a column of a table: by its name in the header, or by its number from 1.
-struct ColumnName {
-  std::string name;
-  int number = 0;
-  bool empty() const { return name.empty() && number == 0; }
-};
-
-/// How the rows of a table get their times: time in s = factor * x + offset. x is a number, the seconds since 1970 of a date and time, or
-/// the row's number from 0.
-struct ImportClock {
-  ColumnName from;  ///< empty: the row's number
-  double factor = 1, offset = 0;
-  std::string format;     ///< of a date and time, as for strptime; seconds may have decimals. Empty: a number
-  ColumnName date;        ///< where date and time are in two columns; read as "date time"
-  double wraps_at_s = 0;  ///< a counter that begins again at 0 there; 0: it does not
-};
-
 /// How one column of the recording is computed: constant `value`, or factor * x + offset with x from a column of a table; then limited.
 struct ImportColumn {
-  std::string name;                  ///< column of the recording, with its unit: "command_0_MPa"
-  std::string written;               ///< as the mapping names it, perhaps in a unit that recordings do not have: "command_0_psi"
-  double unit_factor = 1;            ///< from that unit to the recording's
-  ColumnName from;                   ///< column of the table; empty: the constant `value`
-  std::string table;                 ///< another file, in the folder of the first; empty: the first
-  std::optional<ImportClock> clock;  ///< of the other table, or another clock in the first
+  std::string name;                 ///< column of the recording, with its unit: "command_0_MPa"
+  std::string written;              ///< as the mapping names it, perhaps in a unit that recordings do not have: "command_0_psi"
+  double unit_factor = 1;           ///< from that unit to the recording's
+  ColumnName from;                  ///< column of the table; empty: the constant `value`
+  std::string table;                ///< another file, in the folder of the first; empty: the first
+  std::optional<TableClock> clock;  ///< of the other table, or another clock in the first
   double factor = 1, offset = 0, value = 0;
   double minimum, maximum;
   bool linear = true;  ///< false: hold the last value between rows (default for commands)
@@ -71,7 +54,7 @@ ImportColumn importColumn(const std::string& written, const ColumnName& from);
 struct ImportMapping {
   std::string file;
   std::string sidecar_json;
-  std::optional<ImportClock> clock;  ///< of the first table
+  std::optional<TableClock> clock;  ///< of the first table
   std::vector<ImportColumn> columns;
   TableFormat format;                          ///< of the first table
   std::map<std::string, TableFormat> formats;  ///< of other tables; those without are written as the first
