@@ -16,8 +16,8 @@ constexpr int step_count = 10;
 /// One muscle in the frame at one pressure.
 class Frame {
  public:
-  Frame(const FrameSpecimen& specimen, double pressure_ratio, const Parameters& parameters)
-      : simulation_(optionsFor(specimen, parameters)), rig_(simulation_.build("rig")), pressure_ratio_(pressure_ratio) {
+  Frame(const FrameSpecimen& specimen, double pressure_ratio, const Parameters& parameters, StepperKind stepper)
+      : simulation_(optionsFor(specimen, parameters, stepper)), rig_(simulation_.build("rig")), pressure_ratio_(pressure_ratio) {
     if (!muscle().endJoint()) throw BadParameter("muscle.model", "line", "be chain in the load frame, which holds the muscle's last bead");
     simulation_.start("settled", {pressure_ratio});
     load_ = simulation_.world().primitives().front()->body().id;
@@ -55,9 +55,9 @@ class Frame {
  private:
   static constexpr double least_load_kg = 1e-3, drawn_radius_mm = 20;
 
-  static SimulationOptions optionsFor(const FrameSpecimen& specimen, const Parameters& parameters) {
+  static SimulationOptions optionsFor(const FrameSpecimen& specimen, const Parameters& parameters, StepperKind stepper) {
     SimulationOptions options;
-    options.stepper = StepperKind::ode;  // this stepper follows changes of the load and reports the force at the end
+    options.stepper = stepper;
     options.substeps = 10;
     options.parameters = parameters;
     options.parameters.set("rig.minimum_length_mm", specimen.minimum_mm, "specimen");
@@ -113,11 +113,11 @@ class Frame {
 /// Calls `measure(frame, i, way)` for i = 0 .. 10 and back to 0 at each pressure, on all cores.
 template <class Measure>
 std::vector<FramePoint> thereAndBack(const FrameSpecimen& specimen, const Parameters& parameters, const std::vector<double>& pressures,
-                                     const Measure& measure) {
+                                     StepperKind stepper, const Measure& measure) {
   std::vector<std::vector<FramePoint>> points(pressures.size());
   parallelFor(static_cast<int>(pressures.size()), 0, [&](int index) {
     const auto k = static_cast<std::size_t>(index);
-    Frame frame(specimen, pressures[k], parameters);
+    Frame frame(specimen, pressures[k], parameters, stepper);
     for (int i = 0; i <= step_count; ++i) points[k].push_back(measure(frame, i, FrameWay::loading));
     for (int i = step_count - 1; i >= 0; --i) points[k].push_back(measure(frame, i, FrameWay::unloading));
   });
@@ -150,12 +150,13 @@ std::vector<double> frameLoadsKg() {
 
 std::vector<FramePoint> loadSteps(const FrameSpecimen& specimen, const Parameters& parameters, const std::vector<double>& pressures) {
   const auto loads_kg = frameLoadsKg();
-  return thereAndBack(specimen, parameters, pressures,
+  return thereAndBack(specimen, parameters, pressures, StepperKind::chain,
                       [&](Frame& frame, int i, FrameWay way) { return frame.hang(loads_kg[static_cast<std::size_t>(i)], way); });
 }
 
 std::vector<FramePoint> lengthSteps(const FrameSpecimen& specimen, const Parameters& parameters, const std::vector<double>& pressures) {
-  return thereAndBack(specimen, parameters, pressures, [](Frame& frame, int i, FrameWay way) {
+  // dWorldStep holds the end and reports the force there.
+  return thereAndBack(specimen, parameters, pressures, StepperKind::ode, [](Frame& frame, int i, FrameWay way) {
     constexpr double margin_ratio = 0.02;  // keeps clear of the stops at both ends
     const auto range = frame.range();
     const double share = margin_ratio + (1 - 2 * margin_ratio) * i / step_count;
