@@ -16,8 +16,8 @@ constexpr int step_count = 10;
 /// One muscle in the frame at one pressure.
 class Frame {
  public:
-  Frame(const FrameSpecimen& specimen, double pressure_ratio, const Parameters& parameters, StepperKind stepper)
-      : simulation_(optionsFor(specimen, parameters, stepper)), rig_(simulation_.build("rig")), pressure_ratio_(pressure_ratio) {
+  Frame(const FrameSpecimen& specimen, double pressure_ratio, const Parameters& parameters)
+      : simulation_(optionsFor(specimen, parameters)), rig_(simulation_.build("rig")), pressure_ratio_(pressure_ratio) {
     if (!muscle().endJoint()) throw BadParameter("muscle.model", "line", "be chain in the load frame, which holds the muscle's last bead");
     simulation_.start("settled", {pressure_ratio});
     load_ = simulation_.world().primitives().front()->body().id;
@@ -33,31 +33,42 @@ class Frame {
     return read(load_kg * gravity_m_per_s2, way, at_rest);
   }
 
-  /// Moves the held end slowly to a length and waits for rest. The first call starts holding the end.
+  /// Moves the held end slowly to a length and waits for rest. The end is a body without weight, so heavy that the muscle hardly moves it:
+  /// its momentum in the last step is the muscle's force on it.
   FramePoint hold(double length_mm, FrameWay way) {
-    const dJointID end = muscle().endJoint()->id();
-    dBodySetKinematic(load_);
-    dJointSetFeedback(end, &feedback_);
+    dMass mass;
+    dMassSetSphereTotal(&mass, held_mass_g, drawn_radius_mm);
+    dBodySetMass(load_, &mass);
+    dBodySetGravityMode(load_, 0);
     const double from_mm = -dBodyGetPosition(load_)[1];
     constexpr double speed_mm_per_s = 150;
     const double duration_s = std::max(std::abs(length_mm - from_mm) / speed_mm_per_s, simulation_.stepS());
     const auto count = static_cast<int>(std::ceil(duration_s / simulation_.stepS()));
-    dBodySetLinearVel(load_, 0, -(length_mm - from_mm) / (count * simulation_.stepS()), 0);
-    for (int i = 0; i < count; ++i) simulation_.step();
-    dBodySetLinearVel(load_, 0, 0, 0);
+    for (int i = 0; i < count; ++i) stepHeld((from_mm - length_mm) / (count * simulation_.stepS()));
     constexpr int rest_count = 10;
-    for (int i = 0; i < rest_count; ++i) simulation_.step();
-    return read(std::abs(feedback_.f1[1]) / simulation_.physics().force_per_N, way, true);
+    double force_N = 0;
+    for (int i = 0; i < rest_count; ++i) force_N = stepHeld(0);
+    return read(std::abs(force_N), way, true);
   }
 
   Actuator::LengthRange range() { return muscle().straightLengthRange(); }
 
  private:
   static constexpr double least_load_kg = 1e-3, drawn_radius_mm = 20;
+  /// 1000 N give it a speed of 1e-5 mm/s in a step of 10 ms.
+  static constexpr double held_mass_g = 1e12;
 
-  static SimulationOptions optionsFor(const FrameSpecimen& specimen, const Parameters& parameters, StepperKind stepper) {
+  /// One step with the held end at this speed, upwards. Returns the force on it in N, upwards.
+  double stepHeld(double speed_mm_per_s) {
+    dBodySetLinearVel(load_, 0, speed_mm_per_s, 0);
+    simulation_.step();
+    const double gained_mm_per_s = dBodyGetLinearVel(load_)[1] - speed_mm_per_s;
+    return held_mass_g * gained_mm_per_s / simulation_.stepS() / simulation_.physics().force_per_N;
+  }
+
+  static SimulationOptions optionsFor(const FrameSpecimen& specimen, const Parameters& parameters) {
     SimulationOptions options;
-    options.stepper = stepper;
+    options.stepper = StepperKind::chain;
     options.substeps = 10;
     options.parameters = parameters;
     options.parameters.set("rig.minimum_length_mm", specimen.minimum_mm, "specimen");
@@ -107,17 +118,16 @@ class Frame {
   Robot& rig_;
   double pressure_ratio_;
   dBodyID load_ = nullptr;
-  dJointFeedback feedback_{};
 };
 
 /// Calls `measure(frame, i, way)` for i = 0 .. 10 and back to 0 at each pressure, on all cores.
 template <class Measure>
 std::vector<FramePoint> thereAndBack(const FrameSpecimen& specimen, const Parameters& parameters, const std::vector<double>& pressures,
-                                     StepperKind stepper, const Measure& measure) {
+                                     const Measure& measure) {
   std::vector<std::vector<FramePoint>> points(pressures.size());
   parallelFor(static_cast<int>(pressures.size()), 0, [&](int index) {
     const auto k = static_cast<std::size_t>(index);
-    Frame frame(specimen, pressures[k], parameters, stepper);
+    Frame frame(specimen, pressures[k], parameters);
     for (int i = 0; i <= step_count; ++i) points[k].push_back(measure(frame, i, FrameWay::loading));
     for (int i = step_count - 1; i >= 0; --i) points[k].push_back(measure(frame, i, FrameWay::unloading));
   });
@@ -150,13 +160,12 @@ std::vector<double> frameLoadsKg() {
 
 std::vector<FramePoint> loadSteps(const FrameSpecimen& specimen, const Parameters& parameters, const std::vector<double>& pressures) {
   const auto loads_kg = frameLoadsKg();
-  return thereAndBack(specimen, parameters, pressures, StepperKind::chain,
+  return thereAndBack(specimen, parameters, pressures,
                       [&](Frame& frame, int i, FrameWay way) { return frame.hang(loads_kg[static_cast<std::size_t>(i)], way); });
 }
 
 std::vector<FramePoint> lengthSteps(const FrameSpecimen& specimen, const Parameters& parameters, const std::vector<double>& pressures) {
-  // dWorldStep holds the end and reports the force there.
-  return thereAndBack(specimen, parameters, pressures, StepperKind::ode, [](Frame& frame, int i, FrameWay way) {
+  return thereAndBack(specimen, parameters, pressures, [](Frame& frame, int i, FrameWay way) {
     constexpr double margin_ratio = 0.02;  // keeps clear of the stops at both ends
     const auto range = frame.range();
     const double share = margin_ratio + (1 - 2 * margin_ratio) * i / step_count;
