@@ -16,7 +16,7 @@ std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') out += '\\';
-    if (static_cast<unsigned char>(c) < 0x20)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F)
       out += c == '\t' ? "\\t" : fmt::format("\\u{:04X}", static_cast<int>(c));
     else
       out += c;
