@@ -86,17 +86,15 @@ std::string constantsText(const LawReport& report) {
 }
 
 const LawReport* lawToTake(const std::vector<LawReport>& reports) {
-  constexpr double about_equal = 1.2;
-  const LawReport* best = nullptr;
+  constexpr double about_equal = 1.2, handicap_of_tables = 2;
+  const auto cost = [&](const LawReport& report) { return errorOf(report) * (report.model->isTable() ? handicap_of_tables : 1); };
+  std::vector<const LawReport*> validated;
   for (const LawReport& report : reports)
-    if (report.failure.empty() && report.validation.both().isDefined() && (!best || errorOf(report) < errorOf(*best))) best = &report;
-  if (!best) return nullptr;
-  const LawReport* simplest = best;
-  for (const LawReport& report : reports)
-    if (report.failure.empty() && report.validation.both().isDefined() && errorOf(report) <= about_equal * errorOf(*best) &&
-        report.model->parameters().size() < simplest->model->parameters().size())
-      simplest = &report;
-  return simplest;
+    if (report.failure.empty() && report.validation.both().isDefined()) validated.push_back(&report);
+  if (validated.empty()) return nullptr;
+  const double best = cost(**std::ranges::min_element(validated, {}, [&](const LawReport* report) { return cost(*report); }));
+  std::erase_if(validated, [&](const LawReport* report) { return cost(*report) > about_equal * best; });
+  return *std::ranges::min_element(validated, {}, [](const LawReport* report) { return report->model->parameters().size(); });
 }
 
 std::string adviceText(const std::vector<LawReport>& reports) {

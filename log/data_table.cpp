@@ -93,9 +93,11 @@ std::size_t DataTable::indexOf(const ColumnName& column) const {
   const auto again = std::find(found + 1, names_.end(), column.name);
   const auto index = static_cast<std::size_t>(found - names_.begin());
   if (again != names_.end())
-    refuseHeader(static_cast<std::size_t>(again - names_.begin()),
-                 fmt::format("several columns are named \"{}\": {} and {}; choose one by its number, as from = {}", shown(column.name),
-                             index + 1, again - names_.begin() + 1, index + 1));
+    refuseHeader(
+        static_cast<std::size_t>(again - names_.begin()),
+        fmt::format(
+            "several columns are named \"{}\": {} and {}; choose one by its number: from = {} in a mapping, #{} with --columns or --where",
+            shown(column.name), index + 1, again - names_.begin() + 1, index + 1, index + 1));
   return index;
 }
 

@@ -166,7 +166,9 @@ class Import {
       result.values.push_back(value);
     }
     if (empty_count > 0) notes_.push_back(fmt::format("{}: {} of {} cells hold no reading", column.name, empty_count, times_s.size()));
-    result.longest_gap_s = mapping_.longest_gap_s.value_or(gap_steps * usualStep(result.time_s)) * (1 + 1e-9);
+    // What is shorter than a row of the recording is no gap in it.
+    const double longest_s = std::max(gap_steps * usualStep(result.time_s), mapping_.step_s.value_or(0));
+    result.longest_gap_s = mapping_.longest_gap_s.value_or(longest_s) * (1 + 1e-9);
     return result;
   }
 
@@ -244,7 +246,8 @@ class Import {
   void cut(std::vector<RowTime>& rows) const {
     const double from_s = mapping_.from_s.value_or(rows.empty() ? 0 : rows.front().time_s);
     std::erase_if(rows, [&](const RowTime& row) { return row.time_s < from_s || (mapping_.until_s && row.time_s > *mapping_.until_s); });
-    for (RowTime& row : rows) row.time_s -= from_s;
+    constexpr double per_s = 1e9;  // rounded to nanoseconds, since differences of large times have digits of no meaning
+    for (RowTime& row : rows) row.time_s = std::round((row.time_s - from_s) * per_s) / per_s;
     if (rows.empty()) throw BadFile(mapping_.file, "rows: from_s and until_s leave no rows");
   }
 
@@ -347,7 +350,7 @@ class Import {
     std::string text = "time_s";
     for (const ImportColumn& column : mapping_.columns) text += "," + column.name;
     for (std::size_t row = 0; row < rows_.size(); ++row) {
-      text += fmt::format("\n{:.12g}", time_s_[row]);
+      text += fmt::format("\n{}", time_s_[row]);
       for (const double value : rows_[row]) text += std::isnan(value) ? "," : fmt::format(",{:.10g}", value);
     }
     return text + "\n";

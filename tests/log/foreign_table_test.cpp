@@ -117,8 +117,8 @@ TEST_F(ForeignTable, MarksOfMissingReadings) {
 
 TEST_F(ForeignTable, ANameThatIsThereTwice) {
   const std::string table = "t,u,x,t,x\n0,3,250,0,17\n0.1,3,248,0.1,18\n";
-  EXPECT_TRUE(
-      contains(refusal(table, plain), "data.csv:1:7: several columns are named \"t\": 1 and 4; choose one by its number, as from = 1"));
+  EXPECT_TRUE(contains(refusal(table, plain),
+                       "data.csv:1:7: several columns are named \"t\": 1 and 4; choose one by its number: from = 1 in a mapping"));
   EXPECT_EQ(values(import(table, numbered), "length_0_mm"), (Values{250, 248}));
   EXPECT_NO_THROW(import("t,u,x,y,y\n0,3,250,0,17\n", plain)) << "names that are not used may repeat";
 }
