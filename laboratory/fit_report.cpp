@@ -100,12 +100,17 @@ const LawReport* lawToTake(const std::vector<LawReport>& reports) {
 std::string adviceText(const std::vector<LawReport>& reports) {
   const LawReport* taken = lawToTake(reports);
   if (!taken) return "take   none: too few points to cross-validate a law; measure more pressures and lengths\n";
-  std::string next;
-  for (const LawReport& report : reports)
-    if (&report != taken && report.failure.empty() && report.validation.both().isDefined())
-      next += fmt::format("{}{} {:.2e}", next.empty() ? "" : ", ", report.model->name(), errorOf(report));
-  return fmt::format("take   {}: predicts pressures and lengths that it was not fitted to with the error {:.2e}, by {} constants{}{}\n",
-                     taken->model->name(), errorOf(*taken), taken->model->parameters().size(), next.empty() ? "" : "; others: ", next);
+  std::string others;
+  bool is_best = true;
+  for (const LawReport& report : reports) {
+    if (&report == taken || !report.failure.empty() || !report.validation.both().isDefined()) continue;
+    is_best = is_best && errorOf(*taken) <= errorOf(report);
+    others += fmt::format("{}{} {:.2e}", others.empty() ? "; others: " : ", ", report.model->name(), errorOf(report));
+  }
+  const std::string why =
+      is_best ? "predicts best what it was not fitted to" : "predicts what it was not fitted to about as well as the best, simpler";
+  return fmt::format("take   {}: {} (error {:.2e}, {} constants{})\n", taken->model->name(), why, errorOf(*taken),
+                     taken->model->parameters().size(), others);
 }
 
 nlohmann::json toJson(const LawReport& report) {

@@ -328,11 +328,25 @@ class Import {
     rows_.insert(rows_.begin(), std::move(rest));
   }
 
+  /// A line that lost its end may still have a line end.
+  void noteLastJump(const ImportColumn& column, const Series& series) {
+    constexpr double jump_ratio = 0.5, earlier_steps = 5;
+    const std::vector<double>& values = series.values;
+    if (values.size() < 3 || isCommand(column)) return;
+    double largest_step = 0;
+    for (std::size_t i = 1; i + 1 < values.size(); ++i) largest_step = std::max(largest_step, std::abs(values[i] - values[i - 1]));
+    const double before = values[values.size() - 2], step = std::abs(values.back() - before);
+    if (step > jump_ratio * std::abs(before) && step > earlier_steps * largest_step && largest_step > 0)
+      notes_.push_back(fmt::format("{} jumps from {:.6g} to {:.6g} in the last row of {}: is the file cut there?", column.name, before,
+                                   values.back(), series.file));
+  }
+
   void noteMissing() {
     for (std::size_t i = 0; i < series_.size(); ++i) {
       const Series& series = series_[i];
       const std::string of = fmt::format("of {} rows", rows_.size());
       const std::string& name = mapping_.columns[i].name;
+      noteLastJump(mapping_.columns[i], series);
       if (series.outside_count > 0)
         notes_.push_back(fmt::format("{}: {} {} lie outside of its own times, {:.6g} .. {:.6g} s in {}, and are not measured", name,
                                      series.outside_count, of, series.time_s.empty() ? 0 : series.time_s.front(),

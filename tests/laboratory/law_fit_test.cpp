@@ -166,7 +166,7 @@ TEST(FitReport, SaysWhichLawToTake) {
   const auto reports = fitLaws({"braun", "chou-hannaford-linear"}, points, specimenOf(points, std::nullopt), {120.0, 300.0});
   ASSERT_TRUE(lawToTake(reports));
   EXPECT_EQ(lawToTake(reports)->model->name(), "braun");
-  EXPECT_TRUE(contains(adviceText(reports), "take   braun: predicts pressures and lengths that it was not fitted to with the error "));
+  EXPECT_TRUE(contains(adviceText(reports), "take   braun: predicts best what it was not fitted to (error "));
   EXPECT_TRUE(contains(adviceText(reports), "others: chou-hannaford-linear "));
 }
 

@@ -127,6 +127,8 @@ TEST_F(ForeignTable, ALastLineThatIsCut) {
   const Recording r = import("t,u,x\n0,3,250\n0.1,3,248.5\n0.2,3,24", plain);
   EXPECT_EQ(values(r, "length_0_mm"), (Values{250, 248.5}));
   EXPECT_TRUE(hasNote(r, "the last line has no line end and may be cut; it is left out: \"0.2,3,24\""));
+  const Recording jump = import("t,u,x\n0,3,250\n0.1,3,248.5\n0.2,3,24\n", plain);
+  EXPECT_TRUE(hasNote(jump, "length_0_mm jumps from 248.5 to 24 in the last row"));
 }
 
 TEST_F(ForeignTable, ClocksInOtherUnits) {
