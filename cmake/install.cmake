@@ -38,6 +38,7 @@ install(DIRECTORY docs/examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT de
 install(CODE "
   set(PROJECT_VERSION ${PROJECT_VERSION})
   set(PROJECT_DESCRIPTION \"${PROJECT_DESCRIPTION}\")
+  set(MUSCLESIM_MATIO_LINK \"${MUSCLESIM_MATIO_LINK}\")
   cmake_path(ABSOLUTE_PATH CMAKE_INSTALL_PREFIX)
   cmake_path(APPEND CMAKE_INSTALL_PREFIX ${CMAKE_INSTALL_LIBDIR} OUTPUT_VARIABLE PC_LIBDIR)
   cmake_path(APPEND CMAKE_INSTALL_PREFIX ${CMAKE_INSTALL_INCLUDEDIR} OUTPUT_VARIABLE PC_INCLUDEDIR)
@@ -67,6 +68,9 @@ set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "simulator of robots driven by pneumatic
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libmusclesim-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libode-dev, libeigen3-dev, libfmt-dev, nlohmann-json3-dev, libtomlplusplus-dev, libmuparser-dev, pkg-config")
+if(MUSCLESIM_MATIO_LINK)
+  string(APPEND CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS ", libmatio-dev")
+endif()
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "library, headers and examples of musclesim
  For robots, controllers, effects and force laws of one's own.")
 include(CPack)

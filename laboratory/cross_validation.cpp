@@ -1,13 +1,20 @@
 #include "cross_validation.h"
 
-#include "musclesim/base/error.h"
+#include <fmt/format.h>
+
 #include "point_groups.h"
 
 namespace musclesim {
 
 namespace {
 
-/// Fits all points but one group and returns the error at the points of the group.
+FitError missing() {
+  FitError error;
+  error.is_missing = true;
+  return error;
+}
+
+/// Fits all points but one group and returns the error at the points of the group, or a missing one if the others are too few for a fit.
 FitError errorWithout(const PointGroup& group, const LawModel& model, const StaticPoints& points, const LawFit& fit) {
   std::vector<bool> is_left_out(points.points.size(), false);
   for (const std::size_t i : group.of) is_left_out[i] = true;
@@ -15,6 +22,7 @@ FitError errorWithout(const PointGroup& group, const LawModel& model, const Stat
   std::vector<StaticPoint> left_out;
   rest.points.clear();
   for (std::size_t i = 0; i < points.points.size(); ++i) (is_left_out[i] ? left_out : rest.points).push_back(points.points[i]);
+  if (rest.measured().size() < fewestPointsFor(model)) return missing();
   return errorOf(*model.build(fitParameters(model, rest, {fit.parameters})), left_out);
 }
 
@@ -25,17 +33,28 @@ bool hasMeasured(const PointGroup& group, const StaticPoints& points) {
   return false;
 }
 
-/// Adds the errors of all groups to `inner` and `outer`. Returns the number of inner groups.
-int validate(const std::vector<PointGroup>& groups, const LawModel& model, const StaticPoints& points, const LawFit& fit, FitError& inner,
-             FitError& outer) {
+/// The errors of inner and outer groups, their number, and a note if a group cannot be left out.
+struct Validation {
+  FitError inner, outer;
   int inner_count = 0;
+  std::string note;
+};
+
+Validation validate(const std::string& quantity, const std::vector<PointGroup>& groups, const LawModel& model, const StaticPoints& points,
+                    const LawFit& fit) {
+  Validation result;
   for (std::size_t i = 0; i < groups.size(); ++i) {
     if (!hasMeasured(groups[i], points)) continue;
     const bool is_inner = i > 0 && i + 1 < groups.size();
-    inner_count += is_inner;
-    (is_inner ? inner : outer).add(errorWithout(groups[i], model, points, fit));
+    result.inner_count += is_inner;
+    FitError& sum = is_inner ? result.inner : result.outer;
+    if (sum.is_missing) continue;
+    sum.add(errorWithout(groups[i], model, points, fit));
+    if (!sum.is_missing) continue;
+    result.note = fmt::format("not cross-validated over {} {}: without the {} points of one, fewer than {} are left",
+                              is_inner ? "inner" : "outer", quantity, groups[i].of.size(), fewestPointsFor(model));
   }
-  return inner_count;
+  return result;
 }
 
 }  // namespace
@@ -47,9 +66,17 @@ FitError CrossValidation::both() const {
 }
 
 CrossValidation crossValidate(const LawModel& model, const StaticPoints& points, const LawFit& fit) {
-  CrossValidation result;
-  result.length_count = validate(groupByLength(points.points), model, points, fit, result.lengths, result.outer_lengths);
-  result.pressure_count = validate(groupByPressure(points.points), model, points, fit, result.pressures, result.outer_pressures);
+  const Validation over_lengths = validate("lengths", groupByLength(points.points), model, points, fit);
+  const Validation over_pressures = validate("pressures", groupByPressure(points.points), model, points, fit);
+  CrossValidation result{over_lengths.inner,
+                         over_pressures.inner,
+                         over_lengths.outer,
+                         over_pressures.outer,
+                         over_lengths.inner_count,
+                         over_pressures.inner_count,
+                         {}};
+  for (const Validation* validation : {&over_lengths, &over_pressures})
+    if (!validation->note.empty()) result.notes.push_back(validation->note);
   return result;
 }
 

@@ -14,12 +14,17 @@ namespace {
 
 /// A relative squared error with three digits, or a dash if it is not defined.
 std::string share(const FitError& error) {
-  return error.count > 0 && error.measured_squares_N2 > 0 ? fmt::format("{:.2e}", error.relativeSquaredError()) : "-";
+  return error.isDefined() ? fmt::format("{:.2e}", error.relativeSquaredError()) : "-";
 }
 
 nlohmann::json shareJson(const FitError& error) {
-  if (error.count == 0 || !(error.measured_squares_N2 > 0)) return nullptr;
+  if (!error.isDefined()) return nullptr;
   return error.relativeSquaredError();
+}
+
+/// The cross-validated relative squared error.
+double errorOf(const LawReport& report) {
+  return report.validation.both().relativeSquaredError();
 }
 
 std::string pressureText(const StaticPoints& points) {
@@ -76,7 +81,36 @@ std::string constantsText(const LawReport& report) {
         "  {:<6} {:>12.6g} {:<4} {}\n", constant.name, constant.value, constant.unit,
         constant.low ? fmt::format("95 %: {:.6g} .. {:.6g}", *constant.low, *constant.high) : std::string("not determined by the points"));
   for (const auto& warning : report.fit.warnings) out += "  warning: " + warning + "\n";
+  for (const auto& note : report.validation.notes) out += "  note: " + note + "\n";
   return out;
+}
+
+const LawReport* lawToTake(const std::vector<LawReport>& reports) {
+  constexpr double about_equal = 1.2, handicap_of_tables = 2;
+  const auto cost = [&](const LawReport& report) { return errorOf(report) * (report.model->isTable() ? handicap_of_tables : 1); };
+  std::vector<const LawReport*> validated;
+  for (const LawReport& report : reports)
+    if (report.failure.empty() && report.validation.both().isDefined()) validated.push_back(&report);
+  if (validated.empty()) return nullptr;
+  const double best = cost(**std::ranges::min_element(validated, {}, [&](const LawReport* report) { return cost(*report); }));
+  std::erase_if(validated, [&](const LawReport* report) { return cost(*report) > about_equal * best; });
+  return *std::ranges::min_element(validated, {}, [](const LawReport* report) { return report->model->parameters().size(); });
+}
+
+std::string adviceText(const std::vector<LawReport>& reports) {
+  const LawReport* taken = lawToTake(reports);
+  if (!taken) return "take   none: too few points to cross-validate a law; measure more pressures and lengths\n";
+  std::string others;
+  bool is_best = true;
+  for (const LawReport& report : reports) {
+    if (&report == taken || !report.failure.empty() || !report.validation.both().isDefined()) continue;
+    is_best = is_best && errorOf(*taken) <= errorOf(report);
+    others += fmt::format("{}{} {:.2e}", others.empty() ? "; others: " : ", ", report.model->name(), errorOf(report));
+  }
+  const std::string why =
+      is_best ? "predicts best what it was not fitted to" : "predicts what it was not fitted to about as well as the best, simpler";
+  return fmt::format("take   {}: {} (error {:.2e}, {} constants{})\n", taken->model->name(), why, errorOf(*taken),
+                     taken->model->parameters().size(), others);
 }
 
 nlohmann::json toJson(const LawReport& report) {
@@ -100,6 +134,7 @@ nlohmann::json toJson(const LawReport& report) {
       entry["interval_95"] = constant.low ? nlohmann::json({*constant.low, *constant.high}) : nlohmann::json(nullptr);
   }
   json["warnings"] = report.fit.warnings;
+  json["notes"] = report.validation.notes;
   return json;
 }
 

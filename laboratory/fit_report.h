@@ -27,6 +27,11 @@ std::vector<LawReport> fitLaws(const std::vector<std::string>& names, const Stat
 std::string errorTable(const std::vector<LawReport>& reports);
 /// One line per constant with its 95 % interval, then the warnings. A map gets one line instead, since its constants are forces at nodes.
 std::string constantsText(const LawReport& report);
+/// The law with the smallest cross-validated error, or one with fewer constants that is at most a fifth worse; null if none is validated.
+/// A table must halve the error of the formulas, since it knows nothing beyond the measured points.
+const LawReport* lawToTake(const std::vector<LawReport>& reports);
+/// One line that says which law to take and why.
+std::string adviceText(const std::vector<LawReport>& reports);
 nlohmann::json toJson(const LawReport& report);
 /// A TOML file that --config accepts.
 std::string configurationToml(const LawReport& report, const StaticPoints& points);

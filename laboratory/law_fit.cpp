@@ -70,6 +70,26 @@ double largestOffN(const ForceLaw& law, const StaticPoints& points) {
   return largest_N;
 }
 
+/// Warns of a law that pushes between no pressure and the highest, at the measured lengths.
+void warnOfPush(const ForceLaw& law, const StaticPoints& points, std::vector<std::string>& warnings) {
+  constexpr int steps = 20;
+  constexpr double noticeable_share = 0.01;
+  double highest_ratio = 0;
+  for (const auto& point : points.points) highest_ratio = std::max(highest_ratio, point.pressure_ratio);
+  StaticPoint worst;
+  for (int i = 0; i <= steps; ++i)
+    for (int j = 0; j <= steps; ++j) {
+      const double pressure_ratio = highest_ratio * i / steps;
+      const double length_mm = points.shortestMm() + (points.longestMm() - points.shortestMm()) * j / steps;
+      const double tension_N = law.tensionN(pressure_ratio, length_mm);
+      if (tension_N < worst.force_N) worst = {pressure_ratio, length_mm, tension_N};
+    }
+  if (-worst.force_N < noticeable_share * points.largestForceN()) return;
+  const std::string where = worst.pressure_ratio == 0 ? "when vented" : fmt::format("at {:.3g} of full scale", worst.pressure_ratio);
+  warnings.push_back(fmt::format("{} pushes with up to {:.3g} N {}, at {:.4g} mm; no muscle can, and a simulated one is slack there",
+                                 law.name(), -worst.force_N, where, worst.length_mm));
+}
+
 /// d constants / d parameters.
 Eigen::MatrixXd constantsJacobian(const LawModel& model, const Eigen::VectorXd& x) {
   LeastSquaresProblem problem;
@@ -189,6 +209,7 @@ void FitError::add(const FitError& other) {
   sum_of_squares_N2 += other.sum_of_squares_N2;
   measured_squares_N2 += other.measured_squares_N2;
   count += other.count;
+  is_missing = is_missing || other.is_missing;
   if (std::abs(other.largest_N) <= std::abs(largest_N)) return;
   largest_N = other.largest_N;
   largest_line = other.largest_line;
@@ -208,10 +229,14 @@ Specimen specimenOf(const StaticPoints& points, std::optional<double> rest_lengt
   return {rest_length_mm.value_or(points.longestMm()), points.shortestMm(), points.largestForceN()};
 }
 
+std::size_t fewestPointsFor(const LawModel& model) {
+  // For a table few points suffice, since penalties determine what the points do not.
+  return model.isTable() ? fewest_points : 2 * model.parameters().size();
+}
+
 Eigen::VectorXd fitParameters(const LawModel& model, const StaticPoints& points, const std::vector<Eigen::VectorXd>& starts,
                               bool* converged) {
-  // For a table few points suffice, since penalties determine what the points do not.
-  const std::size_t needed = model.isTable() ? fewest_points : 2 * model.parameters().size();
+  const std::size_t needed = fewestPointsFor(model);
   if (points.measured().size() < needed)
     throw BadFile(points.file, fmt::format("{} points above the floor are too few for the law {} with {} constants; at least {} are needed",
                                            points.measured().size(), model.name(), model.parameters().size(), needed));
@@ -227,6 +252,7 @@ LawFit fitLaw(const LawModel& model, const StaticPoints& points) {
   Judgement judgement(model, points, fit);
   judgement.addConstants();
   if (!model.isTable()) judgement.addWarnings();
+  warnOfPush(*model.build(fit.parameters), points, fit.warnings);
   return fit;
 }
 

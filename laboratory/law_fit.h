@@ -26,6 +26,8 @@ struct FitError {
   double largest_N = 0;  ///< model minus measurement at the point with the largest magnitude of it
   int largest_line = 0;
   int count = 0;
+  bool is_missing = false;  ///< a part of it could not be computed
+  bool isDefined() const { return !is_missing && count > 0 && measured_squares_N2 > 0; }
   /// The paper's error function, sum((m - s)^2) / sum(m^2).
   double relativeSquaredError() const { return sum_of_squares_N2 / measured_squares_N2; }
   void add(const FitError& other);
@@ -41,8 +43,11 @@ struct LawFit {
   std::vector<std::string> warnings;  ///< for example: constants not determined separately, a constant at its bound, no convergence
 };
 
+/// The least number of points, neither censored nor outliers, for a fit of this family.
+std::size_t fewestPointsFor(const LawModel& model);
+
 /// Minimises sum (F(p, l) - measured)^2 over the points that are not outliers. A censored point adds max(0, F - floor)^2 instead: it counts
-/// only if the law is above the floor. Throws BadFile if there are fewer than two measured points per parameter.
+/// only if the law is above the floor. Throws BadFile if there are fewer points than it needs.
 Eigen::VectorXd fitParameters(const LawModel& model, const StaticPoints& points, const std::vector<Eigen::VectorXd>& starts,
                               bool* converged = nullptr);
 /// As above, and computes errors, intervals and warnings.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../base/parallel.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/units.h"
 
@@ -32,31 +33,42 @@ class Frame {
     return read(load_kg * gravity_m_per_s2, way, at_rest);
   }
 
-  /// Moves the held end slowly to a length and waits for rest. The first call starts holding the end.
+  /// Moves the held end slowly to a length and waits for rest. The end is a body without weight, so heavy that the muscle hardly moves it:
+  /// its momentum in the last step is the muscle's force on it.
   FramePoint hold(double length_mm, FrameWay way) {
-    const dJointID end = muscle().endJoint()->id();
-    dBodySetKinematic(load_);
-    dJointSetFeedback(end, &feedback_);
+    dMass mass;
+    dMassSetSphereTotal(&mass, held_mass_g, drawn_radius_mm);
+    dBodySetMass(load_, &mass);
+    dBodySetGravityMode(load_, 0);
     const double from_mm = -dBodyGetPosition(load_)[1];
     constexpr double speed_mm_per_s = 150;
     const double duration_s = std::max(std::abs(length_mm - from_mm) / speed_mm_per_s, simulation_.stepS());
     const auto count = static_cast<int>(std::ceil(duration_s / simulation_.stepS()));
-    dBodySetLinearVel(load_, 0, -(length_mm - from_mm) / (count * simulation_.stepS()), 0);
-    for (int i = 0; i < count; ++i) simulation_.step();
-    dBodySetLinearVel(load_, 0, 0, 0);
+    for (int i = 0; i < count; ++i) stepHeld((from_mm - length_mm) / (count * simulation_.stepS()));
     constexpr int rest_count = 10;
-    for (int i = 0; i < rest_count; ++i) simulation_.step();
-    return read(std::abs(feedback_.f1[1]) / simulation_.physics().force_per_N, way, true);
+    double force_N = 0;
+    for (int i = 0; i < rest_count; ++i) force_N = stepHeld(0);
+    return read(std::abs(force_N), way, true);
   }
 
   Actuator::LengthRange range() { return muscle().straightLengthRange(); }
 
  private:
   static constexpr double least_load_kg = 1e-3, drawn_radius_mm = 20;
+  /// 1000 N give it a speed of 1e-5 mm/s in a step of 10 ms.
+  static constexpr double held_mass_g = 1e12;
+
+  /// One step with the held end at this speed, upwards. Returns the force on it in N, upwards.
+  double stepHeld(double speed_mm_per_s) {
+    dBodySetLinearVel(load_, 0, speed_mm_per_s, 0);
+    simulation_.step();
+    const double gained_mm_per_s = dBodyGetLinearVel(load_)[1] - speed_mm_per_s;
+    return held_mass_g * gained_mm_per_s / simulation_.stepS() / simulation_.physics().force_per_N;
+  }
 
   static SimulationOptions optionsFor(const FrameSpecimen& specimen, const Parameters& parameters) {
     SimulationOptions options;
-    options.stepper = StepperKind::ode;  // this stepper follows changes of the load and reports the force at the end
+    options.stepper = StepperKind::chain;
     options.substeps = 10;
     options.parameters = parameters;
     options.parameters.set("rig.minimum_length_mm", specimen.minimum_mm, "specimen");
@@ -106,20 +118,22 @@ class Frame {
   Robot& rig_;
   double pressure_ratio_;
   dBodyID load_ = nullptr;
-  dJointFeedback feedback_{};
 };
 
-/// Calls `measure(frame, i, way)` for i = 0 .. 10 and back to 0 at each pressure.
+/// Calls `measure(frame, i, way)` for i = 0 .. 10 and back to 0 at each pressure, on all cores.
 template <class Measure>
 std::vector<FramePoint> thereAndBack(const FrameSpecimen& specimen, const Parameters& parameters, const std::vector<double>& pressures,
                                      const Measure& measure) {
-  std::vector<FramePoint> points;
-  for (const double pressure_ratio : pressures) {
-    Frame frame(specimen, pressure_ratio, parameters);
-    for (int i = 0; i <= step_count; ++i) points.push_back(measure(frame, i, FrameWay::loading));
-    for (int i = step_count - 1; i >= 0; --i) points.push_back(measure(frame, i, FrameWay::unloading));
-  }
-  return points;
+  std::vector<std::vector<FramePoint>> points(pressures.size());
+  parallelFor(static_cast<int>(pressures.size()), 0, [&](int index) {
+    const auto k = static_cast<std::size_t>(index);
+    Frame frame(specimen, pressures[k], parameters);
+    for (int i = 0; i <= step_count; ++i) points[k].push_back(measure(frame, i, FrameWay::loading));
+    for (int i = step_count - 1; i >= 0; --i) points[k].push_back(measure(frame, i, FrameWay::unloading));
+  });
+  std::vector<FramePoint> all;
+  for (const auto& at_pressure : points) all.insert(all.end(), at_pressure.begin(), at_pressure.end());
+  return all;
 }
 
 }  // namespace

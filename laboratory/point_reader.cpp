@@ -6,27 +6,44 @@
 #include <cmath>
 
 #include "musclesim/base/error.h"
-#include "musclesim/base/file.h"
-#include "musclesim/log/csv.h"
 #include "point_checks.h"
 #include "point_columns.h"
+#include "reading_units.h"
 
 namespace musclesim {
 
 namespace {
 
-/// Rows of the file that pass the filters. Pressures are in kPa or fractions, as in the file; lengths in mm, forces in N.
-std::vector<StaticPoint> readRows(CsvReader& reader, const PointColumns& columns, StaticPoints& result) {
+/// What a mapping file says of the table. It may have only what is of use for static points.
+ImportMapping mappingOf(const StaticPointsOptions& options) {
+  if (options.mapping.empty()) return {};
+  ImportMapping mapping = readImportMapping(options.mapping);
+  if (mapping.has_rows || mapping.clock)
+    throw BadFile(options.mapping, "static points have no time: neither time_s nor [rows] can be used");
+  for (const ImportColumn& column : mapping.columns) {
+    const std::string quantity = column.written.substr(0, column.written.find('_'));
+    const bool is_plain = column.written == quantity || unitAtEnd(column.written);
+    if ((quantity != "pressure" && quantity != "length" && quantity != "force") || !is_plain ||
+        std::ranges::count(column.written, '_') > 1 || column.clock)
+      throw BadFile(options.mapping,
+                    fmt::format("columns.{}: static points have pressure (a fraction) or pressure_kPa, length_mm and force_N, or these in "
+                                "other units, all from one table",
+                                column.written));
+  }
+  return mapping;
+}
+
+/// Rows of the table that pass the filters. Pressures are in kPa or fractions, as in the file; lengths in mm, forces in N.
+std::vector<StaticPoint> readRows(const DataTable& table, const PointColumns& columns, StaticPoints& result) {
   std::vector<StaticPoint> points;
-  std::vector<CsvCell> cells;
   int unmeasured_count = 0;
-  while (reader.readRow(cells)) {
-    if (!columns.selects(cells)) continue;
+  for (std::size_t row = 0; row < table.rowCount(); ++row) {
+    if (!columns.selects(row)) continue;
     StaticPoint point;
-    point.line = reader.line();
-    point.pressure_ratio = columns.pressure().value(reader, cells);
-    point.length_mm = columns.length().value(reader, cells);
-    point.force_N = columns.force().value(reader, cells);
+    point.line = table.line(row);
+    point.pressure_ratio = columns.pressure().value(table, row);
+    point.length_mm = columns.length().value(table, row);
+    point.force_N = columns.force().value(table, row);
     if (std::isnan(point.pressure_ratio + point.length_mm + point.force_N))
       ++unmeasured_count;
     else
@@ -74,27 +91,33 @@ void markCensored(StaticPoints& points, const StaticPointsOptions& options) {
                     options.censored_below_N ? "" : " (the lowest force occurs repeatedly; set another limit with --censored-below)"));
 }
 
-}  // namespace
-
-StaticPoints readStaticPoints(const std::string& file, const StaticPointsOptions& options) {
-  return parseStaticPoints(readTextFile(file, CsvLimits().file_bytes), file, options);
-}
-
-StaticPoints parseStaticPoints(const std::string& text, const std::string& file, const StaticPointsOptions& options) {
+StaticPoints pointsOf(const DataTable& table, const StaticPointsOptions& options, const ImportMapping& mapping) {
   StaticPoints result;
-  result.file = file;
-  CsvReader reader(text, file);
-  const PointColumns columns(reader, file, options);
+  result.file = table.file();
+  const PointColumns columns(table, options, mapping.columns);
+  result.notes = table.notes();
   if (const auto& assumed = columns.assumed(); !assumed.empty())
     result.notes.push_back(fmt::format("no unit is given; assumed: {}", fmt::join(assumed, ", ")));
-  if (const auto& ignored = columns.ignored(); !ignored.empty())
+  if (const auto ignored = columns.ignored(); !ignored.empty())
     result.notes.push_back(fmt::format("columns not used: {}", fmt::join(ignored, ", ")));
-  result.points = readRows(reader, columns, result);
+  result.points = readRows(table, columns, result);
   requirePoints(result, options);
   scalePressures(result, columns, options);
   markCensored(result, options);
   requireMuscle(result);
   return result;
+}
+
+}  // namespace
+
+StaticPoints readStaticPoints(const std::string& file, const StaticPointsOptions& options) {
+  const ImportMapping mapping = mappingOf(options);
+  return pointsOf(DataTable(file, mapping.format), options, mapping);
+}
+
+StaticPoints parseStaticPoints(const std::string& text, const std::string& file, const StaticPointsOptions& options) {
+  const ImportMapping mapping = mappingOf(options);
+  return pointsOf(DataTable(text, file, mapping.format), options, mapping);
 }
 
 }  // namespace musclesim

@@ -36,7 +36,10 @@ struct StaticPoints {
 
 /// Options for reading a file.
 struct StaticPointsOptions {
-  /// "pressure", "length" or "force" and the column that holds it. The unit is the name's ending (_kPa, _cm), or follows a colon (L:mm).
+  /// A mapping file as for import: how the table is written ([table]) and what its columns are ([columns] with pressure, length and force).
+  std::string mapping;
+  /// "pressure", "length" or "force" and the column that holds it; "#3" is the third. The unit is the name's ending (_kPa, _cm), or follows
+  /// a colon (L:mm).
   std::vector<std::pair<std::string, std::string>> columns;
   /// Keep only rows that have this value in this column, for all pairs.
   std::vector<std::pair<std::string, std::string>> where;

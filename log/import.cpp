@@ -1,99 +1,89 @@
 #include "musclesim/log/import.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <list>
 
+#include "data_table.h"
+#include "import_clock.h"
 #include "musclesim/base/error.h"
-#include "musclesim/base/file.h"
-#include "musclesim/log/csv.h"
 
 namespace musclesim {
 
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double unlimited = std::numeric_limits<double>::infinity();
 constexpr std::size_t most_rows = 10'000'000;
+/// A clock that begins later than after three years counts from 1970, or from another year.
+constexpr double epoch_s = 1e8;
 
-/// Values over time or over the row number.
+/// What one column of a table read, in the recording's unit, at increasing times.
 struct Series {
   std::vector<double> time_s, values;
+  double longest_gap_s = unlimited;
+  bool is_first_tables = false;  ///< it has the clock of the first table
+  std::string file;
+  // Rows of the recording without a reading: outside of the series' own times, in its gaps, and commands held after its end.
+  std::size_t outside_count = 0, gap_count = 0, held_count = 0;
 };
 
-/// The requested columns of a CSV file.
-class Table {
- public:
-  Table(const std::string& file, const std::vector<std::string>& names)
-      : file_(file), text_(readTextFile(file, CsvLimits{}.file_bytes)), names_(names), values_(names.size()) {
-    CsvReader reader(text_, file);
-    std::vector<std::size_t> places;
-    for (const std::string& name : names) {
-      const auto found = std::ranges::find(reader.header(), name, &CsvCell::text);
-      if (found == reader.header().end()) throw BadFile(file, missing(name, reader.header()));
-      places.push_back(static_cast<std::size_t>(found - reader.header().begin()));
-    }
-    std::vector<CsvCell> cells;
-    while (reader.readRow(cells))
-      for (std::size_t i = 0; i < places.size(); ++i) values_[i].push_back(reader.number(cells[places[i]], names[i]));
-  }
-  const std::vector<double>& operator[](const std::string& name) const {
-    return values_[static_cast<std::size_t>(std::ranges::find(names_, name) - names_.begin())];
-  }
-  std::size_t rowCount() const { return values_.empty() ? 0 : values_.front().size(); }
-
- private:
-  static std::string missing(const std::string& name, const std::vector<CsvCell>& header) {
-    std::vector<std::string> known;
-    for (const CsvCell& cell : header) known.emplace_back(cell.text);
-    return fmt::format("has no column \"{}\", which the mapping names; it has {}", name, fmt::join(known, ", "));
-  }
-  std::string file_, text_;
-  std::vector<std::string> names_;
-  std::vector<std::vector<double>> values_;
+/// A row of the recording: its time, and the time in the clock of the first table where its values come from.
+struct RowTime {
+  double time_s, clock_s;
+  bool has_readings;
 };
 
-/// The value of the series at a time: interpolated linearly, or the last value; outside its range the nearest value.
-double valueAt(const Series& series, double time_s, bool linear) {
-  const auto next = std::upper_bound(series.time_s.begin(), series.time_s.end(), time_s);
-  const auto k = static_cast<std::size_t>(next - series.time_s.begin());
-  if (k == 0) return series.values.front();
-  if (k == series.time_s.size() || !linear) return series.values[k - 1];
-  const double share = (time_s - series.time_s[k - 1]) / (series.time_s[k] - series.time_s[k - 1]);
-  return share == 0 ? series.values[k - 1] : (1 - share) * series.values[k - 1] + share * series.values[k];
+std::size_t countWithin(const std::vector<double>& times_s, double from_s, double until_s) {
+  return static_cast<std::size_t>(std::count_if(times_s.begin(), times_s.end(), [&](double t) { return t >= from_s && t <= until_s; }));
+}
+
+/// A factor that would make both clocks run as long.
+std::string clockHint(double span_s, double other_span_s) {
+  const std::pair<double, const char*> powers[] = {{1e3, "milliseconds"}, {1e6, "microseconds"}, {1e9, "nanoseconds"}};
+  constexpr double near = 3;
+  for (const auto& [power, unit] : powers) {
+    const double ratio = other_span_s / span_s / power, inverse = span_s / other_span_s / power;
+    if (ratio > 1 / near && ratio < near) return fmt::format("; is its clock in {}? Then give time_factor = {:g}", unit, 1 / power);
+    if (inverse > 1 / near && inverse < near) return fmt::format("; is the first table's clock in {}?", unit);
+  }
+  return "; its clock may need time_offset (s) or time_factor";
+}
+
+/// A file in the same folder as another.
+std::string besides(const std::string& file, const std::string& name) {
+  return (std::filesystem::path(file).parent_path() / name).string();
+}
+
+bool isCommand(const ImportColumn& column) {
+  return column.name.starts_with("command_");
 }
 
 /// Builds the recording.
 class Import {
  public:
   Import(const std::string& csv_file, const ImportMapping& mapping) : csv_file_(csv_file), mapping_(mapping) {
-    for (const ImportColumn& column : mapping.columns)
-      if (column.name == "time_s")
-        time_ = &column;
-      else
-        columns_.push_back(&column);
-    if (time_ == nullptr && !mapping.settle_s)
-      throw BadFile(mapping.file,
-                    "columns: time_s is missing; if each row is the reading at the end of a held command, give rows.settle_s, the time "
-                    "each command was held");
-    if (time_ != nullptr && mapping.settle_s) throw BadFile(mapping.file, "columns.time_s and rows.settle_s cannot both be given");
-    if (time_ != nullptr && (time_->from.empty() || !time_->table.empty()))
-      throw BadFile(mapping.file, "columns.time_s: must come from a column of the first table");
+    if (!mapping.clock && !mapping.settle_s)
+      throw BadFile(
+          mapping.file,
+          "columns: time_s is missing; for rows of an even rate give time_s = { rate_Hz = ... }; if each row is the reading at the "
+          "end of a held command, give rows.settle_s, the time each command was held");
+    if (mapping.clock && mapping.settle_s) throw BadFile(mapping.file, "columns.time_s and rows.settle_s cannot both be given");
   }
 
   Recording recording() {
     read();
-    if (mapping_.settle_s)
-      settledRows();
-    else if (mapping_.step_s)
-      evenRows();
-    else
-      ownRows();
-    cut();
+    requireBeginning();
+    std::vector<RowTime> rows = mapping_.settle_s ? settledRows() : mapping_.step_s ? evenRows() : ownRows();
+    cut(rows);
+    evaluate(rows);
+    fillBefore();
     addRest();
+    noteMissing();
     Recording result = parseRecording(text(), "recording from " + csv_file_, mapping_.sidecar_json, mapping_.file);
     result.file = csv_file_;
     result.notes.insert(result.notes.begin(), notes_.begin(), notes_.end());
@@ -101,128 +91,280 @@ class Import {
   }
 
  private:
-  static bool isCommand(const ImportColumn& column) { return column.name.starts_with("command_"); }
-
-  void read() {
-    std::vector<std::string> names;
-    if (time_ != nullptr) names.push_back(time_->from);
-    for (const ImportColumn* column : columns_)
-      if (!column->from.empty() && column->table.empty()) names.push_back(column->from);
-    if (names.empty()) throw BadFile(mapping_.file, "columns: at least one must come from the table");
-    const Table first(csv_file_, names);
-    for (std::size_t row = 0; row < first.rowCount(); ++row)
-      clock_.push_back(time_ != nullptr ? first[time_->from][row] * time_->factor + time_->offset : static_cast<double>(row));
-    if (clock_.empty()) throw BadFile(csv_file_, "has no rows");
-    for (const ImportColumn* column : columns_) {
-      if (column->from.empty()) {
-        series_.push_back({{clock_.front()}, {column->value}});
-      } else if (column->table.empty()) {
-        series_.push_back(scaled(*column, {clock_, first[column->from]}, csv_file_));
-      } else {
-        const std::string file = tableFile(csv_file_, *column);
-        const Table other(file, {column->time, column->from});
-        if (other.rowCount() == 0) throw BadFile(file, "has no rows");
-        series_.push_back(scaled(*column, {other[column->time], other[column->from]}, file));
-      }
-    }
+  const DataTable& table(const std::string& name) {
+    for (const auto& [known, opened] : tables_)
+      if (known == name) return opened;
+    const auto format = mapping_.formats.find(name);
+    const std::string file = name.empty() ? csv_file_ : besides(csv_file_, name);
+    tables_.emplace_back(std::piecewise_construct, std::forward_as_tuple(name),
+                         std::forward_as_tuple(file, format == mapping_.formats.end() ? mapping_.format : format->second));
+    const DataTable& opened = tables_.back().second;
+    notes_.insert(notes_.end(), opened.notes().begin(), opened.notes().end());
+    if (opened.rowCount() == 0) throw BadFile(file, "has no rows");
+    return opened;
   }
 
-  /// The series in the recording's unit, with increasing times: of several rows with the same time the first is kept.
-  static Series scaled(const ImportColumn& column, const Series& raw, const std::string& file) {
-    Series result;
-    for (std::size_t row = 0; row < raw.values.size(); ++row) {
-      if (!result.time_s.empty() && raw.time_s[row] == result.time_s.back()) continue;
-      result.time_s.push_back(raw.time_s[row]);
-      const double value = column.factor * raw.values[row] + column.offset;
-      result.values.push_back(std::isnan(value) ? value : std::clamp(value, column.minimum, column.maximum));
+  void read() {
+    if (std::ranges::all_of(mapping_.columns, [](const ImportColumn& column) { return column.from.empty(); }))
+      throw BadFile(mapping_.file, "columns: at least one must come from the table");
+    const DataTable& first = table("");
+    clock_ = timesOf(first, mapping_.clock.value_or(TableClock{}));
+    const auto first_time = std::ranges::find_if(clock_, [](double time_s) { return !std::isnan(time_s); });
+    if (first_time == clock_.end()) throw BadFile(csv_file_, "no row has a time");
+    setZero(*first_time);
+    const auto untimed_count = std::ranges::count_if(clock_, [](double time_s) { return std::isnan(time_s); });
+    if (untimed_count > 0) notes_.push_back(fmt::format("{} rows have no time and are left out", untimed_count));
+    for (const ImportColumn& column : mapping_.columns) {
+      if (column.from.empty()) {
+        series_.emplace_back().time_s = {-unlimited};
+        series_.back().values = {column.valueOf(0)};
+      } else if (!column.clock) {
+        series_.push_back(seriesOf(column, first, clock_));
+        series_.back().is_first_tables = true;
+      } else {
+        const DataTable& other = table(column.table);
+        std::vector<double> times_s = timesOf(other, *column.clock);
+        shift(times_s);
+        series_.push_back(seriesOf(column, other, times_s));
+        requireOverlap(column, series_.back());
+      }
     }
-    for (std::size_t row = 1; row < result.time_s.size(); ++row)
-      if (!(result.time_s[row] > result.time_s[row - 1]))
-        throw BadFile(file,
-                      fmt::format("time runs backwards in data row {}: {} after {}", row + 1, result.time_s[row], result.time_s[row - 1]));
+    std::erase_if(clock_, [](double time_s) { return std::isnan(time_s); });
+  }
+
+  std::vector<double> timesOf(const DataTable& table, const TableClock& clock) { return rowTimes(table, clock, notes_); }
+
+  /// A clock that counts from 1970 begins at 0 in the recording.
+  void setZero(double first_s) {
+    if (std::abs(first_s) < epoch_s) return;
+    zero_s_ = first_s;
+    shift(clock_);
+    notes_.push_back(fmt::format("the clock begins at {:.3f} s; that becomes time 0", first_s));
+  }
+
+  /// Counted from 1970, a double tells microseconds.
+  void shift(std::vector<double>& times_s) const {
+    constexpr double per_s = 1e6;
+    if (zero_s_ == 0) return;
+    for (double& time_s : times_s) time_s = std::round((time_s - zero_s_) * per_s) / per_s;
+  }
+
+  /// The cells that hold a number; of several rows with the same time the first.
+  Series seriesOf(const ImportColumn& column, const DataTable& table, const std::vector<double>& times_s) {
+    Series result;
+    result.file = table.file();
+    const std::size_t index = table.indexOf(column.from);
+    std::size_t empty_count = 0;
+    double last_s = nan;
+    for (std::size_t row = 0; row < times_s.size(); ++row) {
+      const double value = column.valueOf(table.number(row, index));
+      if (std::isnan(times_s[row]) || times_s[row] == last_s) continue;
+      last_s = times_s[row];
+      empty_count += std::isnan(value);
+      if (std::isnan(value)) continue;
+      result.time_s.push_back(last_s);
+      result.values.push_back(value);
+    }
+    if (empty_count > 0) notes_.push_back(fmt::format("{}: {} of {} cells hold no reading", column.name, empty_count, times_s.size()));
+    // What is shorter than a row of the recording is no gap in it.
+    const double longest_s = std::max(gap_steps * usualStep(result.time_s), mapping_.step_s.value_or(0));
+    result.longest_gap_s = mapping_.longest_gap_s.value_or(longest_s) * (1 + 1e-9);
     return result;
   }
 
-  void addRow(double time_s, double clock, bool with_readings) {
-    std::vector<double> row;
-    for (std::size_t i = 0; i < columns_.size(); ++i)
-      row.push_back(with_readings || isCommand(*columns_[i]) ? valueAt(series_[i], clock, columns_[i]->linear) : nan);
-    time_s_.push_back(time_s);
-    rows_.push_back(std::move(row));
+  /// Two clocks that have hardly a row in common are not the same clock, and every value would be invented.
+  void requireOverlap(const ImportColumn& column, const Series& series) const {
+    if (series.time_s.empty()) return;
+    const std::vector<double>& times_s = series.time_s;
+    const double from_s = clockFront(), until_s = clockBack();
+    const std::string both = fmt::format("{}: its clock runs from {:.6g} to {:.6g} s, the first table's from {:.6g} to {:.6g} s",
+                                         column.written, times_s.front(), times_s.back(), from_s, until_s);
+    const std::string hint = clockHint(until_s - from_s, times_s.back() - times_s.front());
+    if (times_s.front() > until_s || times_s.back() < from_s) throw BadFile(series.file, both + ": they do not overlap" + hint);
+    if (isCommand(column) || times_s.size() < 2 || until_s == from_s) return;
+    if (countWithin(times_s, from_s, until_s) < 2 || countWithin(clock_, times_s.front(), times_s.back()) < 2)
+      throw BadFile(series.file, both + ": fewer than two rows of one lie within the other" + hint);
+  }
+
+  double clockFront() const {
+    return *std::ranges::find_if(clock_, [](double time_s) { return !std::isnan(time_s); });
+  }
+  double clockBack() const {
+    return *std::find_if(clock_.rbegin(), clock_.rend(), [](double time_s) { return !std::isnan(time_s); });
   }
 
   /// Makes two rows of each step: one where its command begins, and one with the readings shortly before it ends.
-  void settledRows() {
+  std::vector<RowTime> settledRows() {
     constexpr double read_at = 0.95;
+    std::vector<RowTime> rows;
     const auto every = static_cast<std::size_t>(mapping_.every);
     for (std::size_t i = 0; i * every < clock_.size(); ++i) {
       const double step = clock_[i * every], number = static_cast<double>(i);
-      addRow(number * *mapping_.settle_s, step, false);
-      addRow((number + read_at) * *mapping_.settle_s, step, true);
+      rows.push_back({number * *mapping_.settle_s, step, false});
+      rows.push_back({(number + read_at) * *mapping_.settle_s, step, true});
     }
     notes_.push_back(
         fmt::format("the table has no time: each of {} rows is taken as the reading {:g} s after its command began, {:g} s long",
                     clock_.size(), read_at * *mapping_.settle_s, *mapping_.settle_s));
+    return rows;
   }
 
-  void evenRows() {
+  std::vector<RowTime> evenRows() {
+    std::vector<RowTime> rows;
     const double start_s = mapping_.from_s.value_or(clock_.front()), span_s = clock_.back() - start_s;
     if (!(span_s / *mapping_.step_s < static_cast<double>(most_rows))) throw BadFile(mapping_.file, "rows.step_s: too small");
     const auto count = static_cast<long>(std::floor(span_s / *mapping_.step_s + 1e-9)) + 1;
     for (long i = 0; i < count; ++i) {
       const double time_s = start_s + static_cast<double>(i) * *mapping_.step_s;
-      addRow(time_s, time_s, true);
+      rows.push_back({time_s, std::clamp(time_s, clock_.front(), clock_.back()), true});
     }
     notes_.push_back(fmt::format("rows every {:g} s, interpolated linearly between the table's {} rows", *mapping_.step_s, clock_.size()));
+    return rows;
   }
 
-  void ownRows() {
+  std::vector<RowTime> ownRows() {
+    std::vector<RowTime> rows;
     std::size_t repeated_count = 0;
     for (std::size_t row = 0; row < clock_.size(); ++row) {
       if (row > 0 && clock_[row] == clock_[row - 1])
         ++repeated_count;
       else if ((row - repeated_count) % static_cast<std::size_t>(mapping_.every) == 0)
-        addRow(clock_[row], clock_[row], true);
+        rows.push_back({clock_[row], clock_[row], true});
     }
     if (repeated_count > 0) notes_.push_back(fmt::format("{} rows have the same time as the row before and are left out", repeated_count));
+    return rows;
   }
 
-  void cut() {
-    const double from_s = mapping_.from_s.value_or(time_s_.front());
-    std::vector<double> kept_s;
-    std::vector<std::vector<double>> kept;
-    for (std::size_t row = 0; row < rows_.size(); ++row) {
-      if (time_s_[row] < from_s || (mapping_.until_s && time_s_[row] > *mapping_.until_s)) continue;
-      kept_s.push_back(time_s_[row] - from_s);
-      kept.push_back(rows_[row]);
+  /// Refuses a beginning before the table's own by more than a usual step.
+  void requireBeginning() const {
+    const double first_s = mapping_.settle_s ? 0 : clock_.front();
+    if (!mapping_.from_s || *mapping_.from_s >= first_s || *mapping_.from_s > first_s - usualStep(clock_)) return;
+    throw BadFile(mapping_.file, fmt::format("rows.from_s = {:g}: the table begins at {:g} s; for a rest before it give rows.before_s",
+                                             *mapping_.from_s, first_s));
+  }
+
+  void cut(std::vector<RowTime>& rows) const {
+    const double from_s = mapping_.from_s.value_or(rows.empty() ? 0 : rows.front().time_s);
+    std::erase_if(rows, [&](const RowTime& row) { return row.time_s < from_s || (mapping_.until_s && row.time_s > *mapping_.until_s); });
+    constexpr double per_s = 1e9;  // rounded to nanoseconds, since differences of large times have digits of no meaning
+    for (RowTime& row : rows) row.time_s = std::round((row.time_s - from_s) * per_s) / per_s;
+    if (rows.empty()) throw BadFile(mapping_.file, "rows: from_s and until_s leave no rows");
+  }
+
+  /// The value of a series at a time: a reading, a straight line between two, or the last command. NaN where nothing was read.
+  double valueAt(Series& series, double time_s, const ImportColumn& column) const {
+    const bool is_command = isCommand(column);
+    const auto next = std::upper_bound(series.time_s.begin(), series.time_s.end(), time_s);
+    const auto k = static_cast<std::size_t>(next - series.time_s.begin());
+    if (k > 0 && (series.time_s[k - 1] == time_s || std::isinf(series.time_s[k - 1]))) return series.values[k - 1];
+    if (k == series.time_s.size() && k > 0 && is_command) {
+      series.held_count += !series.is_first_tables;
+      return series.values[k - 1];
     }
-    if (kept.empty()) throw BadFile(mapping_.file, "rows: from_s and until_s leave no rows");
-    time_s_ = std::move(kept_s);
-    rows_ = std::move(kept);
+    if (!is_command && series.is_first_tables && !mapping_.step_s) return nan;  // the cell is empty
+    if (k == 0 || k == series.time_s.size()) {
+      series.outside_count += !is_command;
+      return nan;
+    }
+    if (!is_command && series.time_s[k] - series.time_s[k - 1] > series.longest_gap_s) {
+      ++series.gap_count;
+      return nan;
+    }
+    if (!column.linear) return series.values[k - 1];
+    const double share = (time_s - series.time_s[k - 1]) / (series.time_s[k] - series.time_s[k - 1]);
+    return (1 - share) * series.values[k - 1] + share * series.values[k];
+  }
+
+  void evaluate(const std::vector<RowTime>& rows) {
+    for (const RowTime& row : rows) {
+      std::vector<double> values;
+      for (std::size_t i = 0; i < series_.size(); ++i) {
+        const ImportColumn& column = mapping_.columns[i];
+        values.push_back(row.has_readings || isCommand(column) ? valueAt(series_[i], row.clock_s, column) : nan);
+      }
+      time_s_.push_back(row.time_s);
+      rows_.push_back(std::move(values));
+    }
+  }
+
+  /// Rows before the first command of a column have the command that the mapping gives for before.
+  void fillBefore() {
+    for (std::size_t i = 0; i < series_.size(); ++i) {
+      const ImportColumn& column = mapping_.columns[i];
+      if (!isCommand(column) || !std::isnan(rows_.front()[i])) continue;
+      const auto before = mapping_.before.find(column.written);
+      if (series_[i].time_s.empty()) throw BadFile(series_[i].file, column.written + ": no cell holds a command");
+      if (before == mapping_.before.end())
+        throw BadFile(
+            series_[i].file,
+            fmt::format("{}: the first command comes at {:.6g} s, after the first row; give the command before it, rows.before = {{ {} = "
+                        "... }}, or begin at rows.from_s = {:.6g}",
+                        column.written, series_[i].time_s.front(), column.written, series_[i].time_s.front()));
+      std::size_t count = 0;
+      for (auto row = rows_.begin(); row != rows_.end() && std::isnan((*row)[i]); ++row, ++count)
+        (*row)[i] = before->second * column.unit_factor;
+      used_before_ = true;
+      notes_.push_back(fmt::format("{}: {} rows before the first command have the one of rows.before", column.name, count));
+    }
   }
 
   void addRest() {
     for (const auto& given : mapping_.before) {
-      const auto is_it = [&](const ImportColumn* column) { return isCommand(*column) && column->name == given.first; };
-      if (std::ranges::none_of(columns_, is_it))
+      const auto is_it = [&](const ImportColumn& column) { return isCommand(column) && column.written == given.first; };
+      if (std::ranges::none_of(mapping_.columns, is_it))
         throw BadFile(mapping_.file, fmt::format("rows.before.{}: is not one of the command columns", given.first));
     }
+    if (!mapping_.before.empty() && !mapping_.before_s && !used_before_)
+      throw BadFile(mapping_.file, "rows.before: needs rows.before_s, the time the plant rested");
     if (!mapping_.before_s) return;
     std::vector<double> rest;
-    for (std::size_t i = 0; i < columns_.size(); ++i) {
-      const auto given = mapping_.before.find(columns_[i]->name);
-      rest.push_back(given != mapping_.before.end() ? given->second : isCommand(*columns_[i]) ? rows_.front()[i] : nan);
+    for (std::size_t i = 0; i < series_.size(); ++i) {
+      const ImportColumn& column = mapping_.columns[i];
+      const auto given = mapping_.before.find(column.written);
+      rest.push_back(given != mapping_.before.end() ? given->second * column.unit_factor : isCommand(column) ? rows_.front()[i] : nan);
     }
     for (double& time_s : time_s_) time_s += *mapping_.before_s;
     time_s_.insert(time_s_.begin(), 0);
     rows_.insert(rows_.begin(), std::move(rest));
   }
 
+  /// A line that lost its end may still have a line end.
+  void noteLastJump(const ImportColumn& column, const Series& series) {
+    constexpr double jump_ratio = 0.5, earlier_steps = 5;
+    const std::vector<double>& values = series.values;
+    if (values.size() < 3 || isCommand(column)) return;
+    double largest_step = 0;
+    for (std::size_t i = 1; i + 1 < values.size(); ++i) largest_step = std::max(largest_step, std::abs(values[i] - values[i - 1]));
+    const double before = values[values.size() - 2], step = std::abs(values.back() - before);
+    if (step > jump_ratio * std::abs(before) && step > earlier_steps * largest_step && largest_step > 0)
+      notes_.push_back(fmt::format("{} jumps from {:.6g} to {:.6g} in the last row of {}: is the file cut there?", column.name, before,
+                                   values.back(), series.file));
+  }
+
+  void noteMissing() {
+    for (std::size_t i = 0; i < series_.size(); ++i) {
+      const Series& series = series_[i];
+      const std::string of = fmt::format("of {} rows", rows_.size());
+      const std::string& name = mapping_.columns[i].name;
+      noteLastJump(mapping_.columns[i], series);
+      if (series.outside_count > 0)
+        notes_.push_back(fmt::format("{}: {} {} lie outside of its own times, {:.6g} .. {:.6g} s in {}, and are not measured", name,
+                                     series.outside_count, of, series.time_s.empty() ? 0 : series.time_s.front(),
+                                     series.time_s.empty() ? 0 : series.time_s.back(), series.file));
+      if (series.gap_count > 0)
+        notes_.push_back(
+            fmt::format("{}: {} {} lie in gaps longer than {:.4g} s and are not measured (rows.longest_gap_s sets that length)", name,
+                        series.gap_count, of, series.longest_gap_s));
+      if (series.held_count > 0)
+        notes_.push_back(fmt::format("{}: {} {} come after the last command in {} and hold it", name, series.held_count, of, series.file));
+    }
+  }
+
   std::string text() const {
     std::string text = "time_s";
-    for (const ImportColumn* column : columns_) text += "," + column->name;
+    for (const ImportColumn& column : mapping_.columns) text += "," + column.name;
     for (std::size_t row = 0; row < rows_.size(); ++row) {
-      text += fmt::format("\n{:.10g}", time_s_[row]);
+      text += fmt::format("\n{}", time_s_[row]);
       for (const double value : rows_[row]) text += std::isnan(value) ? "," : fmt::format(",{:.10g}", value);
     }
     return text + "\n";
@@ -230,19 +372,25 @@ class Import {
 
   const std::string& csv_file_;
   const ImportMapping& mapping_;
-  const ImportColumn* time_ = nullptr;
-  std::vector<const ImportColumn*> columns_;  ///< all columns but the time
-  std::vector<double> clock_;                 ///< time of the first table's rows, or their numbers
-  std::vector<Series> series_;                ///< per column
+  std::list<std::pair<std::string, DataTable>> tables_;  ///< by name in the mapping; "" is the first
+  std::vector<double> clock_;                            ///< time of the first table's rows, or their numbers
+  double zero_s_ = 0;                                    ///< what the clocks read at time 0
+  std::vector<Series> series_;                           ///< per column of the mapping
   std::vector<double> time_s_;
   std::vector<std::vector<double>> rows_;
   std::vector<std::string> notes_;
+  bool used_before_ = false;
 };
 
 }  // namespace
 
+double ImportColumn::readingOf(double x) const {
+  if (from.empty()) return value;
+  return std::isnan(x) ? x : std::clamp(factor * x + offset, minimum, maximum);
+}
+
 std::string tableFile(const std::string& csv_file, const ImportColumn& column) {
-  return (std::filesystem::path(csv_file).parent_path() / column.table).string();
+  return besides(csv_file, column.table);
 }
 
 Recording importTable(const std::string& csv_file, const ImportMapping& mapping) {

@@ -1,17 +1,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <sstream>
 
 #include "../base/toml_document.h"
 #include "musclesim/base/error.h"
 #include "musclesim/log/import.h"
+#include "reading_units.h"
 
 namespace musclesim {
 
 namespace {
 
+constexpr std::array<std::string_view, 4> own_sections = {"columns", "rows", "table", "tables"};
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Reads the members of one table and refuses unknown members.
@@ -55,34 +58,201 @@ class Members {
   std::vector<std::string> known_;
 };
 
-ImportColumn readColumn(const std::string& name, const toml::node& node, const std::string& file) {
-  ImportColumn column;
-  column.name = name;
-  column.minimum = -infinity;
-  column.maximum = infinity;
-  column.linear = !name.starts_with("command_");
-  if (const auto from = node.value<std::string>()) {
-    column.from = *from;
-    return column;
+/// The clock of another table without word of it.
+TableClock plainClock() {
+  TableClock clock;
+  clock.from.name = "time_s";
+  return clock;
+}
+
+constexpr const char* column_kind = "a column's name or its number, from 1";
+
+/// A column by name or number.
+ColumnName columnName(const Members& members, const toml::node& node, const std::string& place) {
+  if (const auto name = node.value<std::string>(); name && !name->empty()) return {*name, 0};
+  const auto number = node.is_integer() ? node.value<int>() : std::nullopt;
+  if (!number || *number < 1) members.refuse(node, fmt::format("{}: must be {}", place, column_kind));
+  return {"", *number};
+}
+
+ColumnName columnMember(Members& members, const toml::table& table, const std::string& name) {
+  members.know(name);
+  const toml::node* node = table.get(name);
+  return node ? columnName(members, *node, name) : ColumnName{};
+}
+
+/// A clock: a column, or a table. `unit_s`: the unit in which factor and offset are.
+TableClock readClock(const toml::node& node, const std::string& place, double unit_s, const std::string& file) {
+  TableClock clock;
+  clock.factor = unit_s;
+  static const toml::table none;
+  const toml::table* table = node.as_table();
+  Members members(table ? *table : none, file, place);
+  if (!table) {
+    clock.from = columnName(members, node, place);
+    return clock;
   }
+  clock.from = columnMember(members, *table, "from");
+  clock.date = columnMember(members, *table, "date");
+  clock.format = members.get<std::string>("format", "a format like \"%Y-%m-%d %H:%M:%S\"").value_or("");
+  const auto rate_Hz = members.positive("rate_Hz");
+  const auto factor = members.get<double>("factor", "a number");
+  clock.factor = factor.value_or(1) * unit_s;
+  if (rate_Hz) clock.factor = 1 / *rate_Hz;
+  clock.offset = members.get<double>("offset", "a number").value_or(0) * unit_s;
+  clock.wraps_at_s = members.positive("wraps_at_s").value_or(0);
+  members.requireAllKnown();
+  if (rate_Hz && factor) members.refuse(node, place + ": rate_Hz and factor cannot both be given");
+  if (clock.from.empty() && !rate_Hz) members.refuse(node, place + ": needs from, a column, or rate_Hz, the rows per second");
+  if (!clock.date.empty() && clock.format.empty()) clock.format = "%Y-%m-%d %H:%M:%S";
+  return clock;
+}
+
+/// The clock that a table's members give as time_s, time_ms, time_us or time_min.
+std::optional<TableClock> clockMember(Members* members, const toml::table& table, const std::string& file) {
+  std::optional<TableClock> clock;
+  for (const ReadingUnit& unit : readingUnits()) {
+    if (unit.quantity != "time") continue;
+    const std::string name = fmt::format("time_{}", unit.name);
+    if (members) members->know(name);
+    const toml::node* node = table.get(name);
+    if (!node) continue;
+    if (clock)
+      throw BadFile(file, static_cast<int>(node->source().begin.line), static_cast<int>(node->source().begin.column),
+                    name + ": the time is given twice, in two units");
+    clock = readClock(*node, name, unit.factor, file);
+  }
+  return clock;
+}
+
+/// An absolute pressure becomes a gauge pressure.
+void subtractAmbient(ImportColumn& column, Members& members, const toml::node& node) {
+  const auto ambient_kPa = members.positive("ambient_kPa");
+  if (!ambient_kPa) return;
+  const ReadingUnit* unit = unitAtEnd(column.written);
+  if (!unit || unit->quantity != "pressure")
+    members.refuse(node, column.written + ": ambient_kPa needs a column in a unit of pressure, for example pressure_0_hPa");
+  column.offset -= *ambient_kPa / unit->factor;
+}
+
+void readOwnClock(ImportColumn& column, Members& members, const toml::table& table, const std::string& file) {
+  members.know("time");
+  const toml::node* time = table.get("time");
+  if (time) column.clock = readClock(*time, column.written + ".time", 1, file);
+  const auto factor = members.get<double>("time_factor", "a number"), offset = members.get<double>("time_offset", "a number");
+  if (!factor && !offset) return;
+  if (column.table.empty() && !time) members.refuse(table, column.written + ": time_factor and time_offset need table or time");
+  if (!column.clock) column.clock = plainClock();
+  column.clock->factor *= factor.value_or(1);
+  column.clock->offset = column.clock->offset * factor.value_or(1) + offset.value_or(0);
+}
+
+ImportColumn readColumn(const std::string& name, const toml::node& node, const std::string& file) {
+  if (const auto from = node.value<std::string>()) return importColumn(name, {*from, 0});
+  ImportColumn column = importColumn(name, {});
   const toml::table* table = node.as_table();
   if (!table)
     throw BadFile(file, static_cast<int>(node.source().begin.line), static_cast<int>(node.source().begin.column),
                   name + ": must be the name of a column or a table like { from = \"name\", factor = 2 }");
   Members members(*table, file, "columns." + name);
   const auto value = members.get<double>("value", "a number");
-  column.from = members.get<std::string>("from", "a column's name").value_or("");
+  column.from = columnMember(members, *table, "from");
   column.table = members.get<std::string>("table", "a file's name").value_or("");
-  column.time = members.get<std::string>("time", "a column's name").value_or(column.time);
+  readOwnClock(column, members, *table, file);
   column.factor = members.get<double>("factor", "a number").value_or(1);
   column.offset = members.get<double>("offset", "a number").value_or(0);
   column.minimum = members.get<double>("minimum", "a number").value_or(column.minimum);
   column.maximum = members.get<double>("maximum", "a number").value_or(column.maximum);
   column.linear = members.get<bool>("linear", "true or false").value_or(column.linear);
+  subtractAmbient(column, members, node);
   column.value = value.value_or(0);
   members.requireAllKnown();
   if (value.has_value() == !column.from.empty()) members.refuse(node, name + ": needs either from or value");
   return column;
+}
+
+/// One of the characters that `allowed` has.
+void readCharacter(Members& members, const toml::table& table, const std::string& name, std::string_view allowed, char& character) {
+  const auto text = members.get<std::string>(name, "a character");
+  if (!text) return;
+  if (text->size() != 1 || allowed.find(*text) == std::string_view::npos)
+    members.refuse(*table.get(name),
+                   fmt::format("{}: must be one of the characters {}", name,
+                               allowed.front() == ',' ? "\",\", \";\", \"|\", \" \" (any number of blanks) or \"\\t\"" : "\".\" or \",\""));
+  character = text->front();
+}
+
+int countMember(Members& members, const toml::table& table, const std::string& name, int default_count) {
+  const auto count = members.get<std::int64_t>(name, "a whole number");
+  constexpr std::int64_t most = 1'000'000;
+  if (count && (*count < 0 || *count > most)) members.refuse(*table.get(name), fmt::format("{}: must lie in 0 .. {}", name, most));
+  return static_cast<int>(count.value_or(default_count));
+}
+
+void readMissing(Members& members, const toml::table& table, TableFormat& format) {
+  members.know("missing");
+  const toml::node* node = table.get("missing");
+  if (!node) return;
+  const toml::array* words = node->as_array();
+  if (!words) members.refuse(*node, "missing: must be a list of texts like [\"--\", \"-999\"]");
+  format.missing.clear();
+  for (const toml::node& word : *words) {
+    if (!word.is_string()) members.refuse(word, "missing: must be a list of texts like [\"--\", \"-999\"]");
+    format.missing.push_back(*word.value<std::string>());
+  }
+}
+
+/// How a table is written. Members that are not given stay as they are in `format`.
+void readFormat(Members& members, const toml::table& table, TableFormat& format) {
+  readCharacter(members, table, "separator", ",;|\t ", format.separator);
+  readCharacter(members, table, "decimal", ".,", format.decimal);
+  if (format.separator == format.decimal) members.refuse(table, "separator and decimal must differ");
+  format.has_header = members.get<bool>("header", "true or false").value_or(format.has_header);
+  format.skip_before_header = countMember(members, table, "skip_before_header", format.skip_before_header);
+  format.skip_after_header = countMember(members, table, "skip_after_header", format.skip_after_header);
+  format.comment = members.get<std::string>("comment", "a text").value_or(format.comment);
+  format.encoding = members.get<std::string>("encoding", "a name that iconv knows").value_or(format.encoding);
+  format.variable = members.get<std::string>("variable", "an array of a MATLAB file").value_or(format.variable);
+  readMissing(members, table, format);
+}
+
+/// The section [table], and [tables."file"] for other tables. Returns the clocks of these.
+std::map<std::string, TableClock> readTables(const toml::table& document, ImportMapping& mapping) {
+  if (const toml::table* table = document["table"].as_table()) {
+    Members members(*table, mapping.file, "table");
+    readFormat(members, *table, mapping.format);
+    members.requireAllKnown();
+  }
+  std::map<std::string, TableClock> clocks;
+  const toml::table* tables = document["tables"].as_table();
+  if (!tables) return clocks;
+  for (const auto& [key, node] : *tables) {
+    const std::string name(key.str());
+    if (!node.is_table())
+      throw BadFile(mapping.file, static_cast<int>(node.source().begin.line), static_cast<int>(node.source().begin.column),
+                    fmt::format("tables.{}: must be a table, [tables.\"{}\"]", name, name));
+    const toml::table& table = *node.as_table();
+    Members members(table, mapping.file, fmt::format("tables.\"{}\"", name));
+    TableFormat& format = mapping.formats[name] = mapping.format;
+    readFormat(members, table, format);
+    if (const auto clock = clockMember(&members, table, mapping.file)) clocks[name] = *clock;
+    members.requireAllKnown();
+  }
+  return clocks;
+}
+
+void readColumns(const toml::table& columns, const std::map<std::string, TableClock>& clocks, ImportMapping& mapping) {
+  mapping.clock = clockMember(nullptr, columns, mapping.file);
+  for (const auto& [key, node] : columns) {
+    const std::string name(key.str());
+    if (const ReadingUnit* unit = unitAtEnd(name); unit && unit->quantity == "time") continue;
+    ImportColumn column = readColumn(name, node, mapping.file);
+    if (!column.table.empty() && !column.clock) {
+      const auto clock = clocks.find(column.table);
+      column.clock = clock != clocks.end() ? clock->second : plainClock();
+    }
+    mapping.columns.push_back(column);
+  }
 }
 
 void readRows(const toml::table& table, ImportMapping& mapping) {
@@ -92,12 +262,12 @@ void readRows(const toml::table& table, ImportMapping& mapping) {
   mapping.before_s = rows.positive("before_s");
   mapping.from_s = rows.get<double>("from_s", "a number");
   mapping.until_s = rows.get<double>("until_s", "a number");
+  mapping.longest_gap_s = rows.positive("longest_gap_s");
+  mapping.has_rows = true;
   mapping.every = static_cast<int>(rows.get<std::int64_t>("every", "a whole number").value_or(1));
   rows.know("before");
   rows.requireAllKnown();
   if (mapping.every < 1) rows.refuse(*table.get("every"), "rows.every: must be at least 1");
-  if (const toml::node* before = table.get("before"); before && !mapping.before_s)
-    rows.refuse(*before, "rows.before: needs rows.before_s, the time the plant rested");
   if (const toml::node* before = table.get("before"); before && !before->is_table())
     rows.refuse(*before, "rows.before: must be a table like { command_0 = 0 }");
   if (const toml::table* before = table["before"].as_table())
@@ -108,10 +278,9 @@ void readRows(const toml::table& table, ImportMapping& mapping) {
     }
 }
 
-/// All members except columns and rows belong to the sidecar.
+/// All members except the mapping's own belong to the sidecar.
 std::string sidecarJson(toml::table table) {
-  table.erase("columns");
-  table.erase("rows");
+  for (const std::string_view section : own_sections) table.erase(section);
   table.insert_or_assign("format", "musclesim-recording-1");
   std::ostringstream text;
   text << toml::json_formatter(table);
@@ -120,6 +289,20 @@ std::string sidecarJson(toml::table table) {
 
 }  // namespace
 
+ImportColumn importColumn(const std::string& written, const ColumnName& from) {
+  ImportColumn column;
+  column.name = column.written = written;
+  column.from = from;
+  column.minimum = -infinity;
+  column.maximum = infinity;
+  column.linear = !written.starts_with("command_");
+  const ReadingUnit* unit = unitAtEnd(written);
+  if (!unit || unit->in_recordings) return column;
+  column.name = written.substr(0, written.size() - unit->name.size()) + std::string(unit->base);
+  column.unit_factor = unit->factor;
+  return column;
+}
+
 ImportMapping readImportMapping(const std::string& toml_file) {
   const toml::table table = readToml(toml_file);
   ImportMapping mapping;
@@ -127,13 +310,12 @@ ImportMapping readImportMapping(const std::string& toml_file) {
   const toml::table* columns = table["columns"].as_table();
   if (!columns)
     throw BadFile(toml_file, "has no section [columns], which must say which column of the table each column of the recording comes from");
-  for (const auto& [key, node] : *columns) mapping.columns.push_back(readColumn(std::string(key.str()), node, toml_file));
-  if (const toml::node* rows = table.get("rows")) {
-    if (!rows->is_table())
-      throw BadFile(toml_file, static_cast<int>(rows->source().begin.line), static_cast<int>(rows->source().begin.column),
-                    "rows: must be a table, [rows]");
-    readRows(*rows->as_table(), mapping);
-  }
+  for (const std::string_view section : own_sections)
+    if (const toml::node* node = table.get(section); node && !node->is_table())
+      throw BadFile(toml_file, static_cast<int>(node->source().begin.line), static_cast<int>(node->source().begin.column),
+                    fmt::format("{}: must be a table, [{}]", section, section));
+  readColumns(*columns, readTables(table, mapping), mapping);
+  if (const toml::table* rows = table["rows"].as_table()) readRows(*rows, mapping);
   mapping.sidecar_json = sidecarJson(table);
   return mapping;
 }

@@ -214,7 +214,8 @@ double Actuator::calculateForce(double pressure_ratio, double length_mm) const {
 
 double Actuator::cleanTensionN(double pressure_ratio) const {
   const double force_N = calculateForce(pressure_ratio, lengthMm());
-  return line_ && force_N < 0 ? 0 : force_N;
+  const bool may_push = !line_ && world_.physics().kind != PhysicsKind::si;
+  return force_N < 0 && !may_push && std::isfinite(force_N) ? 0 : force_N;
 }
 
 /// After a change of the muscle itself: the tension before any stage has run.

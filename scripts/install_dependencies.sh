@@ -27,6 +27,7 @@ build_packages=(
   "nettle-dev             fingerprints of sealed files"
   "libtinyxml2-dev        import of URDF and MuJoCo files"
   "libsdformat-dev        import of SDF files"
+  "libmatio-dev           import of MATLAB files"
   "libgl-dev              drawing"
   "libosmesa6-dev         pictures without a display"
   "libpng-dev             pictures as files"

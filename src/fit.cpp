@@ -75,6 +75,8 @@ nlohmann::json verdictOf(const FitArguments& arguments, const StaticPoints& poin
   for (const auto& point : points.points)
     if (point.outlier) json["outlier_lines"].push_back(point.line);
   if (points.full_scale_kPa) json["pressure_full_scale_kPa"] = *points.full_scale_kPa;
+  const LawReport* taken = lawToTake(reports);
+  json["take"] = taken ? nlohmann::json(taken->model->name()) : nlohmann::json();
   for (const auto& report : reports) {
     auto& law = json["laws"][report.model->name()];
     law = toJson(report);
@@ -101,6 +103,7 @@ int fit(const FitArguments& arguments) {
   const auto files = writeFiles(reports, points, folder);
   fmt::print("{}\n", errorTable(reports));
   for (const auto& report : reports) fmt::print("{}", constantsText(report));
+  fmt::print("{}", adviceText(reports));
   for (const auto& [name, file] : files) fmt::print("config  {}\nfigure  {}\n", file, fs::path(file).replace_extension(".svg").string());
   if (arguments.json) fmt::print("{}\n", verdictOf(arguments, points, reports, files, folder).dump());
   return done;
@@ -110,9 +113,10 @@ int fit(const FitArguments& arguments) {
 
 Action addFit(CLI::App& command) {
   auto arguments = std::make_shared<FitArguments>();
-  CLI::Option* data =
-      command.add_option("data", arguments->data, "Table of static points: pressure or pressure_kPa|bar|MPa, length_mm|cm|m, force_N")
-          ->required();
+  CLI::Option* data = command
+                          .add_option("data", arguments->data,
+                                      "Table of static points: pressure or pressure_kPa|bar|MPa|psi ..., length_mm|cm|m ..., force_N ...")
+                          ->required();
   command.add_option("--law", arguments->law, fmt::format("all, or one of {}", fmt::join(lawModelNames(), ", ")))->capture_default_str();
   addPointsOptions(command, *data, arguments->points);
   command

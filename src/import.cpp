@@ -5,8 +5,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <optional>
 
 #include "commands.h"
+#include "log/table_look.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/file.h"
 #include "musclesim/robot/robot.h"
 #include "musclesim/robot/robot_registry.h"
 #include "output_folder.h"
@@ -17,10 +22,29 @@ namespace {
 
 struct ImportArguments {
   std::string table, mapping, out;
+  std::optional<std::string> look, mapping_out;
   bool quiet = false;
 };
 
+/// Shows how a table is written, and begins a mapping.
+int lookCommand(const ImportArguments& arguments) {
+  if (!arguments.table.empty()) throw BadParameter("--look", *arguments.look, "be the only file; a mapping to begin is named by -o");
+  const TableLook look = lookAtTable(*arguments.look);
+  for (const auto& note : look.notes) std::fprintf(stderr, "musclesim: %s\n", note.c_str());
+  fmt::print("{}", lookText(look));
+  if (!arguments.mapping_out) return done;
+  if (std::filesystem::exists(*arguments.mapping_out))
+    throw BadParameter("-o", *arguments.mapping_out, "be a new file: a mapping is never overwritten");
+  replaceFile(*arguments.mapping_out, mappingText(look));
+  fmt::print("mapping    {}: complete it, then musclesim import {} {} OUT.csv\n", *arguments.mapping_out, *arguments.look,
+             *arguments.mapping_out);
+  return done;
+}
+
 int importCommand(const ImportArguments& arguments) {
+  if (arguments.look) return lookCommand(arguments);
+  if (arguments.out.empty())
+    throw BadParameter("import needs three files: TABLE MAPPING.toml OUT.csv; or --look TABLE to see what it holds");
   const ImportMapping mapping = readImportMapping(arguments.mapping);
   std::vector<std::string> inputs = {arguments.table, arguments.mapping};
   for (const ImportColumn& column : mapping.columns)
@@ -48,12 +72,18 @@ int importCommand(const ImportArguments& arguments) {
 
 Action addImport(CLI::App& command) {
   auto arguments = std::make_shared<ImportArguments>();
-  command.add_option("table", arguments->table, "Table of measurements: DATA.csv, one header row")->required();
-  command
-      .add_option("mapping", arguments->mapping,
-                  "Meaning of its columns: MAPPING.toml; docs/reference/recording_format.md describes the format")
-      ->required();
-  command.add_option("out", arguments->out, "Recording to write: OUT.csv, with OUT.json beside it")->required();
+  command.add_option("table", arguments->table, "Table of measurements: text with separators, or a MATLAB file");
+  command.add_option("mapping", arguments->mapping,
+                     "How the table is written and what its columns mean: MAPPING.toml; docs/reference/recording_format.md describes it");
+  command.add_option("out", arguments->out, "Recording to write: OUT.csv, with OUT.json beside it");
+  CLI::Option* look =
+      command
+          .add_option("--look", arguments->look,
+                      "Only show what can be recognised of a table: separator, header, columns with ranges and units, clock")
+          ->option_text("TABLE");
+  command.add_option("-o", arguments->mapping_out, "With --look: a mapping to begin from, with comments")
+      ->option_text("MAPPING.toml")
+      ->needs(look);
   command.add_flag("--quiet", arguments->quiet, "No messages on standard error except errors");
   return [arguments] { return importCommand(*arguments); };
 }

@@ -102,8 +102,13 @@ std::vector<ActiveEffect> effectsFrom(const ModelOptions& options) {
 
 void addPointsOptions(CLI::App& command, CLI::Option& table, PointsOptions& options) {
   const std::string needed = " Needs: " + table.get_name();
+  command
+      .add_option("--mapping", options.mapping,
+                  "How the table is written, and which columns hold pressure, length and force: MAPPING.toml, as for import")
+      ->needs(&table);
   addList(command, "--columns", options.columns,
-          "Columns that hold pressure, length or force under another name; NAME:unit gives the unit (else fraction, mm, N)")
+          "Columns that hold pressure, length or force under another name; NAME:unit gives the unit (else fraction, mm, N); #3 is the "
+          "third column")
       ->needs(&table)
       ->option_text("pressure=NAME,length=NAME,force=NAME" + needed);
   addList(command, "--where", options.where, "Use only rows with this value in this column; may be repeated")
@@ -120,6 +125,7 @@ void addPointsOptions(CLI::App& command, CLI::Option& table, PointsOptions& opti
 
 StaticPointsOptions staticPointsOptions(const PointsOptions& options) {
   StaticPointsOptions result;
+  result.mapping = options.mapping;
   for (const auto& column : options.columns) result.columns.push_back(splitAssignment("--columns", column));
   for (const auto& filter : options.where) result.where.push_back(splitAssignment("--where", filter));
   result.full_scale_kPa = options.full_scale_kPa;

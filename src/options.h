@@ -43,6 +43,7 @@ std::vector<ActiveEffect> effectsFrom(const ModelOptions& options);
 
 /// How static points of a muscle are read from a table.
 struct PointsOptions {
+  std::string mapping;
   std::vector<std::string> columns, where;
   std::optional<double> full_scale_kPa, censored_below_N;
 };

@@ -36,6 +36,7 @@
 #include "musclesim/log/recording.h"
 #include "musclesim/log/recording_info.h"
 #include "musclesim/log/signal_unit.h"
+#include "musclesim/log/table_format.h"
 #include "musclesim/robot/actuator.h"
 #include "musclesim/robot/body.h"
 #include "musclesim/robot/chou_hannaford.h"

@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <functional>
 
+#include "log/data_table.h"
+#include "log/table_look.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/parameters.h"
 #include "musclesim/effect/effects_file.h"
@@ -94,6 +96,18 @@ void configurationToml(const std::string& bytes) {
   });
 }
 
+/// Whatever is recognised in a table, the mapping begun from it can be read, and the table can be read by it.
+void foreignTable(const std::string& bytes) {
+  read([&] {
+    const MemoryFile table(bytes);
+    const TableLook look = lookAtTable(table.path());
+    lookText(look);
+    const ImportMapping mapping = readImportMapping(MemoryFile(mappingText(look)).path());
+    const DataTable again(table.path(), mapping.format);
+    if (again.rowCount() != look.row_count) wrong("the mapping gives another number of rows");
+  });
+}
+
 void effectsJson(const std::string& bytes) {
   read([&] {
     const auto effects = parseEffects(bytes, "effects.json");
@@ -129,7 +143,7 @@ const std::vector<std::pair<std::string, FuzzTarget>>& fuzzTargets() {
   static const std::vector<std::pair<std::string, FuzzTarget>> targets = {
       {"recording_csv", recordingCsv}, {"sidecar_json", sidecarJson},     {"configuration_toml", configurationToml},
       {"effects_json", effectsJson},   {"sweep_manifest", sweepManifest}, {"sweep_plan", sweepPlan},
-      {"command_line", commandLine},   {"robot_toml", robotToml},
+      {"foreign_table", foreignTable}, {"command_line", commandLine},     {"robot_toml", robotToml},
   };
   return targets;
 }

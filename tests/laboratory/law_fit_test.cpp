@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -132,6 +133,57 @@ TEST(CrossValidation, TheRightLawPredictsWhatIsLeftOutAndAWrongOneDoesNot) {
   EXPECT_EQ(right.pressure_count, 7);
   EXPECT_LT(right.both().relativeSquaredError(), 1.5e-3) << "noise of 1 % of the largest force against forces of a quarter of it";
   EXPECT_GT(wrong.both().relativeSquaredError(), 20 * right.both().relativeSquaredError());
+}
+
+/// Weights hung from a vented and from a filled muscle, F = 100 p (l - 150) / 100 + (l - 180) / 5 N.
+StaticPoints twoPressures(int vented_count, int filled_count) {
+  StaticPoints points;
+  points.file = "weights.csv";
+  for (int i = 0; i < vented_count + filled_count; ++i) {
+    const double pressure_ratio = i < vented_count ? 0 : 1, length_mm = i < vented_count ? 182 + 4.7 * i : 160 + 6.3 * (i - vented_count);
+    points.points.push_back({pressure_ratio, length_mm, pressure_ratio * (length_mm - 150) + (length_mm - 180) / 5 + 4, i + 2});
+  }
+  return points;
+}
+
+TEST(CrossValidation, ATooSmallFoldLeavesADashAndNotTheLaw) {
+  const StaticPoints points = twoPressures(12, 6);
+  const auto reports = fitLaws({"braun", "chou-hannaford"}, points, specimenOf(points, std::nullopt), {std::nullopt, 260.0});
+  for (const LawReport& report : reports) {
+    EXPECT_EQ(report.failure, "");
+    EXPECT_FALSE(report.validation.outer_pressures.isDefined());
+    EXPECT_TRUE(report.validation.outer_lengths.isDefined());
+    ASSERT_EQ(report.validation.notes.size(), 1U);
+    EXPECT_TRUE(
+        contains(report.validation.notes[0], "not cross-validated over outer pressures: without the 12 points of one, fewer than "));
+  }
+  EXPECT_TRUE(contains(errorTable(reports), " | - | ")) << errorTable(reports);
+  EXPECT_TRUE(toJson(reports[0])["cross_validation"]["outer_pressures"].is_null());
+}
+
+TEST(FitReport, SaysWhichLawToTake) {
+  const StaticPoints points = plantedPoints(paperLaw(), 0.01, NoiseOf::largest, 1);
+  const auto reports = fitLaws({"braun", "chou-hannaford-linear"}, points, specimenOf(points, std::nullopt), {120.0, 300.0});
+  ASSERT_TRUE(lawToTake(reports));
+  EXPECT_EQ(lawToTake(reports)->model->name(), "braun");
+  EXPECT_TRUE(contains(adviceText(reports), "take   braun: predicts best what it was not fitted to (error "));
+  EXPECT_TRUE(contains(adviceText(reports), "others: chou-hannaford-linear "));
+}
+
+TEST(LawFit, WarnsOfALawThatPushes) {
+  StaticPoints points;
+  points.file = "threshold.csv";
+  for (const double p : {300, 400, 500, 600})
+    for (int l = 200; l <= 270; l += 10) {
+      const double force_N = p / 600 * (800 * std::pow(l / 270.0, 2) - 360) - 30;
+      if (force_N > 0) points.points.push_back({p / 600, static_cast<double>(l), force_N, 2});
+    }
+  const auto pushes = [](const LawFit& fit) {
+    return std::ranges::any_of(fit.warnings,
+                               [](const std::string& warning) { return contains(warning, "braun pushes with up to 30 N when vented"); });
+  };
+  EXPECT_TRUE(pushes(fitTo(points, "braun", {std::nullopt, 270.0})));
+  EXPECT_FALSE(pushes(fitTo(plantedPoints(paperLaw(), 0, NoiseOf::largest, 1), "braun")));
 }
 
 TEST(FitReport, ConfigurationGivesEveryRobotTheFittedLaw) {

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
 
 #include "laboratory/point_groups.h"
 #include "musclesim/base/error.h"
@@ -60,13 +64,55 @@ TEST(StaticPoints, MapsColumnsAndFiltersRows) {
                        "length=L_kPa: must be a column that ends like length_mm"));
 }
 
+TEST(StaticPoints, ColumnsByNumberAndUnitsOfInstruments) {
+  StaticPointsOptions options;
+  options.columns = {{"length", "#2:inch"}, {"pressure", "#1:psi"}, {"force", "#3:lbf"}};
+  const StaticPoints points = parseStaticPoints(table("x,x,x", 1 / 25.4), "data.csv", options);
+  EXPECT_NEAR(points.points[5].length_mm, 240, 1e-9);
+  EXPECT_NEAR(*points.full_scale_kPa, 6.894757293168361, 1e-12);
+  EXPECT_NEAR(points.points[5].force_N, 25 * 4.4482216152605, 1e-9);
+  options.columns = {{"length", "x:mm"}, {"pressure", "#1"}, {"force", "#3"}};
+  EXPECT_TRUE(contains(refusal(table("x,x,x"), options), "data.csv:1:3: several columns are named \"x\": 1 and 2"));
+  options.columns.clear();
+  options.where = {{"a", "1"}};
+  EXPECT_TRUE(contains(refusal(table("pressure,length_mm,force_N,a,a"), options), "several columns are named \"a\": 4 and 5"));
+}
+
+TEST(StaticPoints, TakesTheMappingOfATable) {
+  const auto folder = std::filesystem::temp_directory_path() / ("musclesim_point_mapping_test_" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  StaticPointsOptions options;
+  options.mapping = (folder / "map.toml").string();
+  const auto map = [&](const std::string& text) { std::ofstream(options.mapping) << text; };
+  std::string text = "(kPa);(mm);(N)\n";
+  for (const double p : {200.0, 400.0, 600.0})
+    for (const double l : {210.0, 240.0, 270.0}) text += fmt::format("{},5;{};{}\n", p + 101, l - 200, p / 600 * (l - 200) + 5);
+  map("[table]\nseparator = \";\"\ndecimal = \",\"\nheader = false\nskip_before_header = 1\n[columns]\npressure_kPa = { from = 1, "
+      "ambient_kPa = 101.5 }\nlength_mm = { from = 2, offset = 200 }\nforce_N = { from = 3 }\n");
+  for (char& c : text)
+    if (c == '.') c = ',';
+  const StaticPoints points = parseStaticPoints(text, "data.csv", options);
+  ASSERT_EQ(points.points.size(), 9U);
+  EXPECT_NEAR(*points.full_scale_kPa, 600, 1e-9);
+  EXPECT_EQ(points.points[0].length_mm, 210);
+  EXPECT_EQ(points.points[0].line, 2);
+  map("[columns]\npressure_kPa = { value = 300 }\n");
+  EXPECT_TRUE(contains(refusal("length_mm,force_N\n200,1\n210,2\n220,3\n230,4\n240,5\n250,6\n260,7\n270,8\n", options),
+                       "all 8 points have the pressure 300 kPa"));
+  map("[columns]\ntime_s = \"t\"\n");
+  EXPECT_TRUE(contains(refusal(table(), options), "static points have no time"));
+  map("[columns]\npressure_0_kPa = \"p\"\n");
+  EXPECT_TRUE(contains(refusal(table(), options), "columns.pressure_0_kPa: static points have pressure"));
+  std::filesystem::remove_all(folder);
+}
+
 TEST(StaticPoints, MissingUnitsAreExplained) {
   const std::string message = refusal(table("pressure,length,force_N"));
   EXPECT_TRUE(contains(message, "data.csv:1:10"));
   EXPECT_TRUE(contains(message, "column length has no unit; allowed: length_mm, length_cm, length_m"));
   EXPECT_TRUE(contains(refusal(table("pressure,length_mm,force")), "column force has no unit; allowed: force_N"));
   EXPECT_TRUE(contains(refusal(table("p,length_mm,force_N")), "no column holds the pressure"));
-  EXPECT_TRUE(contains(refusal(table("pressure,length_inch,force_N")), "length_mm, length_cm, length_m"));
+  EXPECT_TRUE(contains(refusal(table("pressure,length_feet,force_N")), "length_mm, length_cm, length_m"));
   const std::string pressures_without_unit = refusal("pressure,length_mm,force_N\n600,200,5\n" + table().substr(27));
   EXPECT_TRUE(contains(pressures_without_unit, "data.csv:2:1"));
   EXPECT_TRUE(contains(pressures_without_unit, "600 must lie in -0.05 .. 1.05"));

@@ -111,11 +111,11 @@ TEST_F(ImportTest, RefusesWhatIsNoMapping) {
   auto refused = [&](const std::string& mapping) { return messageOf<BadFile>([&] { import(table, head + mapping); }); };
   EXPECT_TRUE(contains(refused(""), "no section [columns]"));
   EXPECT_TRUE(contains(refused("[columns]\ncommand_0 = \"u\"\n"), "time_s is missing"));
-  EXPECT_TRUE(contains(refused("[columns]\ntime_s = \"time\"\ncommand_0 = \"u\"\n"), "has no column \"time\""));
+  EXPECT_TRUE(contains(refused("[columns]\ntime_s = \"time\"\ncommand_0 = \"u\"\n"), "there is no column \"time\"; the columns are t, u"));
   EXPECT_TRUE(contains(refused("[columns]\ntime_s = \"t\"\ncommand_0 = { form = \"u\" }\n"), "did you mean \"from\""));
   EXPECT_TRUE(contains(refused("[columns]\ntime_s = \"t\"\ncommand_0 = {}\n"), "needs either from or value"));
   EXPECT_TRUE(contains(refused("[columns]\ntime_s = \"t\"\ncommand_0 = \"u\"\n[rows]\nstep_s = -1\n"), "larger than 0"));
-  EXPECT_TRUE(contains(refused("[columns]\ntime_s = \"t\"\ncommand_0_psi = \"u\"\n"), "command_0_psi"));
+  EXPECT_TRUE(contains(refused("[columns]\ntime_s = \"t\"\ncommand_0_torr = \"u\"\n"), "command_0_torr"));
   EXPECT_TRUE(contains(refused("rows = 5\n[columns]\ntime_s = \"t\"\ncommand_0 = \"u\"\n"), "rows: must be a table"));
   EXPECT_TRUE(
       contains(refused("[columns]\ntime_s = \"t\"\ncommand_0 = \"u\"\n[rows]\nbefore = { command_0 = 0 }\n"), "needs rows.before_s"));

@@ -188,6 +188,22 @@ TEST(ForceLaw, StopsPullingAtItsContractedLength) {
 }
 
 /// The same law under another name gives the same motion: Sarosi's defaults equal Eq. 1 for the rig's 120 and 300 mm.
+TEST(ForceLaws, NoMusclePushesNeitherAChainNorALine) {
+  for (const std::string model : {"chain", "line"})
+    for (const PhysicsKind physics : {PhysicsKind::si, PhysicsKind::original}) {
+      SimulationOptions options;
+      options.physics = physics;
+      options.parameters.set("muscle.model", model, "test");
+      options.parameters.set("force_law.a", -0.07, "test");  // pushes when vented
+      options.parameters.set("force_law.b", 0.0, "test");
+      Simulation simulation(options);
+      const Actuator& muscle = *simulation.build("rig").actuators()[0];
+      ASSERT_LT(muscle.calculateForce(0, muscle.lengthMm()), -1);
+      const bool is_original_chain = physics == PhysicsKind::original && model == "chain";
+      EXPECT_EQ(muscle.tensionN() < 0, is_original_chain) << model << ": only the published program's chains push";
+    }
+}
+
 TEST(ForceLawChoice, DrivesARobotsMuscles) {
   const auto settledLengthMm = [](const std::string& name) {
     SimulationOptions options;

@@ -59,11 +59,25 @@ TEST_F(ImportCommand, SaysThatARobotIsUnknown) {
   EXPECT_TRUE(contains(made.err, "this program has no robot rigg")) << made.err;
 }
 
+TEST_F(ImportCommand, LooksAtATableAndBeginsAMapping) {
+  std::ofstream(folder_ / "logger.txt") << "t [ms];p [bar]\n0;0,5\n10;0,6\n20;0,7\n";
+  const ProgramResult look = runProgram({"import", "--look", "logger.txt", "-o", "begun.toml"}, folder_);
+  ASSERT_EQ(look.status, 0) << look.err;
+  EXPECT_TRUE(contains(look.out, "cells      separated by \";\", decimal comma")) << look.out;
+  EXPECT_TRUE(contains(look.out, "column   1 t [ms]   0 .. 20 ms; clock: every 0.01 s over 0.02 s")) << look.out;
+  EXPECT_TRUE(contains(look.out, "column   2 p [bar]  0.5 .. 0.7 bar")) << look.out;
+  std::ofstream(folder_ / "begun.toml", std::ios::app) << "[columns.command_0_bar]\nfrom = \"p [bar]\"\n";
+  ASSERT_EQ(runProgram({"import", "logger.txt", "begun.toml", "out.csv"}, folder_).status, 0);
+  EXPECT_EQ(readRecording((folder_ / "out.csv").string()).time_s, (std::vector<double>{0, 0.01, 0.02}));
+  EXPECT_EQ(runProgram({"import", "--look", "logger.txt", "-o", "begun.toml"}, folder_).status, 2) << "a mapping is never overwritten";
+  EXPECT_EQ(runProgram({"import", "logger.txt", "begun.toml"}, folder_).status, 2);
+}
+
 TEST_F(ImportCommand, EndsWithStatus3ForABadTableAndWritesNothing) {
   std::ofstream(folder_ / "table.csv") << "t,v\n0,0.2\n";
   const ProgramResult made = runProgram({"import", "table.csv", "map.toml", "out.csv"}, folder_);
   EXPECT_EQ(made.status, 3);
-  EXPECT_TRUE(contains(made.err, "has no column \"u\""));
+  EXPECT_TRUE(contains(made.err, "there is no column \"u\""));
   EXPECT_FALSE(fs::exists(folder_ / "out.csv"));
 }
 

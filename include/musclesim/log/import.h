@@ -1,4 +1,5 @@
-/// Turns measured tables into recordings. A mapping file says what each column means, in which unit and at which time.
+/// Turns measured tables into recordings. A mapping file says how each table is written, what each column means, in which unit and at which
+/// time.
 #pragma once
 
 #include <map>
@@ -7,41 +8,59 @@
 #include <vector>
 
 #include "musclesim/log/recording.h"
+#include "musclesim/log/table_format.h"
 
 namespace musclesim {
 
-/// How one column of the recording is computed: constant `value`, or factor * x + offset with x from a column of a table; then clamped.
+/// How one column of the recording is computed: constant `value`, or factor * x + offset with x from a column of a table; then limited.
 struct ImportColumn {
-  std::string name;             ///< column of the recording, with its unit: "command_0_MPa"
-  std::string from;             ///< column of the table; empty: the constant `value`
-  std::string table;            ///< another CSV file, in the folder of the first; empty: the first
-  std::string time = "time_s";  ///< time column of that other table, s
+  std::string name;                 ///< column of the recording, with its unit: "command_0_MPa"
+  std::string written;              ///< as the mapping names it, perhaps in a unit that recordings do not have: "command_0_psi"
+  double unit_factor = 1;           ///< from that unit to the recording's
+  ColumnName from;                  ///< column of the table; empty: the constant `value`
+  std::string table;                ///< another file, in the folder of the first; empty: the first
+  std::optional<TableClock> clock;  ///< of the other table, or another clock in the first
   double factor = 1, offset = 0, value = 0;
   double minimum, maximum;
   bool linear = true;  ///< false: hold the last value between rows (default for commands)
+
+  /// The value in the written unit for the table's value x.
+  double readingOf(double x) const;
+  /// The same in the recording's unit.
+  double valueOf(double x) const { return unit_factor * readingOf(x); }
 };
 
-/// A mapping file, TOML:
+/// A column that is taken as it is.
+ImportColumn importColumn(const std::string& written, const ColumnName& from);
+
+/// A mapping file, TOML. docs/reference/recording_format.md lists all members.
 ///     robot = "wrist"                  # and any other member of the sidecar, noise_std and robot_parameters as tables
+///     [table]                          # how the file is written, where it differs from a recording
+///     separator = ";"
+///     decimal = ","
 ///     [columns]
 ///     time_s = "t"                     # a column of the table
 ///     command_0_MPa = { from = "u", factor = -1, offset = 0.6, minimum = 0, maximum = 0.6 }
 ///     command_1_MPa = { value = 0.1 }
-///     angle_wrist_deg = { from = "angle", table = "other.csv", time = "t" }
+///     pressure_0_hPa = { from = 3, ambient_kPa = 101.3 }
+///     angle_wrist_deg = { from = "angle", table = "other.csv" }
+///     [tables."other.csv"]             # how another table is written, and its clock
+///     time_ms = { from = "t", offset = -200 }
 ///     [rows]
-///     settle_s = 0.6                   # the table has no time: each row was read at the end of a command held that long
 ///     step_s = 0.02                    # resample at even steps
 ///     from_s = 4.0                     # use rows from this time on; it becomes time 0
-///     until_s = 7.6                    # use rows up to this time
-///     every = 5                        # use every fifth row, not counting rows that repeat a time (only without step_s)
 ///     before_s = 1.0                   # before the first row the plant rested that long ...
 ///     before = { command_0_MPa = 0 }   # ... under these commands, the others as in the first row
 struct ImportMapping {
   std::string file;
   std::string sidecar_json;
+  std::optional<TableClock> clock;  ///< of the first table
   std::vector<ImportColumn> columns;
-  std::optional<double> settle_s, step_s, from_s, until_s, before_s;
+  TableFormat format;                          ///< of the first table
+  std::map<std::string, TableFormat> formats;  ///< of other tables; those without are written as the first
+  std::optional<double> settle_s, step_s, from_s, until_s, before_s, longest_gap_s;
   std::map<std::string, double> before;
+  bool has_rows = false;  ///< there is a section [rows]
   int every = 1;
 };
 
@@ -51,8 +70,10 @@ ImportMapping readImportMapping(const std::string& toml_file);
 /// The path of the table that a column names; it is relative to the folder of the first table.
 std::string tableFile(const std::string& csv_file, const ImportColumn& column);
 
-/// Turns the table into a recording. Rows that repeat the time of the row before (a coarse clock) are left out with a note.
-/// Throws BadFile if the table lacks a column that the mapping names; throws as readRecording if the result is not a valid recording.
+/// Turns the table into a recording. Nothing is invented: a reading is missing outside of its table's times and in gaps, and notes count
+/// such rows; rows that repeat the time of the row before (a coarse clock) are left out with a note.
+/// Throws BadFile if the table lacks a column that the mapping names, or if the clocks of two tables do not overlap; throws as
+/// readRecording if the result is not a valid recording.
 Recording importTable(const std::string& csv_file, const ImportMapping& mapping);
 
 }  // namespace musclesim

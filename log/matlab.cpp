@@ -1,0 +1,171 @@
+#include "matlab.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <matio.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <memory>
+#include <tuple>
+
+#include "musclesim/base/error.h"
+#include "musclesim/base/file.h"
+#include "musclesim/base/text.h"
+#include "musclesim/log/csv.h"
+
+namespace musclesim {
+
+namespace {
+
+struct MatlabColumn {
+  std::string name;
+  std::vector<double> values;
+};
+
+template <class Number>
+double element(const void* data, std::size_t i) {
+  return static_cast<double>(static_cast<const Number*>(data)[i]);
+}
+
+/// Reads an element of an array of this type; nothing if it is no array of numbers.
+double (*elementReader(matio_types type))(const void*, std::size_t) {
+  switch (type) {
+    case MAT_T_DOUBLE:
+      return element<double>;
+    case MAT_T_SINGLE:
+      return element<float>;
+    case MAT_T_INT8:
+      return element<std::int8_t>;
+    case MAT_T_UINT8:
+      return element<std::uint8_t>;
+    case MAT_T_INT16:
+      return element<std::int16_t>;
+    case MAT_T_UINT16:
+      return element<std::uint16_t>;
+    case MAT_T_INT32:
+      return element<std::int32_t>;
+    case MAT_T_UINT32:
+      return element<std::uint32_t>;
+    case MAT_T_INT64:
+      return element<std::int64_t>;
+    case MAT_T_UINT64:
+      return element<std::uint64_t>;
+    default:
+      return nullptr;
+  }
+}
+
+/// Collects the columns of all arrays of numbers of a file.
+class Columns {
+ public:
+  explicit Columns(const std::string& file) {
+    const std::unique_ptr<mat_t, int (*)(mat_t*)> mat(Mat_Open(file.c_str(), MAT_ACC_RDONLY), Mat_Close);
+    if (!mat) throw BadFile(file, "is not a MATLAB file of version 5 to 7.3 (an older one, a damaged one, or another format?)");
+    while (const auto variable = next(mat.get())) add(variable->name ? variable->name : "", *variable);
+  }
+  std::vector<MatlabColumn> columns;
+  std::vector<std::string> unreadable;  ///< names of what holds no real numbers
+
+ private:
+  using Variable = std::unique_ptr<matvar_t, void (*)(matvar_t*)>;
+  static Variable next(mat_t* mat) { return {Mat_VarReadNext(mat), Mat_VarFree}; }
+
+  void add(const std::string& name, matvar_t& variable) {
+    if (variable.class_type == MAT_C_STRUCT) return addFields(name, variable);
+    const auto read = variable.class_type == MAT_C_CHAR ? nullptr : elementReader(variable.data_type);
+    std::vector<std::size_t> sides;
+    for (int i = 0; i < variable.rank; ++i)
+      if (variable.dims[i] != 1) sides.push_back(variable.dims[i]);
+    if (sides.size() > 2 || variable.isComplex || !variable.data || !read || variable.class_type == MAT_C_SPARSE) {
+      unreadable.push_back(name);
+      return;
+    }
+    sides.resize(2, 1);
+    addArray(name, sides[0], sides[1], [&](std::size_t i) { return read(variable.data, i); });
+  }
+
+  void addFields(const std::string& name, matvar_t& structure) {
+    std::size_t count = 1;
+    for (int i = 0; i < structure.rank; ++i) count *= structure.dims[i];
+    const unsigned field_count = Mat_VarGetNumberOfFields(&structure);
+    const auto names = Mat_VarGetStructFieldnames(&structure);
+    for (std::size_t i = 0; i < count; ++i)
+      for (unsigned field = 0; field < field_count; ++field)
+        if (matvar_t* value = Mat_VarGetStructFieldByIndex(&structure, field, i))
+          add(count == 1 ? fmt::format("{}.{}", name, names[field]) : fmt::format("{}({}).{}", name, i + 1, names[field]), *value);
+  }
+
+  /// The samples of a matrix run along its longer side.
+  void addArray(const std::string& name, std::size_t rows, std::size_t row_length, const std::function<double(std::size_t)>& read) {
+    const bool is_upright = rows >= row_length;
+    const std::size_t length = std::max(rows, row_length), count = std::min(rows, row_length);
+    for (std::size_t c = 0; c < count; ++c) {
+      MatlabColumn column{name, {}};
+      if (count > 1) column.name = is_upright ? fmt::format("{}(:,{})", name, c + 1) : fmt::format("{}({},:)", name, c + 1);
+      for (std::size_t i = 0; i < length; ++i) column.values.push_back(read(is_upright ? c * rows + i : i * rows + c));
+      columns.push_back(std::move(column));
+    }
+  }
+};
+
+/// The length that most columns have, of two such lengths the longer; scalars count only if there is nothing else.
+std::size_t usualLength(const std::vector<MatlabColumn>& columns) {
+  std::map<std::size_t, int> counts;
+  for (const MatlabColumn& column : columns) ++counts[column.values.size()];
+  const auto rank = [](const auto& entry) { return std::tuple(entry.first > 1, entry.second, entry.first); };
+  return std::ranges::max_element(counts, {}, rank)->first;
+}
+
+std::size_t lengthOf(const std::string& variable, const std::vector<MatlabColumn>& columns, const std::string& file) {
+  const auto found = std::ranges::find(columns, variable, &MatlabColumn::name);
+  if (found != columns.end()) return found->values.size();
+  std::vector<std::string> names;
+  for (const MatlabColumn& column : columns) names.push_back(column.name);
+  throw BadFile(file, fmt::format("has no array {}; it has {}", inQuotes(variable), fmt::join(names, ", ")));
+}
+
+std::string tableText(const std::vector<const MatlabColumn*>& columns, std::size_t length) {
+  std::string text;
+  for (const MatlabColumn* column : columns) text += fmt::format("{}\"{}\"", text.empty() ? "" : ",", column->name);
+  for (std::size_t row = 0; row < length; ++row) {
+    text += '\n';
+    for (const MatlabColumn* column : columns) {
+      if (column != columns.front()) text += ',';
+      if (!std::isnan(column->values[row])) text += fmt::format("{}", column->values[row]);
+    }
+  }
+  return text + "\n";
+}
+
+}  // namespace
+
+bool isMatlabFile(const std::string& file) {
+  return file.ends_with(".mat");
+}
+
+std::string matlabTable(const std::string& file, const std::string& variable, std::vector<std::string>& notes) {
+  readTextFile(file, CsvLimits().file_bytes);  // says why a file cannot be read
+  const Columns all(file);
+  if (all.columns.empty()) throw BadFile(file, "has no array of real numbers");
+  const std::size_t length = variable.empty() ? usualLength(all.columns) : lengthOf(variable, all.columns, file);
+  std::vector<const MatlabColumn*> columns;
+  std::vector<std::string> others;
+  for (const MatlabColumn& column : all.columns)
+    if (column.values.size() == length)
+      columns.push_back(&column);
+    else
+      others.push_back(fmt::format("{} ({})", column.name, column.values.size()));
+  if (!others.empty())
+    notes.push_back(
+        fmt::format("{}: the table has the {} arrays of length {}; of other length: {} (variable in the mapping's [table] chooses)", file,
+                    columns.size(), length, fmt::join(others, ", ")));
+  if (!all.unreadable.empty())
+    notes.push_back(fmt::format("{}: holds no real numbers that can be read: {} (objects such as timeseries must be saved as plain arrays)",
+                                file, fmt::join(all.unreadable, ", ")));
+  return tableText(columns, length);
+}
+
+}  // namespace musclesim

@@ -1,0 +1,170 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "matlab.h"
+#include "musclesim/base/text.h"
+#include "table_look.h"
+
+namespace musclesim {
+
+namespace {
+
+/// A text as TOML writes it.
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F)
+      out += c == '\t' ? "\\t" : fmt::format("\\u{:04X}", static_cast<int>(c));
+    else
+      out += c;
+  }
+  return out + "\"";
+}
+
+/// The column as a mapping names it: its name, or its number where the name does not tell it from others.
+std::string reference(const TableLook& look, std::size_t column) {
+  return look.columns[column].is_named ? quoted(look.columns[column].name) : fmt::format("{}", column + 1);
+}
+
+std::string separatorName(char separator) {
+  switch (separator) {
+    case ' ':
+      return "blanks";
+    case '\t':
+      return "tabs";
+    default:
+      return fmt::format("\"{}\"", separator);
+  }
+}
+
+/// Ambient pressure in hPa lies in this range near sea level and on most hills.
+bool looksAbsolute(const LookedColumn& column) {
+  constexpr double lowest_hPa = 900, highest_hPa = 1060;
+  const double in_hPa = column.unit == "kPa"   ? 10
+                        : column.unit == "bar" ? 1000
+                        : column.unit == "Pa"  ? 0.01
+                        : column.unit == "psi" ? 68.94757
+                                               : 1;
+  const bool may_be_pressure = column.unit.empty() || in_hPa != 1 || column.unit == "hPa" || column.unit == "mbar";
+  return column.is_number && may_be_pressure && column.lowest * in_hPa > lowest_hPa && column.lowest * in_hPa < highest_hPa;
+}
+
+std::string describe(const LookedColumn& column) {
+  if (!column.is_number) return fmt::format("text, first {}", inQuotes(column.example));
+  std::string text = fmt::format("{:.6g} .. {:.6g}", column.lowest, column.highest);
+  if (!column.unit.empty()) text += " " + column.unit;
+  if (looksAbsolute(column)) text += column.unit.empty() ? ", hPa or mbar, absolute?" : ", absolute?";
+  if (column.missing_count > 0) text += fmt::format(", {} missing", column.missing_count);
+  return text;
+}
+
+std::string describe(const LookedClock& clock) {
+  if (clock.turn_count > 0) return "clock: runs backwards, a counter that begins again?";
+  std::string text =
+      fmt::format("clock{}: every {:.4g} s over {:.6g} s", clock.unit_is_guessed && !clock.unit.empty() ? " in " + clock.unit + "?" : "",
+                  clock.step_s, clock.duration_s);
+  if (clock.unit.empty()) text = "clock: the row's number; give rate_Hz";
+  if (clock.clock.wraps_at_s > 0) text += fmt::format(", begins again at {:.12g} s", clock.clock.wraps_at_s);
+  if (clock.gap_count > 0) text += fmt::format(", {} gaps, the longest {:.4g} s", clock.gap_count, clock.longest_gap_s);
+  if (clock.repeat_count > 0) text += fmt::format(", {} repeated times", clock.repeat_count);
+  return text;
+}
+
+std::string formatMembers(const TableFormat& format) {
+  const TableFormat plain;
+  std::string text;
+  if (format.separator != plain.separator) text += fmt::format("separator = {}\n", quoted(std::string(1, format.separator)));
+  if (format.decimal != plain.decimal) text += fmt::format("decimal = \"{}\"\n", format.decimal);
+  if (!format.has_header) text += "header = false\n";
+  if (format.skip_before_header > 0) text += fmt::format("skip_before_header = {}\n", format.skip_before_header);
+  if (format.skip_after_header > 0) text += fmt::format("skip_after_header = {}   # a row of units\n", format.skip_after_header);
+  if (format.comment != plain.comment) text += fmt::format("comment = {}\n", quoted(format.comment));
+  if (!format.encoding.empty()) text += fmt::format("encoding = {}   # or another one-byte encoding\n", quoted(format.encoding));
+  std::string words;
+  for (const std::string& word : format.missing) words += (words.empty() ? "" : ", ") + quoted(word);
+  if (!words.empty()) text += fmt::format("missing = [{}]\n", words);
+  return text.empty() ? "" : "\n[table]                              # how the file is written\n" + text;
+}
+
+std::string clockLine(const TableLook& look) {
+  if (!look.clock) return "# no clock was recognised\ntime_s = { rate_Hz = 100 }           # rows per second";
+  const LookedClock& clock = *look.clock;
+  const std::string from = reference(look, clock.column);
+  if (clock.unit.empty()) return fmt::format("time_s = {{ from = {}, rate_Hz = 100 }}   # {}", from, describe(clock));
+  std::string members;
+  if (!clock.clock.date.empty()) members += ", date = " + reference(look, static_cast<std::size_t>(clock.clock.date.number) - 1);
+  if (!clock.clock.format.empty()) members += ", format = " + quoted(clock.clock.format);
+  if (clock.clock.wraps_at_s > 0) members += fmt::format(", wraps_at_s = {:.12g}", clock.clock.wraps_at_s);
+  const bool is_plain = members.empty() && look.columns[clock.column].is_named;
+  return fmt::format("time_{} = {}   # {}", clock.unit, is_plain ? from : "{ from = " + from + members + " }", describe(clock));
+}
+
+/// A column of recordings that has this unit.
+std::string suggestion(const LookedColumn& column) {
+  const std::string& unit = column.unit;
+  const auto is_one_of = [&](std::initializer_list<const char*> units) { return std::ranges::find(units, unit) != units.end(); };
+  if (is_one_of({"kPa", "bar", "MPa", "Pa", "hPa", "mbar", "psi"})) return "pressure_0_" + unit;
+  if (unit == "V") return "command_0_V";
+  if (is_one_of({"mm", "cm", "m", "um", "inch"})) return "length_0_" + unit;
+  if (is_one_of({"N", "mN", "kN", "kgf", "lbf"})) return "force_0_" + unit;
+  if (is_one_of({"deg", "rad"})) return "angle_elbow_" + unit;
+  return "...";
+}
+
+}  // namespace
+
+std::string lookText(const TableLook& look) {
+  const TableFormat& format = look.format;
+  std::string text;
+  if (!isMatlabFile(look.file)) {
+    text =
+        fmt::format("cells      separated by {}, decimal {}\n", separatorName(format.separator), format.decimal == '.' ? "point" : "comma");
+    text += format.has_header
+                ? fmt::format("header     line {}{}\n", look.header_line, format.skip_after_header > 0 ? ", units below it" : "")
+                : "header     none: columns by number\n";
+    if (!format.encoding.empty()) text += fmt::format("encoding   not UTF-8, perhaps {}\n", format.encoding);
+    if (!format.missing.empty()) text += fmt::format("missing    {}\n", fmt::join(format.missing, "  "));
+  }
+  text += fmt::format("rows       {}, lines {} .. {}\n", look.row_count, look.first_line, look.last_line);
+  std::size_t width = 0;
+  for (const LookedColumn& column : look.columns) width = std::max(width, column.name.size());
+  width = std::min<std::size_t>(width, 30);
+  for (std::size_t i = 0; i < look.columns.size(); ++i) {
+    const bool is_clock = look.clock && look.clock->column == i;
+    text += fmt::format("column {:>3} {:<{}}  {}{}\n", i + 1, format.has_header ? look.columns[i].name : "", width,
+                        describe(look.columns[i]), is_clock ? "; " + describe(*look.clock) : "");
+  }
+  if (!look.clock) text += "clock      none recognised\n";
+  return text;
+}
+
+std::string mappingText(const TableLook& look) {
+  std::string text = fmt::format(
+      "# Mapping of {}, begun by musclesim import --look. What follows is what can be seen of the file;\n"
+      "# what the columns mean, only you know: complete and correct it.\n",
+      inQuotes(std::filesystem::path(look.file).filename().string()));
+  text += "robot = \"rig\"                        # rig, elbow, arm, wrist, spring_bench, or a robot file\n";
+  text += "pressure_full_scale_kPa = 600        # the pressure that counts as 1\n";
+  if (!isMatlabFile(look.file)) text += formatMembers(look.format);
+  text += "\n[columns]                            # column of the recording = column of the table\n" + clockLine(look) + "\n";
+  text += "# command_0_bar = \"...\"              # needed: one command for each muscle; { value = 3 } for a constant one\n";
+  for (std::size_t i = 0; i < look.columns.size(); ++i) {
+    if (look.clock && look.clock->column == i) continue;
+    const LookedColumn& column = look.columns[i];
+    const std::string from = reference(look, i);
+    const std::string absolute = looksAbsolute(column) ? ", ambient_kPa = 101.325" : "";
+    const bool is_plain = column.is_named && absolute.empty();
+    text += fmt::format("# {} = {}   # column {}: {}\n", suggestion(column), is_plain ? from : "{ from = " + from + absolute + " }", i + 1,
+                        describe(column));
+  }
+  text +=
+      "\n# [rows]\n# step_s = 0.01                      # even rows: straight lines between readings, commands held\n"
+      "# before_s = 1.0                     # before the first row the machine rested ...\n"
+      "# before = { command_0_bar = 0 }     # ... under these commands\n";
+  return text;
+}
+
+}  // namespace musclesim
