@@ -1,0 +1,80 @@
+/// Position control: joint angles or the height of the hand follow a target.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "musclesim/controller/channels.h"
+#include "musclesim/controller/controller.h"
+#include "musclesim/controller/task.h"
+
+namespace musclesim {
+
+class InverseModel;
+
+/// Antagonists under co-contraction and difference, with a loop per controlled quantity:
+///     p_i = level_i + sum over loops of c_i u,   limited to 0..1
+///     u   = u_ff + K_p e + I + K_d de/dt,        limited to |u| <= u_max;   e = r - y
+///     dI/dt = K_i e + (u_limited - u) K_i / K_p                              (anti-windup by back-calculation)
+/// p_i command of muscle i and its co-contraction level_i, fractions of full scale; c_i 1 for muscles that rise and -1 for those that fall;
+/// u difference of pressure; y reading of an angle in degrees or of the hand's height in mm, as sensors and their effects show it; r its
+/// target; u_max the largest distance of a level from the ends of 0..1. K_p, K_i and K_d are position.proportional_per_deg,
+/// position.integral_per_deg_s and position.damping_s_per_deg, or with mm. de/dt is the difference of two errors over the control step. At
+/// the first call, when the robot has not moved yet, u is u_ff alone.
+///
+/// Feed-forward u_ff of angles: the difference that gives the clean model the target's acceleration at the target (InverseModel): the
+/// inverse of force law, moment arms, weights and inertia, without friction and effects. It is taken half a control step ahead, in the
+/// middle of the time for which the command holds; the acceleration is the second difference of the target over 0.05 s to either side.
+/// Robots whose joints close a loop have none. position.feed_forward turns it off. Sources: Åström & Hägglund, PID Controllers, 2nd
+/// edition, Ch. 3; co-contraction and difference of pressures as is usual for antagonists.
+///
+/// position.quantity chooses angles (a loop for every joint with a channel; targets position.target_<joint>_deg plus a sine of
+/// position.amplitude_<joint>_deg with position.period_s) or height (one loop of all channels; the target of the height task). A targets
+/// file of the request replaces them: columns time_s and angle_<joint>_deg or target_<joint>_deg, hand_y_mm or target_y_mm, with straight
+/// lines in between. Channels are the request's or the robot's antagonists (antagonistsOf).
+class PositionController final : public Controller {
+ public:
+  /// Throws BadParameter without a robot, without antagonists, for a channel whose joint is not known, and as Target::make. Throws BadFile
+  /// for a targets file that lacks a target.
+  explicit PositionController(const ControllerRequest& request);
+  ~PositionController() override;
+  Action output(const State& state) override;
+  std::optional<Vector> targetMm() const override;
+  bool targetIsHeight() const override { return is_height_; }
+  std::vector<std::pair<std::string, double>> signals() const override;
+  std::optional<double> endS() const override { return end_s_; }
+  std::vector<std::string> notes() const override;
+
+ private:
+  struct Loop {
+    std::string joint;              ///< empty: the hand's height
+    std::size_t angle = 0;          ///< place among the robot's angles
+    std::vector<Channel> channels;  ///< all driven by one u
+    std::vector<double> sense;      ///< c_i
+    std::function<double(double)> target;
+    double integrated = 0;  ///< I
+    double target_now = 0, error_before = 0;
+  };
+  void addLoops(const ControllerRequest& request, const std::vector<Channel>& channels);
+  void setTargets(const ControllerRequest& request);
+  void setGains(Parameters& parameters);
+  void invertModel(const Robot& robot);
+  double reading(const Loop& loop, const State& state) const;
+  double forward(const Loop& loop, double time_s) const;
+  double difference(Loop& loop, const State& state);
+
+  std::vector<Loop> loops_;
+  std::vector<double> level_;
+  std::unique_ptr<InverseModel> inverse_;  ///< null: no feed-forward
+  double step_s_, largest_difference_ = 0;
+  double proportional_ = 0, integral_per_s_ = 0, damping_s_ = 0;
+  std::size_t angle_count_ = 0;
+  bool is_height_ = false, has_begun_ = false, has_error_ = false;
+  std::optional<double> end_s_;
+  std::string feed_forward_note_;
+};
+
+}  // namespace musclesim
