@@ -252,7 +252,8 @@ class Run {
       simulation_.step();
       warnOfGap();
     }
-    robot().step(action);  // so that the last row, too, has the forces at its own time
+    // The last row, too, has the command and the forces of its own time.
+    robot().step(simulation_.stepCount() > 0 ? controller_->output(robot().getState()) : action);
     record(recorder, progress, true);
   }
 
