@@ -129,8 +129,8 @@ double PositionController::forward(const Loop& loop, double time_s) const {
   if (!inverse_) return 0;
   std::vector<double> angles_deg(angle_count_, 0.0);
   for (const Loop& other : loops_) angles_deg[other.angle] = other.target(time_s);
-  const double acceleration_deg_per_s2 =
-      (loop.target(time_s + beside_s) - 2 * loop.target(time_s) + loop.target(time_s - beside_s)) / (beside_s * beside_s);
+  const double change_deg = loop.target(time_s + beside_s) - 2 * loop.target(time_s) + loop.target(time_s - beside_s);
+  const double acceleration_deg_per_s2 = has_begun_ ? change_deg / (beside_s * beside_s) : 0;
   return inverse_->difference(loop.angle, angles_deg, acceleration_deg_per_s2, {level_, loop.sense, largest_difference_});
 }
 

@@ -125,7 +125,8 @@ std::vector<Panel> signalPanels(const Recording& recording, const std::vector<st
     const std::string title = axisTitle(signal->name);
     auto panel = std::ranges::find(panels, title, &Panel::axis_title);
     if (panel == panels.end()) panel = panels.insert(panel, Panel{{}, title, {}, "", false});
-    panel->curves.push_back(chosenCurve(*signal, panel->curves.size(), muscle_colors));
+    const auto colored = std::ranges::count_if(panel->curves, [](const Curve& curve) { return !curve.label.starts_with("target"); });
+    panel->curves.push_back(chosenCurve(*signal, static_cast<std::size_t>(colored), muscle_colors));
   }
   return panels;
 }

@@ -74,7 +74,7 @@ measure() {
 import json
 last = json.loads(open("log.jsonl").read().splitlines()[-1])
 verdict = json.load(open("verdict.json"))
-print(f'{last["frames_per_s"]:.1f} | {verdict["wall_per_simulated_s"]:.3f} | {"4" if last["smooth"] else "1"}')
+print(f'{last["frames_per_s"]:.1f} | {1 / verdict["real_time_factor"]:.3f} | {"4" if last["smooth"] else "1"}')
 PYTHON
 }
 {

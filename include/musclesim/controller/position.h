@@ -27,9 +27,11 @@ class InverseModel;
 ///
 /// Feed-forward u_ff of angles: the difference that gives the clean model the target's acceleration at the target (InverseModel): the
 /// inverse of force law, moment arms, weights and inertia, without friction and effects. It is taken half a control step ahead, in the
-/// middle of the time for which the command holds; the acceleration is the second difference of the target over 0.05 s to either side.
-/// Robots whose joints close a loop have none. position.feed_forward turns it off. Sources: Åström & Hägglund, PID Controllers, 2nd
-/// edition, Ch. 3; co-contraction and difference of pressures as is usual for antagonists.
+/// middle of the time for which the command holds. The acceleration is the second difference of the target over 0.05 s to either side; at
+/// the first call, under whose command robots settle, it is 0. Robots whose joints close a loop have no feed-forward, and
+/// position.feed_forward turns it off.
+/// Sources: Åström & Hägglund, PID Controllers, 2nd edition, Ch. 3 (anti-windup); pressures as co-contraction and difference are usual for
+/// antagonists.
 ///
 /// position.quantity chooses angles (a loop for every joint with a channel; targets position.target_<joint>_deg plus a sine of
 /// position.amplitude_<joint>_deg with position.period_s) or height (one loop of all channels; the target of the height task). A targets
