@@ -56,7 +56,8 @@ Recording scheduleOf(Simulation& simulation, Controller& controller, const Sched
 int schedule(const ModelOptions& model, const ScheduleArguments& arguments) {
   constexpr double longest_schedule_s = 1e6;
   if (!(arguments.duration_s > 0 && arguments.duration_s <= longest_schedule_s))
-    throw BadParameter("duration", fmt::format("{} s", arguments.duration_s), fmt::format("lie above 0 and at most {:g} s", longest_schedule_s));
+    throw BadParameter("duration", fmt::format("{} s", arguments.duration_s),
+                       fmt::format("lie above 0 and at most {:g} s", longest_schedule_s));
   const auto simulation = simulationFor(model);
   ControllerRequest request{simulation->parameters()};
   request.muscle_count = simulation->robot().actuatorCount();
