@@ -7,6 +7,7 @@
 
 #include "commands.h"
 #include "musclesim/base/error.h"
+#include "musclesim/base/file.h"
 #include "musclesim/controller/controller_registry.h"
 #include "musclesim/controller/test_signal.h"
 #include "output_folder.h"
@@ -19,6 +20,7 @@ struct ScheduleArguments {
   std::string signal, out;
   double duration_s = 20;
   std::optional<std::string> channels;
+  std::optional<double> full_scale_kPa, full_scale_V;
 };
 
 std::vector<std::string> signalNames() {
@@ -53,6 +55,22 @@ Recording scheduleOf(Simulation& simulation, Controller& controller, const Sched
   return recording;
 }
 
+/// Writes the commands in the unit of a full scale, which the sidecar gives.
+void writeInUnit(Recording& recording, const std::string& unit, double full_scale, const std::string& csv) {
+  std::string table = "time_s";
+  for (const Signal& signal : recording.signals) table += fmt::format(",{}_{}", signal.name, unit);
+  table += '\n';
+  for (std::size_t row = 0; row < recording.time_s.size(); ++row) {
+    table += fmt::format("{}", recording.time_s[row]);
+    for (const Signal& signal : recording.signals) table += fmt::format(",{}", signal.values[row] * full_scale);
+    table += '\n';
+  }
+  (unit == "V" ? recording.info.command_full_scale_V : recording.info.pressure_full_scale_kPa) = full_scale;
+  const std::string sidecar = sidecarPath(csv);
+  replaceFile(sidecar, sidecarText(recording.info, sidecar));
+  replaceFile(csv, table);
+}
+
 int schedule(const ModelOptions& model, const ScheduleArguments& arguments) {
   constexpr double longest_schedule_s = 1e6;
   if (!(arguments.duration_s > 0 && arguments.duration_s <= longest_schedule_s))
@@ -71,8 +89,13 @@ int schedule(const ModelOptions& model, const ScheduleArguments& arguments) {
   requireReplaceable(csv);
   if (prepareRecording(csv)) say(model, fmt::format("made the folder {}", csv.parent_path().string()));
   for (const std::string& note : controller.notes()) say(model, note);
-  const Recording recording = scheduleOf(*simulation, controller, arguments);
-  writeRecording(recording, arguments.out);
+  Recording recording = scheduleOf(*simulation, controller, arguments);
+  if (arguments.full_scale_kPa)
+    writeInUnit(recording, "kPa", *arguments.full_scale_kPa, arguments.out);
+  else if (arguments.full_scale_V)
+    writeInUnit(recording, "V", *arguments.full_scale_V, arguments.out);
+  else
+    writeRecording(recording, arguments.out);
   fmt::print("schedule  {}\n", arguments.out);
   if (model.json)
     fmt::print("{}\n", nlohmann::json{{"command", "schedule"},
@@ -98,6 +121,13 @@ Action addSchedule(CLI::App& command, ModelOptions& model) {
           "--channels", arguments->channels,
           "What the signal moves: muscles 0,1, antagonists 0:1, groups 0+2:1+3 (default: the robot's antagonists, else all muscles)")
       ->option_text("CHANNEL,...");
+  const CLI::Range full_scales(1e-3, 1e5);
+  CLI::Option* in_kPa =
+      command.add_option("--full-scale-kPa", arguments->full_scale_kPa, "Write commands in kPa: the pressure of a command of 1")
+          ->check(full_scales);
+  command.add_option("--full-scale-V", arguments->full_scale_V, "Write commands in V: the voltage of a command of 1")
+      ->check(full_scales)
+      ->excludes(in_kPa);
   addModelOptions(command, model);
   return [&model, arguments] { return schedule(model, *arguments); };
 }

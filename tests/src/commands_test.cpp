@@ -67,6 +67,15 @@ TEST_F(Commands, ASchedulePlayedRecordedAndReadIsTheSameToTheBit) {
   }
 }
 
+TEST_F(Commands, SchedulesMayBeInTheUnitOfAMachine) {
+  ASSERT_EQ(run({"schedule", "steps", "--robot", "rig", "-o", "kPa.csv", "--duration", "1", "--full-scale-kPa", "600"}).status, 0);
+  EXPECT_TRUE(contains(contentOf(folder_ / "kPa.csv"), "time_s,command_0_kPa\n0,240\n"));
+  EXPECT_NEAR(recording("kPa.csv").find("command_0")->values[60], 0.5, 1e-15);
+  ASSERT_EQ(run({"schedule", "steps", "--robot", "rig", "-o", "V.csv", "--duration", "1", "--full-scale-V", "10"}).status, 0);
+  EXPECT_TRUE(contains(contentOf(folder_ / "V.csv"), "time_s,command_0_V\n0,4\n"));
+  EXPECT_EQ(simulate("rig", {"--commands", "V.csv"}).status, 0);
+}
+
 TEST_F(Commands, BareTablesAndRecordingsArePlayedAtTheRecordingInterval) {
   write("table.csv", "time_s,command_0\n0,0.3\n0.25,0.5\n1,0.4\n");
   ASSERT_EQ(simulate("rig", {"--commands", "table.csv", "--record-interval", "0.05", "--record", "held.csv"}).status, 0);
