@@ -61,10 +61,22 @@ double InverseModel::inertia(Eigen::Index coordinate) {
   return inertia_g_mm2;
 }
 
+void InverseModel::setPose(const std::vector<double>& angle_deg) {
+  for (std::size_t i = 0; i < coordinate_of_.size(); ++i) q_[coordinate_of_[i]] = angle_deg[i] * rad_per_deg;
+}
+
+double InverseModel::accelerationPerDifference(std::size_t angle, const std::vector<double>& angle_deg, const Antagonism& muscles) {
+  constexpr double small = 0.01;  ///< of full scale: force laws are smooth over it
+  const double u = difference(angle, angle_deg, 0, muscles);
+  const Eigen::Index coordinate = coordinate_of_.at(angle);
+  const double per_difference = (force(muscles, u + small, coordinate) - force(muscles, u - small, coordinate)) / (2 * small);
+  return per_difference * model_.world().physics().force_per_N / inertia(coordinate) * deg_per_rad;
+}
+
 double InverseModel::difference(std::size_t angle, const std::vector<double>& angle_deg, double acceleration_deg_per_s2,
                                 const Antagonism& muscles) {
   constexpr int halvings = 30;  ///< to 1e-9 of full scale
-  for (std::size_t i = 0; i < coordinate_of_.size(); ++i) q_[coordinate_of_[i]] = angle_deg[i] * rad_per_deg;
+  setPose(angle_deg);
   const Eigen::Index coordinate = coordinate_of_.at(angle);
   const double wanted =
       acceleration_deg_per_s2 == 0 ? 0 : inertia(coordinate) * acceleration_deg_per_s2 * rad_per_deg / model_.world().physics().force_per_N;

@@ -28,8 +28,11 @@ class InverseModel {
 
   /// `angle`: place of the joint among the robot's angles; angle_deg: all of them. Returns the end of the range if no u is enough.
   double difference(std::size_t angle, const std::vector<double>& angle_deg, double acceleration_deg_per_s2, const Antagonism& muscles);
+  /// The acceleration that a joint at rest has per small difference: b_j = (dQ_j/du) / M_j at u of the pose's own equilibrium, deg/s^2.
+  double accelerationPerDifference(std::size_t angle, const std::vector<double>& angle_deg, const Antagonism& muscles);
 
  private:
+  void setPose(const std::vector<double>& angle_deg);
   double force(const Antagonism& muscles, double u, Eigen::Index coordinate);
   double inertia(Eigen::Index coordinate);
 

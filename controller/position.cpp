@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <memory>
 #include <numbers>
 
@@ -27,6 +28,11 @@ std::vector<Channel> antagonistsFor(const ControllerRequest& request) {
   return channels;
 }
 
+/// To two digits, as a default that people read.
+double rounded(double value) {
+  return std::strtod(fmt::format("{:.2g}", value).c_str(), nullptr);
+}
+
 std::vector<std::string> angleNames(const Robot& robot) {
   std::vector<std::string> names;
   for (const Robot::Angle& angle : robot.angles()) names.push_back(angle.name);
@@ -47,10 +53,11 @@ PositionController::PositionController(const ControllerRequest& request) : step_
   }
   addLoops(request, channels);
   setTargets(request);
-  setGains(parameters);
   const bool wanted = parameters.choice("position.feed_forward", "inverse", {"inverse", "off"},
                                         "inverse: what moves the clean model along the target, for angles") == "inverse";
-  if (wanted && !is_height_) invertModel(*request.robot);
+  if (!is_height_) invertModel(*request.robot);
+  setGains(parameters);
+  feeds_forward_ = inverse_ && wanted;
 }
 
 PositionController::~PositionController() = default;
@@ -93,8 +100,11 @@ void PositionController::setTargets(const ControllerRequest& request) {
   }
   const double period_s = parameters.number("position.period_s", 2, "s", 1e-3, 1e5, "time of one cycle of the target's sine");
   for (Loop& loop : loops_) {
+    const Robot::Angle& angle = request.robot->angles()[loop.angle];
+    const auto [low_deg, high_deg] = angle.joint->stopsDeg(angle.axis);
+    const double default_deg = std::isfinite(high_deg - low_deg) ? (low_deg + high_deg) / 2 : 0;
     const double middle_deg =
-        parameters.number(fmt::format("position.target_{}_deg", loop.joint), 0, "deg", -1e4, 1e4, "target, its middle");
+        parameters.number(fmt::format("position.target_{}_deg", loop.joint), default_deg, "deg", -1e4, 1e4, "target, its middle");
     const double amplitude_deg =
         parameters.number(fmt::format("position.amplitude_{}_deg", loop.joint), 0, "deg", -1e4, 1e4, "amplitude of the target's sine");
     loop.target = [=](double t) { return middle_deg + amplitude_deg * std::sin(2 * std::numbers::pi * (std::max(0.0, t) / period_s)); };
@@ -102,21 +112,37 @@ void PositionController::setTargets(const ControllerRequest& request) {
 }
 
 void PositionController::setGains(Parameters& parameters) {
-  const std::string unit = is_height_ ? "mm" : "deg";
-  const std::string group = "position.";
-  proportional_ = parameters.number(group + "proportional_per_" + unit, is_height_ ? 4e-3 : 0.06, "1/" + unit, 0, 10,
-                                    "K_p, difference of pressure per error");
-  integral_per_s_ = parameters.number(group + "integral_per_" + unit + "_s", is_height_ ? 5e-3 : 0.1, "1/(" + unit + " s)", 0, 100,
-                                      "K_i, difference of pressure per error and second");
-  damping_s_ = parameters.number(group + "damping_s_per_" + unit, is_height_ ? 4e-4 : 0.005, "s/" + unit, 0, 10,
-                                 "K_d, difference of pressure per speed of the error");
+  for (Loop& loop : loops_) {
+    const std::string of = is_height_ ? "" : loop.joint + "_", unit = is_height_ ? "mm" : "deg";
+    const auto gain = [&](const std::string& name, double value, const std::string& gain_unit, const std::string& meaning) {
+      return parameters.number("position." + name, value, gain_unit, 0, 10, meaning);
+    };
+    const Gains usual = usualGains(loop);
+    loop.gains = {
+        gain("proportional_" + of + "per_" + unit, usual.proportional, "1/" + unit, "K_p, difference of pressure per error"),
+        gain("integral_" + of + "per_" + unit + "_s", usual.integral_per_s, "1/(" + unit + " s)",
+             "K_i, difference of pressure per error and second"),
+        gain("damping_" + of + "s_per_" + unit, usual.damping_s, "s/" + unit, "K_d, difference of pressure per speed of the error")};
+  }
+}
+
+PositionController::Gains PositionController::usualGains(const Loop& loop) const {
+  // Tuned at the arm (height) and the elbow with chain muscles, with a control step of 0.01 s.
+  constexpr Gains height = {4e-3, 5e-3, 4e-4}, without_model = {0.01, 0.02, 0.001};
+  constexpr double bandwidth_per_s = 36, damping_ratio = 1.5, integral_per_proportional_s = 1.7;
+  if (is_height_) return height;
+  const double b = inverse_ ? inverse_->accelerationPerDifference(loop.angle, anglesAt(0), antagonism(loop)) : 0;
+  if (!(b > 0)) return without_model;
+  const double proportional = bandwidth_per_s * bandwidth_per_s / b;
+  return {rounded(proportional), rounded(integral_per_proportional_s * proportional), rounded(2 * damping_ratio * bandwidth_per_s / b)};
 }
 
 void PositionController::invertModel(const Robot& robot) {
   try {
     inverse_ = std::make_unique<InverseModel>(robot);
   } catch (const Error& error) {
-    feed_forward_note_ = fmt::format("no feed-forward: {}", error.what());
+    feed_forward_note_ =
+        fmt::format("no model of the robot's motion, so no feed-forward, and gains that suit no robot in particular: {}", error.what());
   }
 }
 
@@ -124,14 +150,22 @@ double PositionController::reading(const Loop& loop, const State& state) const {
   return is_height_ ? reportedHand(state).y() : state.angle_deg.at(loop.angle);
 }
 
+Antagonism PositionController::antagonism(const Loop& loop) const {
+  return {level_, loop.sense, largest_difference_};
+}
+
+std::vector<double> PositionController::anglesAt(double time_s) const {
+  std::vector<double> angles_deg(angle_count_, 0.0);
+  for (const Loop& loop : loops_) angles_deg[loop.angle] = loop.target(time_s);
+  return angles_deg;
+}
+
 double PositionController::forward(const Loop& loop, double time_s) const {
   constexpr double beside_s = 0.05;  ///< smooths the corners of targets; 0.2 % of the acceleration of a sine of 0.5 Hz
-  if (!inverse_) return 0;
-  std::vector<double> angles_deg(angle_count_, 0.0);
-  for (const Loop& other : loops_) angles_deg[other.angle] = other.target(time_s);
+  if (!feeds_forward_) return 0;
   const double change_deg = loop.target(time_s + beside_s) - 2 * loop.target(time_s) + loop.target(time_s - beside_s);
   const double acceleration_deg_per_s2 = has_begun_ ? change_deg / (beside_s * beside_s) : 0;
-  return inverse_->difference(loop.angle, angles_deg, acceleration_deg_per_s2, {level_, loop.sense, largest_difference_});
+  return inverse_->difference(loop.angle, anglesAt(time_s), acceleration_deg_per_s2, antagonism(loop));
 }
 
 double PositionController::difference(Loop& loop, const State& state) {
@@ -141,10 +175,11 @@ double PositionController::difference(Loop& loop, const State& state) {
   const double error = loop.target_now - reading(loop, state);
   const double speed_per_s = has_error_ ? (error - loop.error_before) / step_s_ : 0;
   loop.error_before = error;
-  const double u = forward_now + proportional_ * error + loop.integrated + damping_s_ * speed_per_s;
+  const Gains& gains = loop.gains;
+  const double u = forward_now + gains.proportional * error + loop.integrated + gains.damping_s * speed_per_s;
   const double limited = std::clamp(u, -largest_difference_, largest_difference_);
-  double change_per_s = integral_per_s_ * error;
-  if (proportional_ > 0) change_per_s += (limited - u) * integral_per_s_ / proportional_;
+  double change_per_s = gains.integral_per_s * error;
+  if (gains.proportional > 0) change_per_s += (limited - u) * gains.integral_per_s / gains.proportional;
   loop.integrated = std::clamp(loop.integrated + step_s_ * change_per_s, -2 * largest_difference_, 2 * largest_difference_);
   return limited;
 }
@@ -178,7 +213,7 @@ std::vector<std::string> PositionController::notes() const {
     std::vector<std::string> names;
     for (const Channel& channel : loop.channels) names.push_back(channel.text());
     notes.push_back(fmt::format("{} moved by {}{}", is_height_ ? "height of the hand" : "angle " + loop.joint, fmt::join(names, ","),
-                                inverse_ ? "" : ", without feed-forward"));
+                                feeds_forward_ ? "" : ", without feed-forward"));
   }
   if (!feed_forward_note_.empty()) notes.push_back(feed_forward_note_);
   return notes;

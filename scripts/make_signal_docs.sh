@@ -27,5 +27,10 @@ print(f'$name: largest error {error[\"largest_deg\"]:.2f} degrees, RMS {error[\"
   "$program" figure "$name.csv" --signals 'target_elbow_deg,angle_elbow_deg,command_*' --title "${name//_/ }" -o "$figures/$name.svg"
 }
 track position_loop
-echo '{"format": "musclesim-effects-1", "effects": [{"id": "transport_delay", "component": "all", "parameters": {"delay_s": 0.1}}]}' >late.json
+effect() { echo "{\"format\": \"musclesim-effects-1\", \"effects\": [{\"id\": \"transport_delay\", \"component\": \"all\", \"parameters\": {\"delay_s\": $1}}]}"; }
+for delay_s in 0.005 0.01 0.02; do
+  effect "$delay_s" >late.json
+  figures=$work track "delay_of_${delay_s}_s" --effects late.json
+done
+effect 0.1 >late.json
 track position_loop_with_dead_time --effects late.json
