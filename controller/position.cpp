@@ -28,9 +28,11 @@ std::vector<Channel> antagonistsFor(const ControllerRequest& request) {
   return channels;
 }
 
-/// To two digits, as a default that people read.
+constexpr double largest_gain = 10;  ///< an error of a tenth of a degree or mm commands full scale
+
+/// A gain to two digits, as a default that people read.
 double rounded(double value) {
-  return std::strtod(fmt::format("{:.2g}", value).c_str(), nullptr);
+  return std::min(largest_gain, std::strtod(fmt::format("{:.2g}", value).c_str(), nullptr));
 }
 
 std::vector<std::string> angleNames(const Robot& robot) {
@@ -115,7 +117,7 @@ void PositionController::setGains(Parameters& parameters) {
   for (Loop& loop : loops_) {
     const std::string of = is_height_ ? "" : loop.joint + "_", unit = is_height_ ? "mm" : "deg";
     const auto gain = [&](const std::string& name, double value, const std::string& gain_unit, const std::string& meaning) {
-      return parameters.number("position." + name, value, gain_unit, 0, 10, meaning);
+      return parameters.number("position." + name, value, gain_unit, 0, largest_gain, meaning);
     };
     const Gains usual = usualGains(loop);
     loop.gains = {

@@ -37,7 +37,7 @@ std::vector<Curve> muscleCurves(const Recording& recording, const std::string& q
 std::vector<Curve> angleCurves(const Recording& recording) {
   std::vector<Curve> curves;
   for (const auto& signal : recording.signals) {
-    if (!signal.name.starts_with("angle_") || !isMeasured(&signal)) continue;
+    if (!signal.name.starts_with("angle_") || !signal.name.ends_with("_deg") || !isMeasured(&signal)) continue;
     const std::string prefix = "angle_", suffix = "_deg";
     const std::string joint = signal.name.substr(prefix.size(), signal.name.size() - prefix.size() - suffix.size());
     curves.push_back({&signal, muscleColor(curves.size(), {}), joint});
