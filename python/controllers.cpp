@@ -21,8 +21,26 @@ class ControllerOfPython : public Controller {
     if (!override) throw BadParameter("a subclass of Controller must define output(state)");
     return pressuresOf(override, state);
   }
-  std::optional<double> activity() const override { PYBIND11_OVERRIDE(std::optional<double>, Controller, activity, ); }
-  std::optional<Vector> targetMm() const override { PYBIND11_OVERRIDE_NAME(std::optional<Vector>, Controller, "target_mm", targetMm, ); }
+  std::optional<double> activity() const override {
+    const py::gil_scoped_acquire lock;
+    const py::function override = py::get_override(static_cast<const Controller*>(this), "activity");
+    const py::object activity = override ? override() : py::none();
+    if (activity.is_none()) return std::nullopt;
+    try {
+      return activity.cast<double>();
+    } catch (const py::cast_error&) {
+      throw BadParameter("activity", py::repr(activity).cast<std::string>(), "be a number or None");
+    }
+  }
+  std::optional<Vector> targetMm() const override {
+    const py::gil_scoped_acquire lock;
+    const py::function override = py::get_override(static_cast<const Controller*>(this), "target_mm");
+    const py::object target = override ? override() : py::none();
+    if (target.is_none()) return std::nullopt;
+    const Numbers numbers = numbersFrom(target, "target_mm");
+    if (numbers.size() != 3) throw BadParameter("target_mm", fmt::format("{} numbers", numbers.size()), "have 3: x, y, z in mm");
+    return Vector(numbers.at(0), numbers.at(1), numbers.at(2));
+  }
   bool targetIsHeight() const override { PYBIND11_OVERRIDE_NAME(bool, Controller, "target_is_height", targetIsHeight, ); }
 
   /// Python may keep the state that it gets, so it gets one of its own.

@@ -41,6 +41,13 @@ py::dict answerOf(const Diagnosis& diagnosis) {
   return answer;
 }
 
+/// Recordings that were made in memory get names: the answer speaks of them.
+std::vector<Recording> named(std::vector<Recording> recordings) {
+  for (std::size_t i = 0; i < recordings.size(); ++i)
+    if (recordings[i].file.empty()) recordings[i].file = "recording " + std::to_string(i + 1);
+  return recordings;
+}
+
 py::dict diagnoseRecordings(const std::vector<Recording>& recordings, const py::dict& model, const std::vector<std::string>& candidates,
                             const std::vector<std::string>& exclude, const std::vector<std::string>& tune, int max_effects, int threads,
                             std::uint64_t seed, const py::object& earlier, const py::object& progress) {
@@ -59,7 +66,7 @@ py::dict diagnoseRecordings(const std::vector<Recording>& recordings, const py::
   watched(
       [&](const std::function<bool()>& interrupted) {
         options.interrupted = interrupted;
-        diagnosis = diagnose(recordings, options);
+        diagnosis = diagnose(named(recordings), options);
       },
       [&] {
         if (const auto now = box.take(); now && !progress.is_none()) progress(now->phase, now->done, now->expected);

@@ -47,7 +47,8 @@ py::dict errorsOf(const ReplayResult& result) {
   return errors;
 }
 
-ReplayResult replay(const Recording& recording, const py::dict& model) {
+ReplayResult replay(Recording recording, const py::dict& model) {
+  if (recording.file.empty()) recording.file = "recording in memory";
   ReplayOptions options = replayOptionsFrom(model);
   Interruption interruption;
   options.interrupted = [&] { return interruption.isWanted(); };

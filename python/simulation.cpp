@@ -47,6 +47,7 @@ class PythonSimulation::Heed {
 PythonSimulation::PythonSimulation(Model model) : model_(std::move(model)) {
   model_.options.interrupted = [this] { return interruption_ && interruption_->isWanted(); };
   build();
+  command_.assign(static_cast<std::size_t>(simulation_->robot().actuatorCount()), 0.0);
   const auto count = static_cast<py::ssize_t>(simulation_->robot().signalNames().size());
   readings_ = py::array_t<double>(count);
   reading_ = readings_.mutable_data();
@@ -65,7 +66,6 @@ void PythonSimulation::build() {
     return robot;
   });
   simulation_ = std::move(simulation);
-  command_.assign(static_cast<std::size_t>(simulation_->robot().actuatorCount()), 0.0);
   was_started_ = left_within_step_ = false;
 }
 
@@ -100,9 +100,11 @@ py::array PythonSimulation::start(const py::object& command, const std::optional
                                   const std::optional<std::uint64_t>& seed) {
   const Use use(*this);
   open();
+  Action first(command_.size(), 0.0);
+  if (!command.is_none()) readPressures(command, "command", first);
   if (seed) model_.options.seed = *seed;
-  if (was_started_ || left_within_step_ || seed) build();
-  if (!command.is_none()) readPressures(command, "command", command_);
+  if (was_started_ || seed) build();
+  command_ = first;
   simulation_->parameters().requireAllKnown();
   Heed heed(*this);
   try {
@@ -222,7 +224,7 @@ std::unique_ptr<Controller> makeController(const RunArguments& arguments, Simula
 Recording PythonSimulation::run(const RunArguments& arguments) {
   const Use use(*this);
   open();
-  if (was_started_ || left_within_step_) build();
+  if (was_started_) build();
   Simulation& simulation = *simulation_;
   const RunLoop times{arguments.duration_s, arguments.record_interval_s, nullptr};
   times.requireTimes(simulation.stepS());
