@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "musclesim/controller/hold.h"
 #include "support/support.h"
 
 namespace musclesim {
