@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 
 #include "conversions.h"
 #include "musclesim/base/error.h"
@@ -97,7 +99,10 @@ void bindRecording(py::module_& module) {
   py::class_<Recording>(module, "Recording",
                         "What was commanded and measured in one run: columns over time. recording[\"length_0_mm\"] is a read-only array.")
       .def_static(
-          "read", [](const std::string& file, std::vector<std::string> ignore) { return readRecording(file, {std::move(ignore)}); },
+          "read",
+          [](const std::filesystem::path& file, std::vector<std::string> ignore) {
+            return readRecording(file.string(), {std::move(ignore)});
+          },
           py::arg("file"), py::arg("ignore_columns") = std::vector<std::string>(),
           "Reads NAME.csv with NAME.json beside it, strictly. Units become mm, deg, N and fractions of full scale.")
       .def_static(
@@ -108,8 +113,9 @@ void bindRecording(py::module_& module) {
           "robot and further arguments: the sidecar's members: physics, initial_state, robot_parameters, noise_std, ...\n"
           "Recording.from_dict(recording.to_dict(), **recording.info) gives the same recording. Raises BadParameter or BadFile.")
       .def(
-          "write", [](const Recording& recording, const std::string& file) { writeRecording(recording, file); }, py::arg("file"),
-          py::call_guard<py::gil_scoped_release>(), "Writes NAME.csv and NAME.json; existing files are replaced. Every bit is kept.")
+          "write", [](const Recording& recording, const std::filesystem::path& file) { writeRecording(recording, file.string()); },
+          py::arg("file"), py::call_guard<py::gil_scoped_release>(),
+          "Writes NAME.csv and NAME.json; existing files are replaced. Every bit is kept.")
       .def("to_dict", &toDict, "All columns by name, time_s first: read-only arrays of shape (rows,), without copies.")
       .def("keys", &namesOf, "Names of all columns, time_s first.")
       .def("__getitem__", &columnOf, py::arg("name"), "A column: a read-only array of shape (rows,), in mm, deg, N or fractions.")

@@ -70,7 +70,7 @@ class PythonSimulation {
   void requireWhole() const;
   void readAll();
   RecordingInfo describe(const std::string& initial_state, const RunArguments& arguments);
-  void runInto(Recording& recording, Recorder* recorder, Controller& controller, const RunLoop& loop, const std::string& initial_state);
+  void runInto(Recording& recording, Recorder* recorder, Controller& controller, const RunLoop& times, const std::string& initial_state);
 
   Model model_;
   std::unique_ptr<Simulation> simulation_;

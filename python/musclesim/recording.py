@@ -19,7 +19,7 @@ def replay(recording: Recording | str | os.PathLike[str], **model: Any) -> Repla
 
 
 def _as_recording(recording: Recording | str | os.PathLike[str]) -> Recording:
-    return recording if isinstance(recording, Recording) else Recording.read(os.fspath(recording))
+    return recording if isinstance(recording, Recording) else Recording.read(recording)
 
 
 def _checked(model: dict[str, Any]) -> dict[str, Any]:

@@ -97,6 +97,12 @@ class Controllers(unittest.TestCase):
         self.expect(RuntimeError, "the valve is stuck", Failing(0.5, fail), 51)
         self.assertIn("the valve is stuck", self.sidecar()["verdict"]["message"])
 
+    def test_divergence_leaves_the_files_complete_up_to_then(self):
+        with self.assertRaises(musclesim.Diverged):
+            musclesim.run("elbow", lambda state: [state.time_s % 1, 0], 1000, record=self.file, substeps=1, step_s=0.5, initial_state="built")
+        self.assertEqual((self.sidecar()["complete"], self.sidecar()["verdict"]["status"]), (False, "diverged"))
+        self.assertGreater(len(musclesim.Recording.read(self.file)), 0)
+
     def test_wrong_outputs(self):
         for number, (result, pattern) in enumerate((([0.5], r"output = shape \(1,\): must be \(2,\)"),
                                                     ([0.5, float("nan")], r"output\[1\] = nan: must lie in 0 \.\. 1"),

@@ -1,5 +1,6 @@
 """Recordings to and from dicts of arrays."""
 import os
+import pathlib
 import tempfile
 import unittest
 
@@ -46,6 +47,9 @@ class Recordings(unittest.TestCase):
             musclesim.Recording.from_dict(small(), robot="rig").write(file)
             for name, values in small().items():
                 np.testing.assert_array_equal(musclesim.Recording.read(file)[name], values)
+            musclesim.Recording.read(pathlib.Path(file)).write(pathlib.Path(folder, "again.csv"))
+            with open(file, "rb") as first, open(os.path.join(folder, "again.csv"), "rb") as again:
+                self.assertEqual(first.read(), again.read())
             os.remove(file.replace(".csv", ".json"))
             with self.assertRaisesRegex(musclesim.BadFile, "sidecar"):
                 musclesim.Recording.read(file)
