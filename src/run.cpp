@@ -1,6 +1,7 @@
 /// `musclesim run`: the paper's program. A robot, a controller, a log and a figure; a window, pictures, or neither.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <utility>
 
@@ -8,10 +9,10 @@
 #include "interrupt.h"
 #include "musclesim/base/color.h"
 #include "musclesim/base/error.h"
+#include "musclesim/base/units.h"
 #include "musclesim/controller/controller_registry.h"
 #include "musclesim/log/figure.h"
 #include "musclesim/log/recorder.h"
-#include "musclesim/simulation/run_loop.h"
 #include "output_folder.h"
 #include "progress.h"
 #include "run_output.h"
@@ -23,13 +24,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-ControllerRequest requestFor(Simulation& simulation, const RunOptions& options) {
-  ControllerRequest request = controllerRequest(simulation, options.task, options.decision_interval_s);
+/// Default decision interval: the paper's 6 s in original physics; in true seconds the time that the arm takes to settle
+/// (docs/reference/parameters.md).
+double defaultDecisionIntervalS(const PhysicsSettings& physics) {
+  constexpr double original_s = 6.0, si_s = 3.0;
+  if (physics.kind == PhysicsKind::si) return si_s;
+  return physics.kind == PhysicsKind::original ? original_s : original_s / std::sqrt(original_force_deficit_ratio);
+}
+
+ControllerRequest controllerRequest(Simulation& simulation, const RunOptions& options) {
+  const double interval_s = options.decision_interval_s.value_or(defaultDecisionIntervalS(simulation.physics()));
+  if (!(interval_s > 0 && std::isfinite(interval_s)))
+    throw BadParameter("decision-interval", fmt::format("{} s", interval_s), "be positive and finite");
+  ControllerRequest request{
+      simulation.parameters(), simulation.robot().actuatorCount(), simulation.stepS(), interval_s, simulation.seed(), options.task, {}};
   if (!options.target_mm.empty()) request.target_mm = Vector(options.target_mm[0], options.target_mm[1], options.target_mm[2]);
   return request;
 }
 
-constexpr double until_closed_s = 1e7;
+constexpr double longest_s = 1e7;
 
 bool hasWindow(const RunOptions& options) {
   return !options.simple && !options.pictures.wanted();
@@ -46,7 +59,7 @@ void requireUsedOptions(const RunOptions& options) {
 /// The duration without --duration: 300 s as published; shorter for a picture or video; with a window until it is closed.
 double defaultDurationS(const RunOptions& options) {
   constexpr double batch_s = 300, pictures_s = 20;
-  return options.simple ? batch_s : hasWindow(options) ? until_closed_s : pictures_s;
+  return options.simple ? batch_s : hasWindow(options) ? longest_s : pictures_s;
 }
 
 /// How a run ended.
@@ -64,7 +77,7 @@ class Run {
     addController();
     simulation_.parameters().requireAllKnown();
     duration_s_ = options.duration_s.value_or(defaultDurationS(options));
-    RunLoop{duration_s_, options.record_interval_s, nullptr}.requireTimes(simulation_.stepS());
+    requireDuration();
   }
 
   Simulation& simulation() { return simulation_; }
@@ -78,7 +91,7 @@ class Run {
     requireReplaceable(csv);
     prepareRecording(csv);
     addSpectator(first_state, csv);
-    Recorder recorder(csv.string(), describe(simulation_, options_, initial_state), runColumns(robot(), *controller_));
+    Recorder recorder(csv.string(), describe(simulation_, options_, initial_state), columns());
     say(model_, fmt::format("{} physics, stepper {}, {} internal steps of {:.4g} s per step of {:g} s, seed {}",
                             nameOf(simulation_.physics().kind), simulation_.stepper().name(), simulation_.substeps(),
                             simulation_.internalStepS(), simulation_.stepS(), simulation_.seed()));
@@ -108,7 +121,7 @@ class Run {
  private:
   /// With a window, the user can take over from the controller.
   void addController() {
-    auto controller = makeController(options_.controller, requestFor(simulation_, options_));
+    auto controller = makeController(options_.controller, controllerRequest(simulation_, options_));
     if (hasWindow(options_)) {
       auto hands = std::make_unique<ManualController>(std::move(controller), robot().actuatorCount());
       hands_ = hands.get();
@@ -164,18 +177,58 @@ class Run {
     return svg;
   }
 
-  void loop(Recorder& recorder, Progress& progress, const musclesim::Action& first_action) {
-    RunLoop loop{duration_s_, options_.record_interval_s,
-                 [&](const State& state, bool is_due) { record(recorder, progress, state, is_due); }};
-    loop.goes_on = [this] { return goes_on_ && interruptSignal() == 0; };
-    loop.after_step = [this] { warnOfGap(); };
-    loop.command_is_late = [this](double interval_s) { warnOfLateCommands(interval_s); };
-    runLoop(simulation_, *controller_, first_action, loop);
+  void requireDuration() const {
+    if (!(duration_s_ >= simulation_.stepS() && duration_s_ <= longest_s))
+      throw BadParameter("duration", fmt::format("{} s", duration_s_),
+                         fmt::format("lie between one step, {} s, and 1e7 s", simulation_.stepS()));
+    if (options_.record_interval_s && !(*options_.record_interval_s > 0 && std::isfinite(*options_.record_interval_s)))
+      throw BadParameter("record-interval", fmt::format("{} s", *options_.record_interval_s), "be positive and finite");
   }
 
-  void record(Recorder& recorder, Progress& progress, const State& state, bool is_due) {
+  std::vector<std::string> columns() const {
+    std::vector<std::string> names = robot().signalNames();
+    if (controller_->targetMm())
+      for (const char* axis : {"x", "y", "z"})
+        if (!controller_->targetIsHeight() || *axis == 'y') names.push_back(fmt::format("target_{}_mm", axis));
+    if (controller_->activity()) names.push_back("activity");
+    return names;
+  }
+
+  std::vector<double> row(const State& state) const {
+    std::vector<double> values = robot().signalValues(state);
+    if (const auto target = controller_->targetMm()) {
+      if (controller_->targetIsHeight())
+        values.push_back(target->y());
+      else
+        values.insert(values.end(), target->data(), target->data() + 3);
+    }
+    if (const auto activity = controller_->activity()) values.push_back(*activity);
+    return values;
+  }
+
+  /// The paper's run loop: state, output, step. A row is logged before the world moves.
+  void loop(Recorder& recorder, Progress& progress, musclesim::Action action) {
+    const long step_count = std::lround(duration_s_ / simulation_.stepS());
+    const long record_every = std::max(1L, std::lround(options_.record_interval_s.value_or(simulation_.stepS()) / simulation_.stepS()));
+    for (long i = 0; i < step_count && goes_on_ && interruptSignal() == 0; ++i) {
+      const bool due = i % record_every == 0;
+      if (i > 0) {
+        const musclesim::Action before = std::exchange(action, controller_->output(robot().getState()));
+        if (!due && action != before) warnOfLateCommands(static_cast<double>(record_every) * simulation_.stepS());
+      }
+      robot().step(action);
+      record(recorder, progress, due);
+      simulation_.step();
+      warnOfGap();
+    }
+    robot().step(action);  // so that the last row, too, has the forces at its own time
+    record(recorder, progress, true);
+  }
+
+  void record(Recorder& recorder, Progress& progress, bool due) {
+    const State state = robot().getState();
     score_.add(state.time_s, state, *controller_);
-    if (is_due) recorder.append(state.time_s, runRow(robot(), *controller_, state));
+    if (due) recorder.append(state.time_s, row(state));
     progress.show(state.time_s, state.hand_mm ? fmt::format("height {:.0f} mm", state.hand_mm->y()) : "");
     if (spectator_) goes_on_ = spectator_->see(state);
   }

@@ -1,4 +1,4 @@
-/// The paper's run loop: state, output, step. The program's runs and those of programs of one's own go through it.
+/// The paper's run loop: state, output, step, with rows to record; for programs of one's own and for Python.
 #pragma once
 
 #include <functional>
