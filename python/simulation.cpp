@@ -141,8 +141,7 @@ py::array PythonSimulation::step(const py::object& pressures, long count) {
     if (!was_started_) begin(model_.initial_state.value_or(simulation.robot().initialState()));
     if (!pressures.is_none()) simulation.robot().step(command_);
     left_within_step_ = true;
-    // Python looks for Ctrl-C between its own calls; here only a long one must.
-    for (long i = 0; i < count && (count == 1 || !interruption.isWanted()); ++i) simulation.step();
+    for (long i = 0; i < count && !interruption.isWanted(); ++i) simulation.step();
     left_within_step_ = false;
     readAll();
   }
@@ -203,6 +202,21 @@ void PythonSimulation::runInto(Recording& recording, Recorder* recorder, Control
 
 namespace {
 
+/// What the world has once a run is over. Python's collector does not see what the world holds, so a controller that knows its simulation
+/// would keep it for ever.
+class NoController final : public Controller {
+ public:
+  Action output(const State&) override { throw BadParameter("the run of this controller is over"); }
+};
+
+struct Release {
+  explicit Release(Simulation& of) : simulation(of) {}
+  ~Release() { simulation.control(std::make_unique<NoController>()); }
+  Release(const Release&) = delete;
+  Release& operator=(const Release&) = delete;
+  Simulation& simulation;
+};
+
 /// What the sidecar says about the end of a run.
 void closeWith(const char* status, const std::string& message, Recorder* recorder) {
   if (!recorder) return;
@@ -240,6 +254,7 @@ Recording PythonSimulation::run(const RunArguments& arguments) {
   if (arguments.record)
     recorder = std::make_unique<Recorder>(*arguments.record, recording.info, runColumns(simulation.robot(), controller));
   Heed heed(*this);
+  const Release release(simulation);
   try {
     const py::gil_scoped_release unlocked;
     runInto(recording, recorder.get(), controller, times, initial_state);

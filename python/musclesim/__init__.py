@@ -9,11 +9,11 @@ Pressures are fractions of full scale 0..1, lengths mm, angles degrees, forces N
 """
 
 from ._errors import BadFile, BadParameter, Diverged, Error, IoError
-from ._musclesim import BraunForceLaw, Controller, ForceLaw, Replay, State, __version__, controllers, effects, robots
+from ._musclesim import BraunForceLaw, Controller, ForceLaw, Recording, Replay, State, __version__, controllers, effects, robots
 from .diagnosis import Diagnosis, diagnose
 from .ensemble import ensemble
 from .environment import Box, Environment
-from .recording import Recording, replay
+from .recording import replay
 from .simulation import Simulation, run
 
 __all__ = [

@@ -27,7 +27,7 @@ class Diagnosis:
     @property
     def verdict(self) -> str:
         """ "no_gap", "effects_found", "unexplained" or "not_excited"."""
-        return self.data["verdict"]
+        return str(self.data["verdict"])
 
     @property
     def causes(self) -> list[str]:

@@ -5,15 +5,18 @@ from __future__ import annotations
 from typing import Any, Callable, Mapping, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ._errors import BadParameter, Diverged
 from .simulation import Simulation
+
+Numbers = NDArray[np.float64]
 
 
 class Box:
     """All arrays of shape (n,) between `low` and `high`."""
 
-    def __init__(self, low: np.ndarray, high: np.ndarray, seed: int | None = None) -> None:
+    def __init__(self, low: Numbers, high: Numbers, seed: int | None = None) -> None:
         self.low, self.high = np.asarray(low, float), np.asarray(high, float)
         self.shape, self.dtype = self.low.shape, self.low.dtype
         self.seed(seed)
@@ -22,7 +25,7 @@ class Box:
         """Makes the samples repeatable; None stands for 0."""
         self._random = np.random.default_rng(seed or 0)
 
-    def sample(self) -> np.ndarray:
+    def sample(self) -> Numbers:
         """Uniform where both bounds are finite, normal elsewhere."""
         bounded = np.isfinite(self.low) & np.isfinite(self.high)
         low, high = np.where(bounded, self.low, 0.0), np.where(bounded, self.high, 1.0)
@@ -58,7 +61,7 @@ class Environment:
     reward_range = (-float("inf"), float("inf"))
 
     def __init__(self, robot: str = "elbow", *, duration_s: float = 10.0, action_steps: int = 1, observe: Sequence[str] | None = None,
-                 target: Mapping[str, float] | None = None, reward: Callable[["Environment", np.ndarray], float] | None = None,
+                 target: Mapping[str, float] | None = None, reward: Callable[["Environment", Numbers], float] | None = None,
                  first_command: Sequence[float] | None = None, seed: int = 1, **model: Any) -> None:
         self.simulation = Simulation(robot, seed=seed, **model)
         self.signals = list(observe if observe is not None else self.simulation.signals)
@@ -87,13 +90,13 @@ class Environment:
         """A signal now, in its unit."""
         return float(self.readings[self._place(signal)])
 
-    def reward(self, action: np.ndarray) -> float:
+    def reward(self, action: Numbers) -> float:
         """The reward after a step under `action`."""
         if self._reward is not None:
             return float(self._reward(self, action))
         return -float(sum(abs(self.readings[place] - wanted) for place, wanted in self._targets))
 
-    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Numbers, dict[str, Any]]:
         """Begins an episode: (observation, info). A seed makes it and those that follow repeatable. options["command"]: the first
         pressures, shape (muscles,)."""
         if seed is not None:
@@ -105,7 +108,7 @@ class Environment:
         self._steps_left = max(1, round(self.duration_s / (self.simulation.step_s * self.action_steps)))
         return self._observation(), self._info()
 
-    def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
+    def step(self, action: Any) -> tuple[Numbers, float, bool, bool, dict[str, Any]]:
         """Holds the pressures of `action` for `action_steps` control steps: (observation, reward, terminated, truncated, info)."""
         if self._steps_left <= 0:
             raise BadParameter("the episode has ended, or none has begun: call reset()")
@@ -130,8 +133,8 @@ class Environment:
     def __exit__(self, *_: Any) -> None:
         self.close()
 
-    def _observation(self) -> np.ndarray:
-        return self.readings[self._places]  # a copy
+    def _observation(self) -> Numbers:
+        return np.array(self.readings[self._places])
 
     def _info(self) -> dict[str, Any]:
         return {"time_s": self.simulation.time_s, "seed": self.simulation.seed}

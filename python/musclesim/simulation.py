@@ -14,6 +14,9 @@ ControllerLike = Union[str, Controller, Callable[[State], Any]]
 class Simulation(_musclesim._Simulation):
     __doc__ = _musclesim._Simulation.__doc__
 
+    def __enter__(self) -> Simulation:
+        return self
+
     def run(self, controller: ControllerLike = "asm", duration_s: float = 300.0, *, record: str | os.PathLike[str] | None = None,
             overwrite: bool = False, record_interval_s: float | None = None, task: str = "height",
             target_mm: Sequence[float] | None = None, decision_interval_s: float | None = None) -> Recording:

@@ -85,6 +85,16 @@ class Controllers(unittest.TestCase):
         gc.collect()
         self.assertIsNone(gone())
 
+    def test_a_controller_that_knows_its_simulation_is_freed(self):
+        simulation = musclesim.Simulation("elbow", parameters=line)
+        swing = Swing()
+        swing.simulation = simulation
+        simulation.run(swing, 0.1)
+        gone = weakref.ref(swing)
+        del swing, simulation
+        gc.collect()
+        self.assertIsNone(gone())
+
     def expect(self, error, pattern, controller, complete_rows):
         with self.assertRaisesRegex(error, pattern):
             musclesim.run("elbow", controller, 2, parameters=line, record=self.file)

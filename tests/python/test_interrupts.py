@@ -85,6 +85,13 @@ musclesim.replay(r)""", after_s=5)
     def test_ensemble(self):
         self.interrupt("musclesim.ensemble(lambda seed: musclesim.run('elbow', 'random', 1e6, seed=seed, record_interval_s=1), range(4), 2)")
 
+    def test_ensemble_of_loops_in_python(self):
+        self.interrupt("""
+def work(seed):
+    simulation = musclesim.Simulation('elbow', seed=seed, parameters={'muscle.model': 'line'})
+    while True: simulation.step([.5, .5])
+musclesim.ensemble(work, range(4), 2)""")
+
     def test_diagnose(self):
         self.interrupt("""
 runs = [musclesim.run('elbow', 'random', 10, seed=s, decision_interval_s=0.5, effects=[{'id': 'valve_lag', 'component': 'all',

@@ -2,6 +2,9 @@
 import ast
 import inspect
 import os
+import shutil
+import subprocess
+import tempfile
 import unittest
 
 import musclesim
@@ -31,6 +34,13 @@ class Stubs(unittest.TestCase):
         for name, parts in names.items():
             if name:
                 self.assertEqual(parts - {"__init__"}, own_names(getattr(_musclesim, name)) - {"__init__"}, name)
+
+    @unittest.skipUnless(shutil.which("mypy"), "there is no mypy")
+    def test_types(self):
+        package = os.path.dirname(musclesim.__file__)
+        with tempfile.TemporaryDirectory() as cache:
+            result = subprocess.run(["mypy", "--strict", "--cache-dir", cache, package], capture_output=True, text=True, check=False)
+        self.assertEqual(result.returncode, 0, result.stdout)
 
     def test_everything_public_is_described(self):
         for name in musclesim.__all__:
