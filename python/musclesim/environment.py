@@ -64,7 +64,8 @@ class Environment:
                  target: Mapping[str, float] | None = None, reward: Callable[["Environment", Numbers], float] | None = None,
                  first_command: Sequence[float] | None = None, seed: int = 1, **model: Any) -> None:
         self.simulation = Simulation(robot, seed=seed, **model)
-        self.signals = list(observe if observe is not None else self.simulation.signals)
+        self._place_of = {name: place for place, name in enumerate(self.simulation.signals)}
+        self.signals = list(observe if observe is not None else self._place_of)
         self.target, self.duration_s, self.action_steps = dict(target or {}), duration_s, action_steps
         self._places = np.array([self._place(name) for name in self.signals], int)
         self._targets = [(self._place(name), value) for name, value in self.target.items()]
@@ -140,6 +141,6 @@ class Environment:
         return {"time_s": self.simulation.time_s, "seed": self.simulation.seed}
 
     def _place(self, signal: str) -> int:
-        if signal not in self.simulation.signals:
-            raise BadParameter(f"signal = {signal}: must be one of {', '.join(self.simulation.signals)}")
-        return self.simulation.signals.index(signal)
+        if signal not in self._place_of:
+            raise BadParameter(f"signal = {signal}: must be one of {', '.join(self._place_of)}")
+        return self._place_of[signal]
