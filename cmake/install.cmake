@@ -1,5 +1,6 @@
-# Two components: `program` (program, manual page, completion, desktop file, documents) and `development` (library, headers, CMake package,
-# pkg-config file, examples). find_package(musclesim) gives the target musclesim::musclesim.
+# Components: `program` (program, manual page, completion, desktop file, documents), `development` (library, headers, CMake package,
+# pkg-config file, examples) and, if the module is built, `python` (python/CMakeLists.txt). find_package(musclesim) gives the target
+# musclesim::musclesim.
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/musclesim)
 
@@ -32,7 +33,7 @@ configure_package_config_file(cmake/musclesimConfig.cmake.in ${PROJECT_BINARY_DI
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/musclesimConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/musclesimConfig.cmake ${PROJECT_BINARY_DIR}/musclesimConfigVersion.cmake cmake/FindODE.cmake
         DESTINATION ${package_dir} COMPONENT development)
-install(DIRECTORY docs/examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
+install(DIRECTORY docs/examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development PATTERN "*.py" EXCLUDE)
 
 # At installation, because the prefix may be chosen then.
 install(CODE "
@@ -73,4 +74,19 @@ if(MUSCLESIM_MATIO_LINK)
 endif()
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "library, headers and examples of musclesim
  For robots, controllers, effects and force laws of one's own.")
+if(TARGET musclesim_python)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  math(EXPR next_minor "${Python3_VERSION_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-musclesim)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+  # The module is compiled for one minor version of Python.
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+      "python3 (>= 3.${Python3_VERSION_MINOR}), python3 (<< 3.${next_minor}), python3-numpy")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/packaging/python/postinst
+                                                ${PROJECT_SOURCE_DIR}/packaging/python/prerm)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-matplotlib")  # the examples draw
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION "Python module of musclesim, a simulator of robots with pneumatic artificial muscles
+ Simulations step by step with NumPy arrays, controllers and force laws in Python, recordings, replay, diagnosis, environments for learning.")
+endif()
 include(CPack)

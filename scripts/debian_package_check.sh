@@ -4,7 +4,8 @@
 #     scripts/debian_package_check.sh DIR [BUILD FOLDER]      default: the release preset, built first
 #
 # There it installs musclesim and runs it, reads the manual page, completes a command line, checks the desktop file; then installs
-# libmusclesim-dev, builds and runs the examples with find_package, and one of them with pkg-config alone.
+# libmusclesim-dev, builds and runs the examples with find_package, and one of them with pkg-config alone; then python3-musclesim by itself,
+# whose example controls the elbow, plots and diagnoses, and writes the program's bits.
 # Needs root, debootstrap, dpkg-dev, help2man, git and a network. MIRROR=URL chooses another Debian mirror.
 set -euo pipefail
 root=$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")
@@ -19,10 +20,10 @@ enter_private_mounts "$@"
 build=${2-}
 if [[ -z $build ]]; then
   build=$root/build/release
-  build_preset release manual_page -DMUSCLESIM_TESTS=OFF
+  build_preset release all -DMUSCLESIM_TESTS=OFF
 else
   build=$(realpath "$build")
-  cmake --build "$build" --target manual_page >&2
+  cmake --build "$build" --target manual_page musclesim_python >&2
 fi
 make_debian "$1"
 mkdir -p "$debian/packages"
@@ -76,9 +77,22 @@ say "pkg-config"
 # shellcheck disable=SC2046
 g++ -std=c++20 /usr/share/doc/musclesim/examples/two_muscle_joint.cpp -o /tmp/with_pkg_config $(pkg-config --cflags --libs musclesim)
 cd /tmp/run && /tmp/with_pkg_config >/dev/null
-say "goes away"
+say "Python module alone"
+cp /tmp/run/out/run.csv /tmp/program.csv
 apt-get -qq remove --yes musclesim libmusclesim-dev >/dev/null
+cd /packages
+apt-get -qq install --yes --no-install-recommends ./python3-musclesim_*.deb python3-matplotlib >/dev/null
+mkdir /tmp/python && cd /tmp/python
+test "$(wc -l </usr/share/doc/python3-musclesim/examples/elbow.py)" -lt 25
+MPLBACKEND=Agg python3 /usr/share/doc/python3-musclesim/examples/elbow.py | tee causes.txt
+grep -x "causes: .'valve_lag@all'." causes.txt
+test -s elbow.svg
+python3 -c 'import musclesim; musclesim.run("elbow", "random", 1, record="run.csv")'
+cmp run.csv /tmp/program.csv
+say "goes away"
+apt-get -qq remove --yes python3-musclesim >/dev/null
 test ! -e /usr/bin/musclesim
+test ! -e /usr/lib/python3/dist-packages/musclesim
 say "all passed"
 TRY
 chmod +x "$debian/packages/try.sh"

@@ -35,6 +35,11 @@ build_packages=(
   "libx11-dev             whether there is a display"
   "libimgui-dev           sliders and plots in the window"
 )
+python_packages=(
+  "pybind11-dev           the Python module"
+  "python3-dev            the Python module"
+  "python3-numpy          the Python module"
+)
 test_packages=(
   "libgtest-dev           test framework"
   "python3                the test of scripts/check_layers.py"
@@ -43,6 +48,8 @@ test_packages=(
   "ffmpeg                 videos"
   "xvfb                   a display for the tests of the window"
   "xdotool                keys and mouse for the tests of the window"
+  "${python_packages[@]}"
+  "python3-matplotlib     the examples in Python"
 )
 check_packages=(
   "clang-format           checks the layout of the sources"
@@ -57,6 +64,7 @@ package_packages=(
   "help2man               manual page"
   "dpkg-dev               Debian packages"
   "debootstrap            a fresh Debian to try them in"
+  "${python_packages[@]}"
 )
 
 fail() {

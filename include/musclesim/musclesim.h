@@ -67,5 +67,6 @@
 #include "musclesim/robot/world.h"
 #include "musclesim/simulation/ensemble.h"
 #include "musclesim/simulation/replay.h"
+#include "musclesim/simulation/run_loop.h"
 #include "musclesim/simulation/simulation.h"
 #include "musclesim/simulation/stepper.h"

@@ -1,0 +1,84 @@
+#include "musclesim/diagnosis/diagnosis.h"
+
+#include <pybind11/stl.h>
+
+#include <mutex>
+#include <optional>
+
+#include "bindings.h"
+#include "conversions.h"
+#include "interruption.h"
+#include "musclesim/effect/effects_file.h"
+#include "replay_options.h"
+
+namespace musclesim::python {
+
+namespace {
+
+/// The newest progress, on its way from the diagnosis to the caller's thread.
+class ProgressBox {
+ public:
+  void put(const DiagnosisProgress& progress) {
+    const std::lock_guard lock(mutex_);
+    newest_ = progress;
+  }
+  std::optional<DiagnosisProgress> take() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(newest_, std::nullopt);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::optional<DiagnosisProgress> newest_;
+};
+
+py::dict answerOf(const Diagnosis& diagnosis) {
+  py::dict answer;
+  answer["data"] = fromJson(diagnosisJson(diagnosis));
+  answer["report"] = diagnosisReport(diagnosis);
+  answer["summary"] = diagnosisSummary(diagnosis);
+  answer["effects"] = fromJson(effectsText(diagnosis.chosen_effects)).attr("__getitem__")("effects");
+  return answer;
+}
+
+/// Recordings that were made in memory get names: the answer speaks of them.
+std::vector<Recording> named(std::vector<Recording> recordings) {
+  for (std::size_t i = 0; i < recordings.size(); ++i)
+    if (recordings[i].file.empty()) recordings[i].file = "recording " + std::to_string(i + 1);
+  return recordings;
+}
+
+py::dict diagnoseRecordings(const std::vector<Recording>& recordings, const py::dict& model, const std::vector<std::string>& candidates,
+                            const std::vector<std::string>& exclude, const std::vector<std::string>& tune, int max_effects, int threads,
+                            std::uint64_t seed, const py::object& earlier, const py::object& progress) {
+  DiagnosisOptions options;
+  options.model = replayOptionsFrom(model);
+  options.candidates = candidates;
+  options.exclude = exclude;
+  options.tune = tune;
+  options.max_effects = max_effects;
+  options.job_count = threads;
+  options.seed = seed;
+  options.earlier = effectsFrom(earlier);
+  ProgressBox box;
+  options.progress = [&](const DiagnosisProgress& now) { box.put(now); };
+  Diagnosis diagnosis;
+  watched(
+      [&](const std::function<bool()>& interrupted) {
+        options.interrupted = interrupted;
+        diagnosis = diagnose(named(recordings), options);
+      },
+      [&] {
+        if (const auto now = box.take(); now && !progress.is_none()) progress(now->phase, now->done, now->expected);
+      });
+  return answerOf(diagnosis);
+}
+
+}  // namespace
+
+void bindDiagnosis(py::module_& module) {
+  module.def("_diagnose", &diagnoseRecordings, py::arg("recordings"), py::arg("model"), py::arg("candidates"), py::arg("exclude"),
+             py::arg("tune"), py::arg("max_effects"), py::arg("threads"), py::arg("seed"), py::arg("earlier"), py::arg("progress"));
+}
+
+}  // namespace musclesim::python

@@ -1,0 +1,72 @@
+"""The sim-to-real gap: where it arises, which effect causes it, and how much of it that effect removes."""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import Any, Callable, Iterable, Sequence
+
+from . import _musclesim
+from ._musclesim import Recording
+from .recording import _as_recording, _checked
+
+
+class Diagnosis:
+    """The answer of diagnose(). str(diagnosis) is a summary.
+
+    data: the contents of diagnosis.json (docs/reference/diagnosis_json.md).  report: a page in HTML.  effects: what was found, as
+    Simulation(effects=...), replay(effects=...) and effects files take it.
+    """
+
+    def __init__(self, answer: dict[str, Any]) -> None:
+        self.data: dict[str, Any] = answer["data"]
+        self.report: str = answer["report"]
+        self.summary: str = answer["summary"]
+        self.effects: list[dict[str, Any]] = answer["effects"]
+
+    @property
+    def verdict(self) -> str:
+        """ "no_gap", "effects_found", "unexplained" or "not_excited"."""
+        return str(self.data["verdict"])
+
+    @property
+    def causes(self) -> list[str]:
+        """The effects that were found, as "id@component"."""
+        return list(self.data.get("chosen", []))
+
+    @property
+    def probabilities(self) -> dict[str, float]:
+        """Probability of every effect that has at least 0.01, by "id@component"."""
+        return {f"{e['id']}@{e['component']}": e["probability"] for e in self.data.get("effects", [])}
+
+    def save(self, folder: str | os.PathLike[str]) -> None:
+        """Writes diagnosis.json, report.html and effects.json into a folder, which is made if it is missing."""
+        os.makedirs(folder, exist_ok=True)
+        found = {"format": "musclesim-effects-1", "effects": self.effects}
+        for name, text in (("diagnosis.json", json.dumps(self.data, indent=2)), ("report.html", self.report),
+                           ("effects.json", json.dumps(found, indent=2))):
+            with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
+                file.write(text)
+
+    def __str__(self) -> str:
+        return self.summary
+
+    def __repr__(self) -> str:
+        return f"<musclesim.Diagnosis: {self.verdict}, causes {self.causes}>"
+
+
+def diagnose(recordings: Recording | str | os.PathLike[str] | Iterable[Recording | str | os.PathLike[str]], *,
+             candidates: Sequence[str] = (), exclude: Sequence[str] = (), tune: Sequence[str] = (), max_effects: int = 4, threads: int = 0,
+             seed: int = 1, earlier: Any = None, progress: Callable[[str, int, int], Any] | None = None, **model: Any) -> Diagnosis:
+    """Finds from recordings of one plant where they differ from the model and which effects explain it.
+
+    recordings: Recordings or their files.  candidates, exclude: ids of effects to consider (default: the whole catalogue) or not to.
+    tune: parameters of the model that nobody measured.  max_effects: largest number of effects in an explanation, 1..6.  threads: 0: one
+    per core; the answer does not depend on it.  earlier: effects of an earlier finding, to begin with.  progress(phase, done, expected):
+    called a few times a second by the calling thread; an exception that it raises ends the diagnosis.  **model: as for replay.
+    Raises BadParameter, BadFile, Diverged, KeyboardInterrupt.
+    """
+    if isinstance(recordings, (Recording, str, os.PathLike)):
+        recordings = [recordings]
+    return Diagnosis(_musclesim._diagnose([_as_recording(one) for one in recordings], _checked(model), list(candidates), list(exclude),
+                                          list(tune), max_effects, threads, seed, earlier, progress))
