@@ -192,6 +192,17 @@ void Parameters::requireAllKnown() const {
     if (!find(given.name)) refuse(given, unknownText(given.name));
 }
 
+std::vector<std::string> Parameters::dropUnknownOfFiles(const std::vector<std::string>& groups) {
+  std::vector<std::string> dropped;
+  std::erase_if(overrides_, [&](const Override& given) {
+    const std::string group = given.name.substr(0, given.name.find('.'));
+    if (given.file.empty() || find(given.name) || std::ranges::find(groups, group) == groups.end()) return false;
+    dropped.push_back(given.name);
+    return true;
+  });
+  return dropped;
+}
+
 void Parameters::requireScalable(const std::string& name) const {
   const Parameter* parameter = find(name);
   if (!parameter) throw BadParameter("tolerance: " + unknownText(name));

@@ -10,8 +10,11 @@
 #include "musclesim/controller/aasm.h"
 #include "musclesim/controller/asm.h"
 #include "musclesim/controller/hold.h"
+#include "musclesim/controller/position.h"
 #include "musclesim/controller/random_pressures.h"
+#include "musclesim/controller/replay.h"
 #include "musclesim/controller/task.h"
+#include "musclesim/controller/test_signal.h"
 
 namespace musclesim {
 
@@ -29,12 +32,21 @@ std::unique_ptr<Controller> build(const ControllerRequest& request) {
 
 /// The controllers by name. Guarded by a mutex, because simulations run in several threads.
 struct Registry {
+  Registry() {
+    for (const TestSignalInfo& signal : testSignals())
+      entries[signal.name] = {signal.description, [name = signal.name](const ControllerRequest& request) {
+                                return std::make_unique<TestSignalController>(name, request);
+                              }};
+  }
+
   std::mutex mutex;
   std::map<std::string, Entry> entries = {
       {"aasm", {"attractor selection with attractors that learn during operation", build<AasmController>}},
       {"asm", {"attractor selection by fluctuation (Eq. 5-9)", build<AsmController>}},
       {"hold", {"constant pressures", build<HoldController>}},
+      {"position", {"joint angles or the hand's height follow a target, by antagonists", build<PositionController>}},
       {"random", {"new random pressures at every decision, the baseline", build<RandomPressuresController>}},
+      {"schedule", {"the commands of a recording or a table (--commands)", build<ReplayController>}},
   };
 };
 

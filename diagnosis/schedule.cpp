@@ -7,6 +7,7 @@
 #include <functional>
 #include <numbers>
 
+#include "../controller/waves.h"
 #include "musclesim/base/error.h"
 
 namespace musclesim {
@@ -23,8 +24,7 @@ struct ScheduleShape {
 };
 
 double triangle(double time_s, double period_s) {
-  const double phase = time_s / period_s - std::floor(time_s / period_s);
-  return phase < 0.5 ? 4 * phase - 1 : 3 - 4 * phase;
+  return triangleWave(time_s / period_s);
 }
 
 double sign(int muscle) {

@@ -41,11 +41,23 @@ const std::vector<Quantity>& quantities() {
   std::vector<Unit> commands = pressures;
   commands.push_back({"V", 1, FullScale::command_V});
   static const std::vector<Quantity> all = {
-      {"time", Component::none, {{"s"}}},         {"command", Component::muscle, commands},
-      {"pressure", Component::muscle, pressures}, {"force", Component::muscle, {{"N"}}},
-      {"length", Component::muscle, lengths},     {"angle", Component::joint, {{"deg"}, {"rad", deg_per_rad}}},
-      {"hand", Component::axis, lengths},         {"target", Component::axis, lengths},
+      {"time", Component::none, {{"s"}}},
+      {"command", Component::muscle, commands},
+      {"pressure", Component::muscle, pressures},
+      {"force", Component::muscle, {{"N"}}},
+      {"length", Component::muscle, lengths},
+      {"angle", Component::joint, {{"deg"}, {"rad", deg_per_rad}}},
+      {"hand", Component::axis, lengths},
+      {"target", Component::axis, lengths},
       {"activity", Component::none, {{""}}},
+      {"target", Component::joint, {{"deg"}, {"rad", deg_per_rad}}},
+      // Velocities and accelerations of what has these names.
+      {"length", Component::muscle, {{"mm_per_s"}}},
+      {"length", Component::muscle, {{"mm_per_s2"}}},
+      {"angle", Component::joint, {{"deg_per_s"}}},
+      {"angle", Component::joint, {{"deg_per_s2"}}},
+      {"hand", Component::axis, {{"mm_per_s"}}},
+      {"hand", Component::axis, {{"mm_per_s2"}}},
   };
   return all;
 }
@@ -170,12 +182,14 @@ std::optional<Column> matchRest(const Quantity& quantity, std::string_view rest)
 Column parseColumnName(const std::string& name) {
   if (name.empty()) throw BadParameter("a column has no name; allowed: " + allPatterns());
   const std::string_view quantity_name = std::string_view(name).substr(0, name.find('_'));
+  std::string patterns;  // of all quantities of this name
   for (const auto& quantity : quantities()) {
     if (quantity.name != quantity_name) continue;
     if (auto column = matchRest(quantity, std::string_view(name).substr(quantity_name.size()))) return *column;
-    throw BadParameter(
-        fmt::format("column {}: unknown unit or component; allowed: {}{}", inQuotes(name), pattern(quantity), suggestion(name)));
+    patterns += (patterns.empty() ? "" : ", ") + pattern(quantity);
   }
+  if (!patterns.empty())
+    throw BadParameter(fmt::format("column {}: unknown unit or component; allowed: {}{}", inQuotes(name), patterns, suggestion(name)));
   throw BadParameter(fmt::format("column {}: unknown quantity; allowed: {}{}", inQuotes(name), allPatterns(), suggestion(name)));
 }
 

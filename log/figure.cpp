@@ -20,6 +20,7 @@ namespace {
 constexpr double figure_width = 960, figure_height = 640;
 constexpr double left_margin = 78, right_margin = 76, top_margin = 46;
 constexpr double panel_gap = 16, time_axis_height = 44, bottom_margin = 10;
+constexpr double stacked_height = 190;      ///< of a panel in a figure of chosen signals
 constexpr double upper_share_ratio = 0.55;  ///< share of the upper panel in the height of both
 
 std::vector<LegendEntry> legendEntries(const std::vector<Curve>& curves) {
@@ -31,12 +32,15 @@ std::vector<LegendEntry> legendEntries(const std::vector<Curve>& curves) {
 /// Draws one recording's panels.
 class RunFigure {
  public:
-  RunFigure(const Recording& recording, const std::string& title) : recording_(recording), svg_(figure_width, figure_height, title) {
+  RunFigure(const Recording& recording, const std::string& title, double height = figure_height)
+      : recording_(recording), svg_(figure_width, height, title) {
     svg_.text({left_margin, 28}, title, {title_size, SvgAnchor::start, "#111111", true, false});
     for (const double time_s : {recording.time_s.front(), recording.time_s.back()}) time_extent_.add(time_s);
   }
 
   std::string draw(const Panel& upper, const Panel& lower);
+  /// Panels one below the other, each under its legend.
+  std::string draw(const std::vector<Panel>& panels);
 
  private:
   Axis timeAxis(const SvgBox& box) const { return {time_extent_, box.left, box.right(), 10, false}; }
@@ -82,6 +86,28 @@ std::string RunFigure::draw(const Panel& upper, const Panel& lower) {
   return svg_.document();
 }
 
+std::string RunFigure::draw(const std::vector<Panel>& panels) {
+  const double width = figure_width - left_margin - right_margin;
+  double top = top_margin;
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const auto legend = legendRows(legendEntries(panels[i].curves), width);
+    drawLegend(svg_, legend, left_margin, top);
+    top += legend_height * static_cast<double>(legend.size());
+    drawPanel(panels[i], {left_margin, top, width, stacked_height}, i + 1 == panels.size());
+    top += stacked_height + panel_gap;
+  }
+  return svg_.document();
+}
+
+/// The height of a figure of such panels.
+double stackedHeight(const std::vector<Panel>& panels) {
+  const double width = figure_width - left_margin - right_margin;
+  double height = top_margin + time_axis_height + bottom_margin;
+  for (const Panel& panel : panels)
+    height += stacked_height + panel_gap + legend_height * static_cast<double>(legendRows(legendEntries(panel.curves), width).size());
+  return height;
+}
+
 void RunFigure::drawPanel(const Panel& panel, const SvgBox& box, bool with_time_labels) {
   const Axis axis = valueAxis(panel.curves, box, false, panel.is_fraction);
   const Axis right_axis = valueAxis(panel.right_curves, box, true, false);
@@ -118,6 +144,12 @@ void RunFigure::drawRightAxis(const Axis& axis, const Panel& panel, const SvgBox
 std::string runFigureSvg(const Recording& recording, const std::vector<Color>& muscle_colors, const std::string& title) {
   if (recording.time_s.empty()) return Svg(figure_width, figure_height, title).document();
   return RunFigure(recording, title).draw(upperPanel(recording, muscle_colors), lowerPanel(recording, muscle_colors));
+}
+
+std::string signalsFigureSvg(const Recording& recording, const std::vector<std::string>& signals, const std::vector<Color>& muscle_colors,
+                             const std::string& title) {
+  const std::vector<Panel> panels = signalPanels(recording, signals, muscle_colors);
+  return RunFigure(recording, title, stackedHeight(panels)).draw(panels);
 }
 
 void writeRunFigure(const Recording& recording, const std::vector<Color>& muscle_colors, const std::string& title,

@@ -35,4 +35,11 @@ Panel upperPanel(const Recording& recording, const std::vector<Color>& muscle_co
 /// The lower panel: the pressures, or the commands if no pressure is measured.
 Panel lowerPanel(const Recording& recording, const std::vector<Color>& muscle_colors);
 
+/// Chosen signals, one panel per quantity and unit; see signalsFigureSvg.
+std::vector<Panel> signalPanels(const Recording& recording, const std::vector<std::string>& signals,
+                                const std::vector<Color>& muscle_colors);
+
+/// The signals of a recording that have one of these names; a name may end in *. Throws BadParameter for a name that none has.
+std::vector<const Signal*> signalsNamed(const Recording& recording, const std::vector<std::string>& names);
+
 }  // namespace musclesim

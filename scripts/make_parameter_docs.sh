@@ -116,6 +116,18 @@ tables() {
   echo
   echo 'There is one `hold.pressure_<i>` for each muscle; its default is the value of `hold.pressure`.'
   config --robot rig --controller hold | rows hold | table
+  local signal
+  for signal in steps ramp triangle sine chirp prbs multisine staircase reversals; do
+    section "Controller \`$signal\`"
+    echo
+    echo "There is one \`$signal.level_<i>\` for each muscle and one \`$signal.amplitude_<k>\` for each channel; their defaults are the values without number."
+    config --robot rig --controller "$signal" | rows "$signal" | grep -v '_0	' | table
+  done
+  section 'Controller `position`'
+  echo
+  echo 'There is one `position.level_<i>` for each muscle. For the elbow, and with `position.quantity` = `height`:'
+  config --robot elbow --controller position | rows position | grep -v '\.level_' | table
+  config --robot elbow --controller position --set position.quantity=height | rows position | grep per_mm | table
   section 'Controller `random`'
   echo
   echo 'It has no parameters.'
@@ -135,7 +147,8 @@ trap - EXIT
 controllers=docs/reference/controllers.md
 new="$(mktemp "$controllers.XXXXXX")"
 trap 'rm -f "$new"' EXIT
-{ config --controller asm --task height; config --controller asm --task reach; config --controller aasm; } | rows '.*' |
+{ config --controller asm --task height; config --controller asm --task reach; config --controller aasm
+  config --robot elbow --controller position; config --robot elbow --controller position --set position.quantity=height; } | rows '.*' |
   awk -F'\t' '
     NR == FNR { text[$1] = $2 ($3 == "" ? "" : " " $3); next }
     split($0, cell, " [|] ") == 3 && cell[2] ~ /^`[a-z_.A-Z]+`$/ {

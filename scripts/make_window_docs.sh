@@ -74,13 +74,13 @@ measure() {
 import json
 last = json.loads(open("log.jsonl").read().splitlines()[-1])
 verdict = json.load(open("verdict.json"))
-print(f'{last["frames_per_s"]:.1f} | {verdict["wall_per_simulated_s"]:.3f} | {"4" if last["smooth"] else "1"}')
+print(f'{last["frames_per_s"]:.1f} | {verdict["real_time_factor"]:.3f} | {"4" if last["smooth"] else "1"}')
 PYTHON
 }
 {
   echo "A window of 1024 x 768 pixels with panel, 20 s of the height task, $(nproc) cores, drawn in software (llvmpipe under Xvfb, which needs processor time, too); load of the machine at the beginning: $(cut -d' ' -f1 /proc/loadavg), priority of these programs: nice $(nice)."
   echo
-  echo "| run | pictures per second | wall time / simulated time | samples per pixel |"
+  echo "| run | pictures per second | simulated time / wall time | samples per pixel |"
   echo "|---|---|---|---|"
   echo "| arm, si, at real time | $(measure 20) |"
   echo "| arm, si, without panel, so that the scene fills the window | $(xdotool mousemove 100 100; (until [[ -s log.jsonl ]]; do sleep 0.1; done; xdotool key Tab) & sleep 0.2; measure 20) |"

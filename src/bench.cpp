@@ -14,6 +14,8 @@
 #include "musclesim/base/file.h"
 #include "musclesim/base/random.h"
 #include "musclesim/base/units.h"
+#include "output_folder.h"
+#include "progress.h"
 
 namespace musclesim::program {
 
@@ -23,7 +25,7 @@ struct BenchArguments {
   double duration_s = 2, time_limit_s = 5;
   int repeat_count = 3;
   std::vector<int> muscle_counts = {1, 2, 5, 10, 15, 20, 25, 30};
-  std::string out = "docs/reference";
+  std::optional<std::string> out;
 };
 
 constexpr double shortest_cpu_s =
@@ -116,27 +118,31 @@ int bench(const ModelOptions& model, const BenchArguments& arguments) {
   const std::vector<Candidate> all = candidates();
   std::vector<std::vector<std::vector<BenchRun>>> runs(all.size());  // by candidate, number of muscles, repeat
   for (auto& of_candidate : runs) of_candidate.resize(arguments.muscle_counts.size());
+  const int all_count = arguments.repeat_count * static_cast<int>(arguments.muscle_counts.size() * all.size());
+  int done_count = 0;
+  CaseProgress progress(model.quiet);
   // Each repeat measures everything once, so that other load on the machine for a while disturbs only one repeat of each point.
   for (int repeat = 0; repeat < arguments.repeat_count; ++repeat)
     for (std::size_t n = 0; n < arguments.muscle_counts.size(); ++n)
       for (std::size_t c = 0; c < all.size(); ++c) {
+        ++done_count;
         if (repeat > 0 && runs[c][n].back().cut_short) continue;  // too slow to be repeated
         runs[c][n].push_back(measure(all[c], arguments.muscle_counts[n], arguments));
         if (interruptSignal()) return interrupted_base + interruptSignal();
-        say(model, fmt::format("{} of {}: {} muscles, {}: r = {:.3g}", repeat + 1, arguments.repeat_count, arguments.muscle_counts[n],
-                               all[c].name, runs[c][n].back().ratio));
+        progress.show(done_count, all_count);
       }
   std::vector<BenchCurve> curves;
   for (std::size_t c = 0; c < all.size(); ++c) {
     curves.push_back({all[c].name, {}});
     for (const auto& repeats : runs[c]) curves.back().runs.push_back(median(repeats));
   }
-  const std::filesystem::path folder(arguments.out);
-  std::filesystem::create_directories(folder / "figures");
+  const std::filesystem::path folder = outputFolder(arguments.out, "bench");
+  makeFolder(folder / "figures");
   const std::string table = benchTable(curves, arguments.duration_s, shortest_cpu_s, arguments.time_limit_s);
   replaceFile((folder / "performance.md").string(), table);
   replaceFile((folder / "figures" / "performance.svg").string(), benchFigure(curves));
-  fmt::print("{}", table);
+  fmt::print("{}\ntable   {}\nfigure  {}\n", table, (folder / "performance.md").string(),
+             (folder / "figures" / "performance.svg").string());
   if (model.json) fmt::print("{}\n", benchJson(curves).dump());
   return done;
 }
@@ -153,7 +159,8 @@ Action addBench(CLI::App& command, ModelOptions& model) {
   command.add_option("--muscles", arguments->muscle_counts, "Numbers of muscles, separated by commas")
       ->delimiter(',')
       ->capture_default_str();
-  command.add_option("--out", arguments->out, "Folder for performance.md and figures/performance.svg")->capture_default_str();
+  command.add_option("--out", arguments->out,
+                     "Folder for performance.md and figures/performance.svg (default: log/runs/<date-time>-bench)");
   command.add_flag("--quiet", model.quiet, "No messages on standard error except errors");
   command.add_flag("--json", model.json, "Print the results as one JSON object, the last line of standard output");
   return [&model, arguments] { return bench(model, *arguments); };

@@ -92,7 +92,7 @@ std::string benchTable(const std::vector<BenchCurve>& curves, double duration_s,
       "# Performance\n\nWritten by `musclesim bench` (musclesim " MUSCLESIM_VERSION
       "); do not edit. r = CPU time of one thread over simulated time, of the RoboticArm under random\npressures, new ones every 0.25 s of "
       "true time. r < 1 is faster than real time. `original` physics is 31.6 times slower than true\ntime: its r is per second of its own "
-      "clock, as in the paper.\n\n";
+      "clock, as in the paper. The real-time factor of `run`, simulated over wall time, is about 1/r.\n\n";
   text += fmt::format(
       "One process measured all of this; every number is the median of its repeats over {:g} true seconds or, where that is longer, {:g} s "
       "of CPU time. `*`: cut short after {:g} s of CPU time and not repeated. Exponent: b of the power law a n^b, fitted to the points "
@@ -168,6 +168,7 @@ nlohmann::json benchJson(const std::vector<BenchCurve>& curves) {
   for (const BenchCurve& curve : curves)
     for (const BenchRun& run : curve.runs) {
       json["ratio"][curve.name][std::to_string(run.muscle_count)] = run.ratio;
+      json["real_time_factor"][curve.name][std::to_string(run.muscle_count)] = 1 / run.ratio;
       json["spread"][curve.name][std::to_string(run.muscle_count)] = run.spread;
     }
   return json;

@@ -39,8 +39,11 @@ CommandLine::CommandLine()
     CLI::App* command = app_.add_subcommand(name, description);
     commands_.emplace_back(command, addTo(*command));
   };
+  add("schedule", "Writes a test signal as a table of commands, for a machine or for run --commands",
+      [&](CLI::App& command) { return addSchedule(command, model_); });
   add("replay", "Simulates a recording's commands and compares the result with its measurements",
       [&](CLI::App& command) { return addReplay(command, model_); });
+  add("figure", "Draws signals of a recording over time", [&](CLI::App& command) { return addFigure(command, model_); });
   add("robot", "Checks, shows, begins, exports or imports a robot file", [&](CLI::App& command) { return addRobot(command, model_); });
   add("import", "Turns a table of measurements into a recording", addImport);
   add("effects", "Lists the effects that can be added to the model, or describes one", addEffects);

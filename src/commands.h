@@ -25,7 +25,11 @@ using Action = std::function<int()>;
 
 /// `run`, which is also the default command: its options are added to both.
 Action addRun(CLI::App& app, ModelOptions& model);
+/// `schedule`: writes a test signal as a table of commands.
+Action addSchedule(CLI::App& command, ModelOptions& model);
 Action addReplay(CLI::App& command, ModelOptions& model);
+/// `figure`: draws signals of a recording.
+Action addFigure(CLI::App& command, ModelOptions& model);
 Action addDiagnose(CLI::App& command, ModelOptions& model);
 /// `effects`: the catalogue of effects.
 Action addEffects(CLI::App& command);

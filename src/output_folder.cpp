@@ -42,9 +42,18 @@ void requireWritable(const fs::path& folder) {
   if (access(folder.c_str(), W_OK | X_OK) != 0) throw IoError(fmt::format("{}: the folder is not writable", folder.string()));
 }
 
-void prepareRecording(const fs::path& csv) {
+bool prepareRecording(const fs::path& csv) {
   if (csv.extension() != ".csv") throw BadParameter("recording", csv.string(), "end in .csv");
-  if (csv.has_parent_path()) makeFolder(csv.parent_path());
+  if (!csv.has_parent_path() || fs::exists(csv.parent_path())) return false;
+  makeFolder(csv.parent_path());
+  return true;
+}
+
+void requireUnfinished(const fs::path& csv) {
+  std::ifstream text(sidecarPath(csv.string()));
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  if (json.is_object() && json.value("complete", nlohmann::json()) == true)
+    throw BadParameter(fmt::format("{} holds a finished run: choose another folder, or --overwrite it", csv.parent_path().string()));
 }
 
 /// Looks at the sidecar, because the table of a killed run may be incomplete.

@@ -21,7 +21,11 @@ void makeFolder(const std::filesystem::path& folder);
 void requireWritable(const std::filesystem::path& folder);
 
 /// Throws BadParameter unless the path of a recording ends in .csv. Creates its folder; throws IoError if it cannot be created.
-void prepareRecording(const std::filesystem::path& csv);
+/// Returns true if there was no such folder.
+bool prepareRecording(const std::filesystem::path& csv);
+
+/// Throws BadParameter if there is a recording of a run that has been finished; the message names --overwrite.
+void requireUnfinished(const std::filesystem::path& csv);
 
 /// Throws BadParameter if writing a recording there would replace a measured recording or a file that is not a recording.
 void requireReplaceable(const std::filesystem::path& csv);

@@ -1,6 +1,7 @@
 /// `musclesim run`: the paper's program. A robot, a controller, a log and a figure; a window, pictures, or neither.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <utility>
@@ -9,13 +10,16 @@
 #include "interrupt.h"
 #include "musclesim/base/color.h"
 #include "musclesim/base/error.h"
+#include "musclesim/base/file.h"
 #include "musclesim/base/units.h"
 #include "musclesim/controller/controller_registry.h"
+#include "musclesim/controller/test_signal.h"
 #include "musclesim/log/figure.h"
 #include "musclesim/log/recorder.h"
 #include "output_folder.h"
 #include "progress.h"
 #include "run_output.h"
+#include "run_signals.h"
 #include "window.h"
 
 namespace musclesim::program {
@@ -36,9 +40,18 @@ ControllerRequest controllerRequest(Simulation& simulation, const RunOptions& op
   const double interval_s = options.decision_interval_s.value_or(defaultDecisionIntervalS(simulation.physics()));
   if (!(interval_s > 0 && std::isfinite(interval_s)))
     throw BadParameter("decision-interval", fmt::format("{} s", interval_s), "be positive and finite");
-  ControllerRequest request{
-      simulation.parameters(), simulation.robot().actuatorCount(), simulation.stepS(), interval_s, simulation.seed(), options.task, {}};
+  ControllerRequest request{simulation.parameters()};
+  request.muscle_count = simulation.robot().actuatorCount();
+  request.step_s = simulation.stepS();
+  request.decision_interval_s = interval_s;
+  request.seed = simulation.seed();
+  request.task = options.task.value_or(request.task);
   if (!options.target_mm.empty()) request.target_mm = Vector(options.target_mm[0], options.target_mm[1], options.target_mm[2]);
+  request.robot = &simulation.robot();
+  request.commands_file = options.commands.value_or("");
+  request.targets_file = options.targets.value_or("");
+  request.channels = options.channels.value_or("");
+  request.interpolate = options.interpolate == "linear";
   return request;
 }
 
@@ -56,10 +69,25 @@ void requireUsedOptions(const RunOptions& options) {
   options.pictures.requireUsed(without_window);
 }
 
-/// The duration without --duration: 300 s as published; shorter for a picture or video; with a window until it is closed.
-double defaultDurationS(const RunOptions& options) {
+/// The duration without --duration: to the end of the controller's commands, if they have one; else 300 s as published; shorter for a
+/// picture or video; with a window until it is closed.
+double defaultDurationS(const RunOptions& options, const Controller& controller) {
   constexpr double batch_s = 300, pictures_s = 20;
+  if (const auto end_s = controller.endS(); end_s && !hasWindow(options)) return *end_s;
   return options.simple ? batch_s : hasWindow(options) ? longest_s : pictures_s;
+}
+
+/// Refuses options of one kind of controller where another would not heed them.
+void requireHeeded(const RunOptions& options) {
+  const std::string& controller = *options.controller;
+  const bool is_signal = std::ranges::any_of(testSignals(), [&](const auto& signal) { return signal.name == controller; });
+  const auto require = [&](const char* option, bool given, bool heeded, const char* who) {
+    if (given && !heeded) throw BadParameter(fmt::format("{} is for {}; controller {} does not heed it", option, who, controller));
+  };
+  require("--commands", options.commands.has_value(), controller == "schedule", "--controller schedule");
+  require("--interpolate", options.interpolate.has_value(), controller == "schedule", "--controller schedule");
+  require("--targets", options.targets.has_value(), controller == "position", "--controller position");
+  require("--channels", options.channels.has_value(), controller == "position" || is_signal, "test signals and --controller position");
 }
 
 /// How a run ended.
@@ -74,10 +102,14 @@ class Run {
  public:
   Run(const ModelOptions& model, const RunOptions& options) : model_(model), options_(options), simulation_(simulationOptions(model)) {
     simulation_.build(model.robot.value_or("arm"));
+    if (!options_.controller) options_.controller = options.commands ? "schedule" : defaultController(robot(), options);
+    requireHeeded(options_);
     addController();
+    noteUnused();
     simulation_.parameters().requireAllKnown();
-    duration_s_ = options.duration_s.value_or(defaultDurationS(options));
+    duration_s_ = options.duration_s.value_or(defaultDurationS(options_, *controller_));
     requireDuration();
+    if (options.against) against_ = readRecording(*options.against);
   }
 
   Simulation& simulation() { return simulation_; }
@@ -87,17 +119,24 @@ class Run {
     // The first decision comes before the files are opened, because the columns depend on what the controller reports.
     const State first_state = robot().getState();
     const musclesim::Action first_action = controller_->output(first_state);
-    const fs::path csv = recordingPath(options_, simulation_.seed());
+    const fs::path csv = recordingPath(options_, simulation_);
     requireReplaceable(csv);
-    prepareRecording(csv);
+    if (options_.out && !options_.overwrite) requireUnfinished(csv);
+    if (options_.against) requireOther(csv, {*options_.against});
+    if (options_.commands) requireOther(csv, {*options_.commands});
+    signals_.emplace(robot(), *controller_, options_.record_signals, simulation_.stepS());
+    summary_.emplace(options_.summarise, signals_->names());
+    tracking_.emplace(signals_->names());
+    if (prepareRecording(csv) && options_.record) say(model_, fmt::format("made the folder {}", csv.parent_path().string()));
     addSpectator(first_state, csv);
-    Recorder recorder(csv.string(), describe(simulation_, options_, initial_state), columns());
+    Recorder recorder(csv.string(), describe(simulation_, options_, initial_state), signals_->names());
     say(model_, fmt::format("{} physics, stepper {}, {} internal steps of {:.4g} s per step of {:g} s, seed {}",
                             nameOf(simulation_.physics().kind), simulation_.stepper().name(), simulation_.substeps(),
                             simulation_.internalStepS(), simulation_.stepS(), simulation_.seed()));
     if (!simulation_.stepper().message().empty()) say(model_, simulation_.stepper().message());
     if (!options_.target_mm.empty() && !controller_->targetMm())
-      say(model_, fmt::format("warning: controller {} has no target; --target changes nothing", options_.controller));
+      say(model_, fmt::format("warning: controller {} has no target; --target changes nothing", *options_.controller));
+    for (const std::string& note : controller_->notes()) say(model_, fmt::format("controller {}: {}", *options_.controller, note));
     std::optional<Diverged> divergence;
     Progress progress(duration_s_, model_.quiet || hands_);
     try {
@@ -121,13 +160,22 @@ class Run {
  private:
   /// With a window, the user can take over from the controller.
   void addController() {
-    auto controller = makeController(options_.controller, controllerRequest(simulation_, options_));
+    auto controller = makeController(*options_.controller, controllerRequest(simulation_, options_));
     if (hasWindow(options_)) {
       auto hands = std::make_unique<ManualController>(std::move(controller), robot().actuatorCount());
       hands_ = hands.get();
       controller = std::move(hands);
     }
     controller_ = &simulation_.control(std::move(controller));
+  }
+
+  /// A configuration may hold parameters of other controllers and tasks, as --print-config lists them for these.
+  void noteUnused() {
+    std::vector<std::string> groups = registeredControllers();
+    for (const char* task : {"height_task", "reach_task"}) groups.push_back(task);
+    const auto unused = simulation_.parameters().dropUnknownOfFiles(groups);
+    if (!unused.empty())
+      say(model_, fmt::format("controller {} has no use for {} of the configuration", *options_.controller, fmt::join(unused, ", ")));
   }
 
   void addSpectator(const State& first_state, const fs::path& csv) {
@@ -173,7 +221,11 @@ class Run {
       svg = fs::path(*options_.out) / svg.filename();
     }
     const Recording recording = readRecording(csv.string());
-    writeRunFigure(recording, robot().namedMuscleColors(), recording.info.description, svg.string());
+    if (options_.figure_signals.empty())
+      writeRunFigure(recording, robot().namedMuscleColors(), recording.info.description, svg.string());
+    else
+      replaceFile(svg.string(),
+                  signalsFigureSvg(recording, options_.figure_signals, robot().namedMuscleColors(), recording.info.description));
     return svg;
   }
 
@@ -183,27 +235,6 @@ class Run {
                          fmt::format("lie between one step, {} s, and 1e7 s", simulation_.stepS()));
     if (options_.record_interval_s && !(*options_.record_interval_s > 0 && std::isfinite(*options_.record_interval_s)))
       throw BadParameter("record-interval", fmt::format("{} s", *options_.record_interval_s), "be positive and finite");
-  }
-
-  std::vector<std::string> columns() const {
-    std::vector<std::string> names = robot().signalNames();
-    if (controller_->targetMm())
-      for (const char* axis : {"x", "y", "z"})
-        if (!controller_->targetIsHeight() || *axis == 'y') names.push_back(fmt::format("target_{}_mm", axis));
-    if (controller_->activity()) names.push_back("activity");
-    return names;
-  }
-
-  std::vector<double> row(const State& state) const {
-    std::vector<double> values = robot().signalValues(state);
-    if (const auto target = controller_->targetMm()) {
-      if (controller_->targetIsHeight())
-        values.push_back(target->y());
-      else
-        values.insert(values.end(), target->data(), target->data() + 3);
-    }
-    if (const auto activity = controller_->activity()) values.push_back(*activity);
-    return values;
   }
 
   /// The paper's run loop: state, output, step. A row is logged before the world moves.
@@ -221,14 +252,18 @@ class Run {
       simulation_.step();
       warnOfGap();
     }
-    robot().step(action);  // so that the last row, too, has the forces at its own time
+    // The last row, too, has the command and the forces of its own time.
+    robot().step(simulation_.stepCount() > 0 ? controller_->output(robot().getState()) : action);
     record(recorder, progress, true);
   }
 
   void record(Recorder& recorder, Progress& progress, bool due) {
     const State state = robot().getState();
     score_.add(state.time_s, state, *controller_);
-    if (due) recorder.append(state.time_s, row(state));
+    const std::vector<double> row = signals_->row(state);
+    summary_->add(state.time_s, row);
+    tracking_->add(state.time_s, row);
+    if (due) recorder.append(state.time_s, row);
     progress.show(state.time_s, state.hand_mm ? fmt::format("height {:.0f} mm", state.hand_mm->y()) : "");
     if (spectator_) goes_on_ = spectator_->see(state);
   }
@@ -272,7 +307,9 @@ class Run {
     verdict["unsolved_steps"] = simulation_.stepper().unsolvedSteps();
     verdict["solver_messages"] = simulation_.solverMessageCount();
     verdict["wall_s"] = wall_s;
-    verdict["wall_per_simulated_s"] = simulation_.time_s() > 0 ? wall_s / simulation_.time_s() : 0.0;
+    verdict["real_time_factor"] = std::max(0.0, simulation_.time_s()) / wall_s;
+    if (const auto tracking = tracking_->json(); !tracking.empty()) verdict["tracking"] = tracking;
+    if (const auto signals = summary_->json(against_ ? &*against_ : nullptr); !signals.empty()) verdict["signals"] = signals;
     return verdict;
   }
 
@@ -285,9 +322,12 @@ class Run {
 
   void report(nlohmann::json verdict, const fs::path& csv, const fs::path& svg, const Ending& ending) const {
     sayEnding(ending);
-    const double ratio = verdict["wall_per_simulated_s"];
-    say(model_,
-        fmt::format("{:g} s simulated in {:.3g} s of wall time: r = {:.3g}", simulation_.time_s(), verdict["wall_s"].get<double>(), ratio));
+    say(model_, fmt::format("{:g} s simulated in {:.3g} s of wall time: {:.3g} x real time", simulation_.time_s(),
+                            verdict["wall_s"].get<double>(), verdict["real_time_factor"].get<double>()));
+    if (verdict.contains("tracking"))
+      for (const auto& [joint, error] : verdict["tracking"].items())
+        say(model_, fmt::format("{} is off its target by at most {:.3g} degrees from {:g} s on, RMS {:.3g} degrees", joint,
+                                error["largest_deg"].get<double>(), error["from_s"].get<double>(), error["rmse_deg"].get<double>()));
     if (verdict.contains("reached_at_s") && !verdict["reached_at_s"].is_null())
       say(model_, fmt::format("target reached (within {:g} mm) at {:.2f} s, held for {:.0f} % of the time since",
                               verdict["reached_within_mm"].get<double>(), verdict["reached_at_s"].get<double>(),
@@ -306,12 +346,16 @@ class Run {
   const Robot& robot() const { return const_cast<Simulation&>(simulation_).robot(); }
 
   const ModelOptions& model_;
-  const RunOptions& options_;
+  RunOptions options_;
   Simulation simulation_;
   Controller* controller_ = nullptr;
   double duration_s_;
   ManualController* hands_ = nullptr;     ///< null without a window
   std::unique_ptr<Spectator> spectator_;  ///< may be null
+  std::optional<RunSignals> signals_;
+  std::optional<SignalSummary> summary_;
+  std::optional<Tracking> tracking_;
+  std::optional<Recording> against_;
   Score score_;
   bool gap_warned_ = false, late_commands_warned_ = false, goes_on_ = true;
 };
@@ -332,12 +376,29 @@ void addOptions(CLI::App& command, RunOptions& options) {
   const std::string group = "Run";
   command.add_flag("--simple", options.simple, "Batch run without window or interaction (default: a window opens)")->group(group);
   command.add_flag("--verbose", options.verbose, "List all primitives and actuators on standard output")->group(group);
-  command.add_option("--controller", options.controller, "Controller: " + fmt::format("{}", fmt::join(registeredControllers(), ", ")))
+  command
+      .add_option("--controller", options.controller,
+                  fmt::format("Controller: {} (default: asm for the arm or with a task, else triangle; schedule with --commands)",
+                              fmt::join(registeredControllers(), ", ")))
+      ->group(group);
+  command
+      .add_option("--commands", options.commands, "Commands for --controller schedule: a recording, or a table with time_s and command_<i>")
+      ->group(group);
+  command
+      .add_option("--interpolate", options.interpolate,
+                  "Commands between two rows; hold: those of the earlier row (default); linear: on the straight line")
       ->group(group)
-      ->capture_default_str();
-  command.add_option("--task", options.task, "height: bring the hand to a height; reach: bring it to a point")
+      ->check(CLI::IsMember({"hold", "linear"}));
+  command
+      .add_option("--channels", options.channels,
+                  "What a test signal or the position controller moves: muscles 0,1, antagonists 0:1, groups elbow=0+2:1+3 (default: the "
+                  "robot's antagonists, else all muscles)")
       ->group(group)
-      ->capture_default_str();
+      ->option_text("CHANNEL,...");
+  command
+      .add_option("--targets", options.targets, "Targets for --controller position: a table with time_s and angles or the hand's height")
+      ->group(group);
+  command.add_option("--task", options.task, "height: bring the hand to a height (default); reach: bring it to a point")->group(group);
   command.add_option("--target", options.target_mm, "X,Y,Z of the target in mm (for the height task only Y counts)")
       ->group(group)
       ->delimiter(',')
@@ -347,15 +408,26 @@ void addOptions(CLI::App& command, RunOptions& options) {
                   "Time between decisions in s (default: 6 in original physics, 3 in si)")
       ->group(group);
   command
-      .add_option("--duration", options.duration_s,
-                  "Simulated time in s (default: until the window is closed; 300 with --simple; 20 with --screenshot or --video)")
+      .add_option(
+          "--duration", options.duration_s,
+          "Simulated time in s (default: until the window is closed; without one to the end of the commands, else 300 with --simple "
+          "and 20 with --screenshot or --video)")
       ->group(group);
   command.add_option("--record", options.record, "Recording to write, FILE.csv (default: run.csv in the run's folder)")->group(group);
   command
       .add_option("--record-interval", options.record_interval_s,
                   "Time between recorded rows in s, rounded to whole steps (default: every step)")
       ->group(group);
+  addList(command, "--record-signals", options.record_signals,
+          "Signals to record beside the commands (default: all); NAME_per_s and NAME_per_s2 are velocity and acceleration")
+      ->group(group);
+  addList(command, "--figure-signals", options.figure_signals, "Signals in the figure; NAME* stands for all that begin so")->group(group);
+  addList(command, "--summarise", options.summarise,
+          "Signals whose last value, mean, peak, trough, settling time and overshoot the verdict holds")
+      ->group(group);
+  command.add_option("--against", options.against, "Recording from which the summarised signals' RMSE is computed")->group(group);
   command.add_option("--out", options.out, "Folder of the run (default: log/runs/<date-time>-<task>-<seed>)")->group(group);
+  command.add_flag("--overwrite", options.overwrite, "Replace a finished run in the folder of --out")->group(group);
   command.add_flag("--print-config", options.print_config, "Print all parameters as TOML and exit")->group(group);
   command
       .add_option("--window-log", options.window_log,

@@ -12,20 +12,35 @@ namespace musclesim::program {
 
 namespace fs = std::filesystem;
 
-fs::path recordingPath(const RunOptions& options, std::uint64_t seed) {
+namespace {
+
+std::string taskOf(const RunOptions& options) {
+  return options.task.value_or("height");
+}
+
+}  // namespace
+
+std::string defaultController(const Robot& robot, const RunOptions& options) {
+  const bool has_task = options.task || !options.target_mm.empty();
+  return robot.name() == "arm" || has_task ? "asm" : "triangle";
+}
+
+fs::path recordingPath(const RunOptions& options, Simulation& simulation) {
   if (options.record) return *options.record;
-  return (options.out ? fs::path(*options.out) : freshFolder(fmt::format("{}-{}", options.task, seed))) / "run.csv";
+  const bool has_task = simulation.controller() && simulation.controller()->targetMm();
+  const std::string label = has_task ? taskOf(options) : simulation.robot().name() + "-" + *options.controller;
+  return (options.out ? fs::path(*options.out) : freshFolder(fmt::format("{}-{}", label, simulation.seed()))) / "run.csv";
 }
 
 RecordingInfo describe(Simulation& simulation, const RunOptions& options, const std::string& initial_state) {
   RecordingInfo info = describeModel(simulation, initial_state);
-  info.description = fmt::format("{} under {}", info.robot, options.controller);
+  info.description = fmt::format("{} under {}", info.robot, *options.controller);
   nlohmann::json extra = nlohmann::json::parse(info.extra_json);
-  extra["controller"] = options.controller;
+  extra["controller"] = *options.controller;
   // Without a target there is no task.
   if (simulation.controller() && simulation.controller()->targetMm()) {
-    info.description += fmt::format(", {} task", options.task);
-    extra["task"] = options.task;
+    info.description += fmt::format(", {} task", taskOf(options));
+    extra["task"] = taskOf(options);
   }
   info.extra_json = extra.dump();
   return info;

@@ -15,8 +15,11 @@ namespace musclesim::program {
 
 /// The options of `run` except the model options.
 struct RunOptions {
-  bool simple = false, verbose = false, print_config = false;
-  std::string controller = "asm", task = "height";
+  bool simple = false, verbose = false, print_config = false, overwrite = false;
+  std::optional<std::string> controller;  ///< defaultController() if not given
+  std::optional<std::string> task;        ///< "height" if not given
+  std::optional<std::string> commands, interpolate, channels, targets, against;
+  std::vector<std::string> record_signals, figure_signals, summarise;
   std::vector<double> target_mm;
   std::optional<double> decision_interval_s, record_interval_s;
   std::optional<double> duration_s;
@@ -24,11 +27,15 @@ struct RunOptions {
   PictureOptions pictures;
 };
 
-/// The path of the recording: --record, or run.csv in --out, or run.csv in a fresh folder log/runs/<date-time>-<task>-<seed>.
-/// Throws BadParameter for a name that does not end in .csv.
-std::filesystem::path recordingPath(const RunOptions& options, std::uint64_t seed);
+/// The controller of a run that names none: the paper's for its arm, and where a task or a target is given; for other robots a slow
+/// triangle of their antagonists, or of all muscles, which every robot can follow.
+std::string defaultController(const Robot& robot, const RunOptions& options);
 
-/// The sidecar of a run: robot, physics, seed, every parameter.
+/// The path of the recording: --record, or run.csv in --out, or run.csv in a fresh folder log/runs/<date-time>-<label>-<seed>. The label is
+/// the task if there is one, else robot and controller. Throws BadParameter for a name that does not end in .csv.
+std::filesystem::path recordingPath(const RunOptions& options, Simulation& simulation);
+
+/// The sidecar of a run: robot, physics, seed, every parameter. `options` name the controller.
 RecordingInfo describe(Simulation& simulation, const RunOptions& options, const std::string& initial_state);
 
 /// The paper's --verbose: all primitives and actuators, on standard output.

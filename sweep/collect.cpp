@@ -24,7 +24,7 @@ struct Number {
 using Flat = std::vector<Number>;
 
 bool dependsOnTheMachine(const std::string& member) {
-  for (const char* name : {"wall_s", "wall_per_simulated_s", "elapsed_s", "log", "figure", "out"})
+  for (const char* name : {"wall_s", "real_time_factor", "elapsed_s", "log", "figure", "out"})
     if (member == name) return true;
   return false;
 }

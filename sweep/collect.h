@@ -18,7 +18,7 @@ struct Collected {
 };
 
 /// Writes collected.csv and collected.json into the sweep's folder: row, status, parameters, numbers. Their contents do not depend on which
-/// worker ran a row or when: members named wall_s, wall_per_simulated_s, log, figure, out and elapsed_s are left out unless the plan's
+/// worker ran a row or when: members named wall_s, real_time_factor, log, figure, out and elapsed_s are left out unless the plan's
 /// columns give their full names. Throws BadFile, IoError.
 Collected collect(const std::string& folder);
 

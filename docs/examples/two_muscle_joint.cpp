@@ -1,9 +1,13 @@
-/// A robot of one's own: a lever on a hinge, pulled down to either side by two muscles in turn.
+/// A robot of one's own: a lever on a hinge, pulled down to either side by two muscles in turn. Its motion is recorded in lever.csv, as the
+/// program musclesim records its runs.
 #include <cmath>
 #include <cstdio>
+#include <exception>
 
+#include "musclesim/log/recorder.h"
 #include "musclesim/robot/muscle.h"
 #include "musclesim/robot/robot_registry.h"
+#include "musclesim/simulation/replay.h"
 #include "musclesim/simulation/simulation.h"
 
 using namespace musclesim;
@@ -18,19 +22,32 @@ class Lever : public Robot {
   }
 };
 
-int main() {
+/// Swings the lever for two seconds; true if it moved to both sides.
+bool swing() {
   registerRobot<Lever>("lever", "a lever between two muscles");
   Simulation simulation;
   Robot& robot = simulation.build("lever");
+  Recorder recorder("lever.csv", describeModel(simulation, "built"), robot.signalNames());
   double lowest_deg = 0, highest_deg = 0;
   while (simulation.time_s() < 2) {
     const bool right = std::fmod(simulation.time_s(), 1) < 0.5;
     robot.step(right ? Action{0.6, 0.1} : Action{0.1, 0.6});
+    const State state = robot.getState();
+    recorder.append(state.time_s, robot.signalValues(state));  // a row: before the world moves
     for (int i = 0; i < 10; ++i) simulation.step();
-    const double angle_deg = robot.getState().angle_deg[0];
-    lowest_deg = std::fmin(lowest_deg, angle_deg);
-    highest_deg = std::fmax(highest_deg, angle_deg);
-    std::printf("%.1f s  %6.2f deg\n", simulation.time_s(), angle_deg);
+    lowest_deg = std::fmin(lowest_deg, state.angle_deg[0]);
+    highest_deg = std::fmax(highest_deg, state.angle_deg[0]);
+    std::printf("%.1f s  %6.2f deg\n", state.time_s, state.angle_deg[0]);
   }
-  return lowest_deg < -5 && highest_deg > 5 ? 0 : 1;  // it moved to both sides
+  recorder.close(true);
+  return lowest_deg < -5 && highest_deg > 5;
+}
+
+int main() {
+  try {
+    return swing() ? 0 : 1;
+  } catch (const std::exception& error) {  // a geometry that cannot be, a file that cannot be written
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return 2;
+  }
 }

@@ -10,8 +10,8 @@
 namespace musclesim {
 
 std::string paceLine(const Console& console) {
-  const double target = 1 / console.pace().speed(), measured = console.pace().measuredSpeed();
-  return fmt::format("wall/simulated: target {:.3g}, measured {}", target, measured > 0 ? fmt::format("{:.3g}", 1 / measured) : "-");
+  const double target = console.pace().speed(), measured = console.pace().measuredSpeed();
+  return fmt::format("x real time: target {:.3g}, measured {}", target, measured > 0 ? fmt::format("{:.3g}", measured) : "-");
 }
 
 namespace {

@@ -104,5 +104,16 @@ TEST(Parameters, BrokenTomlNamesLineAndColumn) {
   EXPECT_THROW(parameters.readToml(file), IoError);
 }
 
+TEST(Parameters, DropsUnknownOverridesOfFilesByGroup) {
+  Parameters parameters;
+  parameters.setFromFile("asm.noise_std", 0.1, "a.toml");
+  parameters.setFromFile("rig.load_kg", 1.0, "a.toml");
+  parameters.set("asm.width", 0.1, "--set");
+  EXPECT_EQ(parameters.dropUnknownOfFiles({"asm"}), std::vector<std::string>{"asm.noise_std"});
+  EXPECT_TRUE(parameters.dropUnknownOfFiles({"asm"}).empty());
+  parameters.number("asm.width", 1, "", 0, 2, "");
+  EXPECT_THROW(parameters.requireAllKnown(), BadFile) << "rig.load_kg belongs to no such group";
+}
+
 }  // namespace
 }  // namespace musclesim

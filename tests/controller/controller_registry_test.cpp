@@ -35,7 +35,7 @@ TEST(ControllerRegistry, UnknownNameSuggestsTheNearest) {
   Prepared prepared;
   EXPECT_TRUE(contains(messageOf<BadParameter>([&] { makeController("asmm", prepared.request); }), "did you mean \"asm\"?"));
   EXPECT_TRUE(contains(messageOf<BadParameter>([&] { makeController("hodl", prepared.request); }), "did you mean \"hold\"?"));
-  EXPECT_TRUE(contains(messageOf<BadParameter>([&] { makeController("zzzzzz", prepared.request); }), "be one of aasm, asm, hold"));
+  EXPECT_TRUE(contains(messageOf<BadParameter>([&] { makeController("zzzzzz", prepared.request); }), "be one of aasm, asm, chirp, hold"));
   EXPECT_THROW(controllerDescription("asmm"), BadParameter);
 }
 

@@ -3,18 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 
+#include "controller/request.h"
 #include "musclesim/base/error.h"
+#include "musclesim/controller/controller_registry.h"
 #include "support/support.h"
 
 namespace musclesim {
 namespace {
 
-State atTime(double time_s) {
-  State state;
-  state.time_s = time_s;
-  return state;
-}
+using test::atTime;
 
 /// Rows at 1.0, 1.1 and 2.0 s for two muscles.
 Recording threeRows() {
@@ -44,6 +43,34 @@ TEST(ReplayController, HoldsTheFirstRowBeforeItAndTheLastAfterIt) {
   EXPECT_EQ(replay.output(atTime(0)), Action({0.1, 1}));
   EXPECT_EQ(replay.output(atTime(1e6)), Action({0.3, 0.5}));
   EXPECT_EQ(replay.output(atTime(1.5)), Action({0.2, 0})) << "any order of times";
+}
+
+TEST(ReplayController, MovesOnAStraightLineIfAskedTo) {
+  ReplayController replay(threeRows(), 2, true);
+  EXPECT_EQ(replay.output(atTime(0)), Action({0.1, 1}));
+  EXPECT_EQ(replay.output(atTime(1.1)), Action({0.2, 0})) << "the very number of the row";
+  const Action between = replay.output(atTime(1.1 + 0.9 * 0.25));
+  EXPECT_NEAR(between[0], 0.2 + 0.1 * 0.25, 1e-12);
+  EXPECT_NEAR(between[1], 0.5 * 0.25, 1e-12);
+  EXPECT_EQ(replay.output(atTime(3)), Action({0.3, 0.5}));
+  EXPECT_EQ(replay.endS(), 2.0);
+}
+
+TEST(ReplayController, SaysWhichRowsAreNeverPlayed) {
+  test::Prepared prepared;
+  prepared.request.commands_file = testing::TempDir() + "fine.csv";
+  std::ofstream(prepared.request.commands_file) << "time_s,command_0,command_1\n1,0,0\n1.004,0.5,0\n1.008,1,0\n1.01,0,1\n";
+  const auto schedule = makeController("schedule", prepared.request);
+  EXPECT_EQ(schedule->output(atTime(1.01)), Action({0, 1}));
+  const auto notes = schedule->notes();
+  ASSERT_EQ(notes.size(), 2u);
+  EXPECT_TRUE(contains(notes[0], "begin at 1 s")) << notes[0];
+  EXPECT_TRUE(contains(notes[1], "2 of 4 rows")) << notes[1];
+}
+
+TEST(ReplayController, NeedsAFile) {
+  test::Prepared prepared;
+  EXPECT_TRUE(contains(messageOf<BadParameter>([&] { makeController("schedule", prepared.request); }), "--commands"));
 }
 
 TEST(ReplayController, RoundingOfTimesDelaysNoRow) {

@@ -20,6 +20,12 @@ struct Prepared {
   Prepared& operator=(const Prepared&) = delete;
 };
 
+inline State atTime(double time_s) {
+  State state;
+  state.time_s = time_s;
+  return state;
+}
+
 inline State stateWithHand(const Vector& hand_mm, double time_s = 0) {
   State state;
   state.time_s = time_s;

@@ -38,6 +38,12 @@ TEST(Columns, EveryAllowedNameAndItsConversion) {
       {"hand_z_m", "hand_z_mm", 1000, FullScale::none},
       {"target_x_mm", "target_x_mm", 1, FullScale::none},
       {"target_y_m", "target_y_mm", 1000, FullScale::none},
+      {"target_elbow_deg", "target_elbow_deg", 1, FullScale::none},
+      {"target_elbow_rad", "target_elbow_deg", degrees, FullScale::none},
+      {"angle_left_wrist_2_deg_per_s", "angle_left_wrist_2_deg_per_s", 1, FullScale::none},
+      {"angle_elbow_deg_per_s2", "angle_elbow_deg_per_s2", 1, FullScale::none},
+      {"length_0_mm_per_s", "length_0_mm_per_s", 1, FullScale::none},
+      {"hand_y_mm_per_s2", "hand_y_mm_per_s2", 1, FullScale::none},
       {"target_z_mm", "target_z_mm", 1, FullScale::none},
       {"activity", "activity", 1, FullScale::none},
   };

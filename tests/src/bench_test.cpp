@@ -40,6 +40,7 @@ TEST(BenchCommand, WritesTableAndFigureOfEveryCandidate) {
   const std::string table(std::istreambuf_iterator<char>(file), {});
   const auto json = nlohmann::json::parse(result.out.substr(result.out.rfind("\n{") + 1));
   EXPECT_EQ(json["ratio"].size(), 12u);
+  EXPECT_DOUBLE_EQ(json["real_time_factor"]["si, dWorldStep"]["2"].get<double>() * json["ratio"]["si, dWorldStep"]["2"].get<double>(), 1);
   for (const auto& [name, ratios] : json["ratio"].items()) {
     EXPECT_TRUE(contains(table, "| " + name + " |"));
     EXPECT_GT(ratios["2"].get<double>(), 0) << name;

@@ -255,7 +255,7 @@ TEST_F(RunCommand, RefusesNumbersThatCannotBe) {
 }
 
 TEST_F(RunCommand, RefusesTheHeightTaskForARobotWithoutAHand) {
-  expectRefused({"--simple", "--robot", "rig", "--duration", "0.1", "--record", "x.csv"}, 2, {"hand"});
+  expectRefused({"--simple", "--robot", "rig", "--task", "height", "--duration", "0.1", "--record", "x.csv"}, 2, {"hand"});
 }
 
 TEST_F(RunCommand, RefusesBrokenAndMissingConfigFiles) {

@@ -59,6 +59,9 @@ class Parameters {
   const std::vector<Parameter>& declared() const { return declared_; }
   /// Throws BadParameter if an override has no declared parameter; the message gives its name and the nearest declared name.
   void requireAllKnown() const;
+  /// Drops overrides from files that nothing has declared, if their group (the name up to the first dot) is one of these. Returns their
+  /// names.
+  std::vector<std::string> dropUnknownOfFiles(const std::vector<std::string>& groups);
   /// Throws BadParameter if a relative tolerance of this parameter has no meaning: it is not declared (the message gives the nearest
   /// declared name), a choice or a whole number, or 0, which no factor changes.
   void requireScalable(const std::string& name) const;

@@ -22,6 +22,9 @@ class ManualController final : public Controller {
   std::optional<double> activity() const override { return automatic_->activity(); }
   std::optional<Vector> targetMm() const override { return automatic_->targetMm(); }
   bool targetIsHeight() const override { return automatic_->targetIsHeight(); }
+  std::vector<std::pair<std::string, double>> signals() const override { return automatic_->signals(); }
+  std::optional<double> endS() const override { return automatic_->endS(); }
+  std::vector<std::string> notes() const override { return automatic_->notes(); }
 
   void takeOver();
   void handBack();

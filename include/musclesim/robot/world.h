@@ -67,6 +67,7 @@ class World {
   operator dWorldID() const { return id_; }
   dSpaceID space() const { return space_; }
   Parameters& parameters() { return parameters_; }
+  const Parameters& parameters() const { return parameters_; }
   const PhysicsSettings& physics() const { return physics_; }
   /// How composites built from now on get their inertia.
   void setCompositeInertia(CompositeInertia how) { physics_.composite_inertia = how; }
