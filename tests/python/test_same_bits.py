@@ -86,7 +86,7 @@ class SameBits(unittest.TestCase):
         recording = musclesim.run("elbow", lambda state: [0.5 + state.time_s, 0.2], 0.3, parameters=line)
         with musclesim.Simulation("elbow", parameters=line) as simulation:
             simulation.start([0.5, 0.2])
-            for row in range(len(recording) - 1):  # the last row repeats the command before
+            for row in range(len(recording)):
                 readings = simulation.command([0.5 + simulation.time_s, 0.2])
                 for place, name in enumerate(simulation.signals):
                     self.assertEqual(readings[place], recording[name][row], name)
