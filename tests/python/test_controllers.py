@@ -120,6 +120,25 @@ class Controllers(unittest.TestCase):
             self.file = os.path.join(self.folder.name, f"run{number}.csv")
             self.expect(musclesim.BadParameter, pattern, Failing(0.5, lambda result=result: result), 51)
 
+    def test_further_signals(self):
+        class Following(Swing):
+            def signals(self):
+                return {"target_elbow_deg": 7.0}
+
+        self.assertEqual(set(musclesim.run("elbow", Following(), 0.1, parameters=line)["target_elbow_deg"]), {7.0})
+
+        class Wrong(Swing):
+            def signals(self):
+                return [7]
+
+        with self.assertRaisesRegex(musclesim.BadParameter, "dict of numbers"):
+            musclesim.run("elbow", Wrong(), 0.1, parameters=line)
+
+    def test_options_that_a_controller_does_not_heed(self):
+        for controller, named in (("hold", {"commands": "a.csv"}), ("hold", {"targets": "a.csv"}), ("schedule", {"interpolate": "cubic"})):
+            with self.assertRaises(musclesim.BadParameter):
+                musclesim.run("elbow", controller, 1, **named)
+
     def test_what_is_no_controller(self):
         class Empty(musclesim.Controller):
             pass
