@@ -41,6 +41,22 @@ class ControllerOfPython : public Controller {
     if (numbers.size() != 3) throw BadParameter("target_mm", fmt::format("{} numbers", numbers.size()), "have 3: x, y, z in mm");
     return Vector(numbers.at(0), numbers.at(1), numbers.at(2));
   }
+  /// A dict of numbers by name.
+  std::vector<std::pair<std::string, double>> signals() const override {
+    const py::gil_scoped_acquire lock;
+    const py::function override = py::get_override(static_cast<const Controller*>(this), "signals");
+    if (!override) return {};
+    const py::object signals = override();
+    if (!py::isinstance<py::dict>(signals))
+      throw BadParameter("signals", py::repr(signals).cast<std::string>(), "be a dict of numbers by column");
+    std::vector<std::pair<std::string, double>> values;
+    for (const auto& [name, value] : signals.cast<py::dict>()) try {
+        values.emplace_back(py::str(name).cast<std::string>(), value.cast<double>());
+      } catch (const py::cast_error&) {
+        throw BadParameter("signals", py::repr(signals).cast<std::string>(), "be a dict of numbers by column");
+      }
+    return values;
+  }
   bool targetIsHeight() const override { PYBIND11_OVERRIDE_NAME(bool, Controller, "target_is_height", targetIsHeight, ); }
 
   /// Python may keep the state that it gets, so it gets one of its own.
@@ -66,6 +82,7 @@ class HeldController final : public Controller {
   std::optional<double> activity() const override { return controller_.activity(); }
   std::optional<Vector> targetMm() const override { return controller_.targetMm(); }
   bool targetIsHeight() const override { return controller_.targetIsHeight(); }
+  std::vector<std::pair<std::string, double>> signals() const override { return controller_.signals(); }
 
  private:
   py::object owner_;
@@ -128,17 +145,25 @@ void bindControllers(py::module_& module) {
       .def_property_readonly("length_mm", viewOfColumn(&State::length_mm), "Lengths in mm, shape (muscles,).")
       .def_property_readonly("angle_deg", viewOfColumn(&State::angle_deg), "Joint angles in degrees, shape (joints,).")
       .def_property_readonly("hand_mm", handOf, "Position of the hand in mm, shape (3,), y up; None if the robot reports none.");
-  py::class_<Controller, ControllerOfPython>(
-      module, "Controller",
-      "Decides the pressures. A subclass defines output(state) and, if it likes, activity(), target_mm() and target_is_height().\n\n"
-      "    class Swing(musclesim.Controller):\n"
-      "        def output(self, state):\n"
-      "            return [0.5 + 0.3 * math.sin(state.time_s), 0.5]")
+  py::class_<Controller, ControllerOfPython>(module, "Controller",
+                                             "Decides the pressures. A subclass defines output(state) and, if it likes, activity(), "
+                                             "target_mm(), target_is_height() and signals().\n\n"
+                                             "    class Swing(musclesim.Controller):\n"
+                                             "        def output(self, state):\n"
+                                             "            return [0.5 + 0.3 * math.sin(state.time_s), 0.5]")
       .def(py::init<>())
       .def("output", &Controller::output, py::arg("state"),
            "Pressures to command now: an array of shape (muscles,), fraction of full scale 0..1. Called once per control step.")
       .def("activity", &Controller::activity, "Activity for the recording's column `activity`, a pure number; None: no column.")
       .def("target_mm", targetOf, "Target of the hand in mm, shape (3,), for the columns `target_*_mm`; None: no columns.")
+      .def(
+          "signals",
+          [](const Controller& controller) {
+            py::dict signals;
+            for (const auto& [name, value] : controller.signals()) signals[py::str(name)] = value;
+            return signals;
+          },
+          "Further columns of the recording: {name: number}, the same names at all times, such as target_<joint>_deg.")
       .def("target_is_height", &Controller::targetIsHeight, "Whether only the target's height (y) counts.");
 }
 

@@ -174,8 +174,8 @@ RecordingInfo PythonSimulation::describe(const std::string& initial_state, const
   nlohmann::json extra = nlohmann::json::parse(info.extra_json);
   extra["controller"] = controller;
   if (simulation_->controller()->targetMm() && is_named) {
-    info.description += fmt::format(", {} task", arguments.task);
-    extra["task"] = arguments.task;
+    info.description += fmt::format(", {} task", arguments.task.value_or("height"));
+    extra["task"] = arguments.task.value_or("height");
   }
   if (!model_.force_law.is_none()) extra["force_law"] = simulation_->robot().actuators().front()->forceLaw().name();
   info.extra_json = extra.dump();
@@ -228,27 +228,35 @@ void closeWith(const char* status, const std::string& message, Recorder* recorde
 
 std::unique_ptr<Controller> makeController(const RunArguments& arguments, Simulation& simulation) {
   if (!py::isinstance<py::str>(arguments.controller)) return controllerFrom(arguments.controller);
-  ControllerRequest request = controllerRequest(simulation, arguments.task, arguments.decision_interval_s);
+  ControllerRequest request = controllerRequest(simulation, arguments.task.value_or("height"), arguments.decision_interval_s);
   request.target_mm = arguments.target_mm;
+  request.commands_file = arguments.commands;
+  request.targets_file = arguments.targets;
+  request.channels = arguments.channels;
+  request.interpolate = arguments.interpolate;
   return musclesim::makeController(arguments.controller.cast<std::string>(), request);
 }
 
 }  // namespace
 
-Recording PythonSimulation::run(const RunArguments& arguments) {
+Recording PythonSimulation::run(RunArguments arguments) {
   const Use use(*this);
   open();
   if (was_started_) build();
   Simulation& simulation = *simulation_;
-  const RunLoop times{arguments.duration_s, arguments.record_interval_s, nullptr};
-  times.requireTimes(simulation.stepS());
+  if (arguments.controller.is_none())
+    arguments.controller =
+        py::str(arguments.commands.empty() ? defaultController(simulation.robot(), arguments.task || arguments.target_mm) : "schedule");
   Controller& controller = simulation.control(makeController(arguments, simulation));
   simulation.parameters().requireAllKnown();
+  const RunLoop times{arguments.duration_s.value_or(defaultDurationS(controller)), arguments.record_interval_s, nullptr};
+  times.requireTimes(simulation.stepS());
   const std::string initial_state = model_.initial_state.value_or(simulation.robot().initialState());
   // As in the program: the first decision is made before the file is opened, because the columns depend on what the controller reports.
   command_ = controller.output(simulation.robot().getState());
   Recording recording;
   recording.info = describe(initial_state, arguments);
+  recording.notes = controller.notes();
   for (const std::string& name : runColumns(simulation.robot(), controller)) recording.signals.push_back({name, {}});
   std::unique_ptr<Recorder> recorder;
   if (arguments.record)

@@ -28,13 +28,15 @@ struct Model {
 
 /// One run under a controller.
 struct RunArguments {
-  py::object controller;  ///< a name, or as controllerFrom
-  double duration_s;
+  py::object controller;  ///< a name, as controllerFrom, or None: as in the program
+  std::optional<double> duration_s;
   std::optional<std::string> record;  ///< file of the recording; none: in memory only
   std::optional<double> record_interval_s;
-  std::string task;
+  std::optional<std::string> task;
   std::optional<Vector> target_mm;
   std::optional<double> decision_interval_s;
+  std::string commands, targets, channels;  ///< files, and what to move; empty: none
+  bool interpolate = false;
 };
 
 /// A simulation that can begin anew and be closed. Its arrays belong to Python and outlive it. Calls from two threads at once, and calls of
@@ -56,7 +58,7 @@ class PythonSimulation {
   py::array command(const py::object& pressures);
   py::array step(const py::object& pressures, long count);
   py::array observe();
-  Recording run(const RunArguments& arguments);
+  Recording run(RunArguments arguments);
 
   /// Views into the array of readings.
   py::array part(const std::string& begin);

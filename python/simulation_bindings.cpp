@@ -88,13 +88,14 @@ void bindSteps(py::class_<PythonSimulation>& simulation) {
 void bindRun(py::class_<PythonSimulation>& simulation) {
   simulation.def(
       "_run",
-      [](PythonSimulation& self, const py::object& controller, double duration_s, std::optional<std::string> record,
-         std::optional<double> record_interval_s, const std::string& task, std::optional<Vector> target_mm,
-         std::optional<double> decision_interval_s) {
-        return self.run({controller, duration_s, std::move(record), record_interval_s, task, std::move(target_mm), decision_interval_s});
+      [](PythonSimulation& self, py::object controller, std::optional<double> duration_s, std::optional<std::string> record,
+         std::optional<double> record_interval_s, std::optional<std::string> task, std::optional<Vector> target_mm,
+         std::optional<double> decision_interval_s, std::string commands, std::string targets, std::string channels, bool interpolate) {
+        return self.run({std::move(controller), duration_s, std::move(record), record_interval_s, std::move(task), std::move(target_mm),
+                         decision_interval_s, std::move(commands), std::move(targets), std::move(channels), interpolate});
       },
       py::arg("controller"), py::arg("duration_s"), py::arg("record"), py::arg("record_interval_s"), py::arg("task"), py::arg("target_mm"),
-      py::arg("decision_interval_s"));
+      py::arg("decision_interval_s"), py::arg("commands"), py::arg("targets"), py::arg("channels"), py::arg("interpolate"));
 }
 
 void bindViews(py::class_<PythonSimulation>& simulation) {

@@ -23,11 +23,27 @@ double defaultDecisionIntervalS(const PhysicsSettings& physics) {
   return physics.kind == PhysicsKind::original ? original_s : original_s / std::sqrt(original_force_deficit_ratio);
 }
 
+std::string defaultController(const Robot& robot, bool has_task) {
+  return robot.name() == "arm" || has_task ? "asm" : "triangle";
+}
+
+double defaultDurationS(const Controller& controller) {
+  constexpr double published_s = 300;
+  return controller.endS().value_or(published_s);
+}
+
 ControllerRequest controllerRequest(Simulation& simulation, const std::string& task, const std::optional<double>& decision_interval_s) {
   const double interval_s = decision_interval_s.value_or(defaultDecisionIntervalS(simulation.physics()));
   if (!(interval_s > 0 && std::isfinite(interval_s)))
     throw BadParameter("decision-interval", fmt::format("{} s", interval_s), "be positive and finite");
-  return {simulation.parameters(), simulation.robot().actuatorCount(), simulation.stepS(), interval_s, simulation.seed(), task, {}};
+  ControllerRequest request{simulation.parameters()};
+  request.muscle_count = simulation.robot().actuatorCount();
+  request.step_s = simulation.stepS();
+  request.decision_interval_s = interval_s;
+  request.seed = simulation.seed();
+  request.task = task;
+  request.robot = &simulation.robot();
+  return request;
 }
 
 std::vector<std::string> runColumns(const Robot& robot, const Controller& controller) {
@@ -36,6 +52,7 @@ std::vector<std::string> runColumns(const Robot& robot, const Controller& contro
     for (const char* axis : {"x", "y", "z"})
       if (!controller.targetIsHeight() || *axis == 'y') names.push_back(fmt::format("target_{}_mm", axis));
   if (controller.activity()) names.push_back("activity");
+  for (const auto& [name, value] : controller.signals()) names.push_back(name);
   return names;
 }
 
@@ -48,6 +65,7 @@ std::vector<double> runRow(const Robot& robot, const Controller& controller, con
       values.insert(values.end(), target->data(), target->data() + 3);
   }
   if (const auto activity = controller.activity()) values.push_back(*activity);
+  for (const auto& [name, value] : controller.signals()) values.push_back(value);
   return values;
 }
 
@@ -74,7 +92,8 @@ void runLoop(Simulation& simulation, Controller& controller, Action action, cons
     simulation.step();
     if (loop.after_step) loop.after_step();
   }
-  robot.step(action);  // so that the last row, too, has the forces at its own time
+  // The last row, too, has the command and the forces of its own time.
+  robot.step(simulation.stepCount() > 0 ? controller.output(robot.getState()) : action);
   loop.row(robot.getState(), true);
 }
 

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <utility>
 
@@ -11,11 +10,11 @@
 #include "musclesim/base/color.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
-#include "musclesim/base/units.h"
 #include "musclesim/controller/controller_registry.h"
 #include "musclesim/controller/test_signal.h"
 #include "musclesim/log/figure.h"
 #include "musclesim/log/recorder.h"
+#include "musclesim/simulation/run_loop.h"
 #include "output_folder.h"
 #include "progress.h"
 #include "run_output.h"
@@ -28,26 +27,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Default decision interval: the paper's 6 s in original physics; in true seconds the time that the arm takes to settle
-/// (docs/reference/parameters.md).
-double defaultDecisionIntervalS(const PhysicsSettings& physics) {
-  constexpr double original_s = 6.0, si_s = 3.0;
-  if (physics.kind == PhysicsKind::si) return si_s;
-  return physics.kind == PhysicsKind::original ? original_s : original_s / std::sqrt(original_force_deficit_ratio);
-}
-
-ControllerRequest controllerRequest(Simulation& simulation, const RunOptions& options) {
-  const double interval_s = options.decision_interval_s.value_or(defaultDecisionIntervalS(simulation.physics()));
-  if (!(interval_s > 0 && std::isfinite(interval_s)))
-    throw BadParameter("decision-interval", fmt::format("{} s", interval_s), "be positive and finite");
-  ControllerRequest request{simulation.parameters()};
-  request.muscle_count = simulation.robot().actuatorCount();
-  request.step_s = simulation.stepS();
-  request.decision_interval_s = interval_s;
-  request.seed = simulation.seed();
-  request.task = options.task.value_or(request.task);
+ControllerRequest requestFor(Simulation& simulation, const RunOptions& options) {
+  ControllerRequest request = controllerRequest(simulation, options.task.value_or("height"), options.decision_interval_s);
   if (!options.target_mm.empty()) request.target_mm = Vector(options.target_mm[0], options.target_mm[1], options.target_mm[2]);
-  request.robot = &simulation.robot();
   request.commands_file = options.commands.value_or("");
   request.targets_file = options.targets.value_or("");
   request.channels = options.channels.value_or("");
@@ -55,7 +37,7 @@ ControllerRequest controllerRequest(Simulation& simulation, const RunOptions& op
   return request;
 }
 
-constexpr double longest_s = 1e7;
+constexpr double until_closed_s = 1e7;
 
 bool hasWindow(const RunOptions& options) {
   return !options.simple && !options.pictures.wanted();
@@ -72,9 +54,9 @@ void requireUsedOptions(const RunOptions& options) {
 /// The duration without --duration: to the end of the controller's commands, if they have one; else 300 s as published; shorter for a
 /// picture or video; with a window until it is closed.
 double defaultDurationS(const RunOptions& options, const Controller& controller) {
-  constexpr double batch_s = 300, pictures_s = 20;
-  if (const auto end_s = controller.endS(); end_s && !hasWindow(options)) return *end_s;
-  return options.simple ? batch_s : hasWindow(options) ? longest_s : pictures_s;
+  constexpr double pictures_s = 20;
+  if (hasWindow(options)) return until_closed_s;
+  return options.simple || controller.endS() ? musclesim::defaultDurationS(controller) : pictures_s;
 }
 
 /// Refuses options of one kind of controller where another would not heed them.
@@ -108,7 +90,7 @@ class Run {
     noteUnused();
     simulation_.parameters().requireAllKnown();
     duration_s_ = options.duration_s.value_or(defaultDurationS(options_, *controller_));
-    requireDuration();
+    RunLoop{duration_s_, options.record_interval_s, nullptr}.requireTimes(simulation_.stepS());
     if (options.against) against_ = readRecording(*options.against);
   }
 
@@ -160,7 +142,7 @@ class Run {
  private:
   /// With a window, the user can take over from the controller.
   void addController() {
-    auto controller = makeController(*options_.controller, controllerRequest(simulation_, options_));
+    auto controller = makeController(*options_.controller, requestFor(simulation_, options_));
     if (hasWindow(options_)) {
       auto hands = std::make_unique<ManualController>(std::move(controller), robot().actuatorCount());
       hands_ = hands.get();
@@ -229,41 +211,21 @@ class Run {
     return svg;
   }
 
-  void requireDuration() const {
-    if (!(duration_s_ >= simulation_.stepS() && duration_s_ <= longest_s))
-      throw BadParameter("duration", fmt::format("{} s", duration_s_),
-                         fmt::format("lie between one step, {} s, and 1e7 s", simulation_.stepS()));
-    if (options_.record_interval_s && !(*options_.record_interval_s > 0 && std::isfinite(*options_.record_interval_s)))
-      throw BadParameter("record-interval", fmt::format("{} s", *options_.record_interval_s), "be positive and finite");
+  void loop(Recorder& recorder, Progress& progress, const musclesim::Action& first_action) {
+    RunLoop loop{duration_s_, options_.record_interval_s,
+                 [&](const State& state, bool is_due) { record(recorder, progress, state, is_due); }};
+    loop.goes_on = [this] { return goes_on_ && interruptSignal() == 0; };
+    loop.after_step = [this] { warnOfGap(); };
+    loop.command_is_late = [this](double interval_s) { warnOfLateCommands(interval_s); };
+    runLoop(simulation_, *controller_, first_action, loop);
   }
 
-  /// The paper's run loop: state, output, step. A row is logged before the world moves.
-  void loop(Recorder& recorder, Progress& progress, musclesim::Action action) {
-    const long step_count = std::lround(duration_s_ / simulation_.stepS());
-    const long record_every = std::max(1L, std::lround(options_.record_interval_s.value_or(simulation_.stepS()) / simulation_.stepS()));
-    for (long i = 0; i < step_count && goes_on_ && interruptSignal() == 0; ++i) {
-      const bool due = i % record_every == 0;
-      if (i > 0) {
-        const musclesim::Action before = std::exchange(action, controller_->output(robot().getState()));
-        if (!due && action != before) warnOfLateCommands(static_cast<double>(record_every) * simulation_.stepS());
-      }
-      robot().step(action);
-      record(recorder, progress, due);
-      simulation_.step();
-      warnOfGap();
-    }
-    // The last row, too, has the command and the forces of its own time.
-    robot().step(simulation_.stepCount() > 0 ? controller_->output(robot().getState()) : action);
-    record(recorder, progress, true);
-  }
-
-  void record(Recorder& recorder, Progress& progress, bool due) {
-    const State state = robot().getState();
+  void record(Recorder& recorder, Progress& progress, const State& state, bool is_due) {
     score_.add(state.time_s, state, *controller_);
     const std::vector<double> row = signals_->row(state);
     summary_->add(state.time_s, row);
     tracking_->add(state.time_s, row);
-    if (due) recorder.append(state.time_s, row);
+    if (is_due) recorder.append(state.time_s, row);
     progress.show(state.time_s, state.hand_mm ? fmt::format("height {:.0f} mm", state.hand_mm->y()) : "");
     if (spectator_) goes_on_ = spectator_->see(state);
   }

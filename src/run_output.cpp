@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "musclesim/base/error.h"
+#include "musclesim/simulation/run_loop.h"
 #include "output_folder.h"
 
 namespace musclesim::program {
@@ -21,8 +22,7 @@ std::string taskOf(const RunOptions& options) {
 }  // namespace
 
 std::string defaultController(const Robot& robot, const RunOptions& options) {
-  const bool has_task = options.task || !options.target_mm.empty();
-  return robot.name() == "arm" || has_task ? "asm" : "triangle";
+  return musclesim::defaultController(robot, options.task || !options.target_mm.empty());
 }
 
 fs::path recordingPath(const RunOptions& options, Simulation& simulation) {

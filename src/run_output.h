@@ -27,8 +27,7 @@ struct RunOptions {
   PictureOptions pictures;
 };
 
-/// The controller of a run that names none: the paper's for its arm, and where a task or a target is given; for other robots a slow
-/// triangle of their antagonists, or of all muscles, which every robot can follow.
+/// The controller of a run that names none.
 std::string defaultController(const Robot& robot, const RunOptions& options);
 
 /// The path of the recording: --record, or run.csv in --out, or run.csv in a fresh folder log/runs/<date-time>-<label>-<seed>. The label is

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "musclesim/base/error.h"
+#include "musclesim/simulation/run_loop.h"
 
 namespace musclesim::program {
 
@@ -37,7 +38,7 @@ nlohmann::json finiteOrNull(double value) {
 
 RunSignals::RunSignals(const Robot& robot, const Controller& controller, const std::vector<std::string>& chosen, double step_s)
     : robot_(robot), controller_(controller), step_s_(step_s) {
-  const std::vector<std::string> all = signalNames();
+  const std::vector<std::string> all = runColumns(robot, controller);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const bool is_chosen = chosen.empty() || all[i].starts_with("command_") || std::ranges::find(chosen, all[i]) != chosen.end();
     if (!is_chosen) continue;
@@ -55,29 +56,6 @@ RunSignals::RunSignals(const Robot& robot, const Controller& controller, const s
   }
 }
 
-std::vector<std::string> RunSignals::signalNames() const {
-  std::vector<std::string> names = robot_.signalNames();
-  if (controller_.targetMm())
-    for (const char* axis : {"x", "y", "z"})
-      if (!controller_.targetIsHeight() || *axis == 'y') names.push_back(fmt::format("target_{}_mm", axis));
-  if (controller_.activity()) names.push_back("activity");
-  for (const auto& [name, value] : controller_.signals()) names.push_back(name);
-  return names;
-}
-
-std::vector<double> RunSignals::values(const State& state) const {
-  std::vector<double> values = robot_.signalValues(state);
-  if (const auto target = controller_.targetMm()) {
-    if (controller_.targetIsHeight())
-      values.push_back(target->y());
-    else
-      values.insert(values.end(), target->data(), target->data() + 3);
-  }
-  if (const auto activity = controller_.activity()) values.push_back(*activity);
-  for (const auto& [name, value] : controller_.signals()) values.push_back(value);
-  return values;
-}
-
 double RunSignals::value(const Source& source) const {
   const auto y = [&](std::size_t steps_ago) { return past_[steps_ago][source.signal]; };
   if (past_.size() < (source.derivative == 0 ? 1u : static_cast<std::size_t>(source.derivative) + 2)) return nan;
@@ -93,7 +71,7 @@ double RunSignals::value(const Source& source) const {
 
 std::vector<double> RunSignals::row(const State& state) {
   constexpr std::size_t most = 4;
-  past_.push_front(values(state));
+  past_.push_front(runRow(robot_, controller_, state));
   if (past_.size() > most) past_.pop_back();
   std::vector<double> row;
   for (const Source& source : sources_) row.push_back(value(source));

@@ -32,8 +32,6 @@ class RunSignals {
     std::size_t signal;
     int derivative;
   };
-  std::vector<std::string> signalNames() const;
-  std::vector<double> values(const State& state) const;
   double value(const Source& source) const;
 
   const Robot& robot_;

@@ -60,7 +60,7 @@ class Controllers(unittest.TestCase):
         swing = Swing()
         recording = musclesim.run("elbow", swing, 1, parameters=line)
         self.assertEqual(len(recording), 101)
-        np.testing.assert_array_equal(recording["command_0"][1:-1], 0.5 + 0.3 * np.sin(6 * recording["time_s"][1:-1]))
+        np.testing.assert_array_equal(recording["command_0"], 0.5 + 0.3 * np.sin(6 * recording["time_s"]))
         self.assertEqual(set(recording["activity"]), {0.25})
         self.assertEqual([recording[f"target_{axis}_mm"][0] for axis in "xyz"], [1, 2, 3])
         self.assertEqual(recording.info["controller"], "Swing")
@@ -119,6 +119,25 @@ class Controllers(unittest.TestCase):
                                                     (None, "output"), ("fast", "an array of numbers, not str"), ([2, 0], r"output\[0\] = 2"))):
             self.file = os.path.join(self.folder.name, f"run{number}.csv")
             self.expect(musclesim.BadParameter, pattern, Failing(0.5, lambda result=result: result), 51)
+
+    def test_further_signals(self):
+        class Following(Swing):
+            def signals(self):
+                return {"target_elbow_deg": 7.0}
+
+        self.assertEqual(set(musclesim.run("elbow", Following(), 0.1, parameters=line)["target_elbow_deg"]), {7.0})
+
+        class Wrong(Swing):
+            def signals(self):
+                return [7]
+
+        with self.assertRaisesRegex(musclesim.BadParameter, "dict of numbers"):
+            musclesim.run("elbow", Wrong(), 0.1, parameters=line)
+
+    def test_options_that_a_controller_does_not_heed(self):
+        for controller, named in (("hold", {"commands": "a.csv"}), ("hold", {"targets": "a.csv"}), ("schedule", {"interpolate": "cubic"})):
+            with self.assertRaises(musclesim.BadParameter):
+                musclesim.run("elbow", controller, 1, **named)
 
     def test_what_is_no_controller(self):
         class Empty(musclesim.Controller):

@@ -51,9 +51,10 @@ class SameBits(unittest.TestCase):
         for setting in settings:
             arguments += ["--set", setting]
         self.compare(arguments, "elbow", "random", 4, seed=7, parameters=noise, effects=lag)
-        os.remove(self.path("python/run.csv"))
-        os.remove(self.path("python/run.json"))
-        self.compare(arguments, "elbow", "random", 4, seed=7, parameters=noise, effects=self.path("effects.json"))
+        from_file = musclesim.run("elbow", "random", 4, seed=7, parameters=noise, effects=self.path("effects.json"))
+        from_file.write(self.path("file.csv"))
+        with open(self.path("python/run.csv"), "rb") as ours, open(self.path("file.csv"), "rb") as theirs:
+            self.assertEqual(ours.read(), theirs.read())
 
     def test_line_muscles_and_a_record_interval(self):
         self.compare(["--muscle", "line", "--record-interval", "0.05", "--step", "0.005"], "elbow", "random", 10, parameters=line,
@@ -69,6 +70,26 @@ class SameBits(unittest.TestCase):
 
     def test_robot_file(self):
         self.compare(["--muscle", "line"], os.path.join(robots, "wrist.toml"), "random", 2, parameters=line)
+
+    def test_position_control_with_its_own_targets(self):
+        """Its further columns, and the end of its targets as the duration."""
+        with open(self.path("targets.csv"), "w", encoding="utf-8") as file:
+            file.write("time_s,target_elbow_deg\n0,0\n0.5,10\n1,0\n")
+        self.compare(["--muscle", "line", "--targets", self.path("targets.csv")], "elbow", "position", 1, parameters=line,
+                     targets=self.path("targets.csv"))
+        recording = musclesim.run("elbow", "position", parameters=line, targets=self.path("targets.csv"))
+        self.assertEqual(recording["time_s"][-1], 1)
+        self.assertIn("target_elbow_deg", recording)
+
+    def test_schedule(self):
+        musclesim.run("elbow", "triangle", 2, parameters=line, record=self.path("played.csv"), record_interval_s=0.1)
+        self.compare(["--muscle", "line", "--commands", self.path("played.csv"), "--interpolate", "linear"], "elbow", "schedule", 2,
+                     parameters=line, commands=self.path("played.csv"), interpolate="linear")
+
+    def test_default_controllers(self):
+        self.assertEqual(musclesim.run("rig", duration_s=0.1).info["controller"], "triangle")
+        self.assertEqual(musclesim.run("arm", duration_s=0.02).info["controller"], "asm")
+        self.assertEqual(musclesim.run("elbow", duration_s=0.1, task="height").info["controller"], "asm")
 
     def test_replay(self):
         musclesim.run("rig", "random", 5, record=self.path("run.csv"), decision_interval_s=1)
@@ -86,7 +107,7 @@ class SameBits(unittest.TestCase):
         recording = musclesim.run("elbow", lambda state: [0.5 + state.time_s, 0.2], 0.3, parameters=line)
         with musclesim.Simulation("elbow", parameters=line) as simulation:
             simulation.start([0.5, 0.2])
-            for row in range(len(recording) - 1):  # the last row repeats the command before
+            for row in range(len(recording)):
                 readings = simulation.command([0.5 + simulation.time_s, 0.2])
                 for place, name in enumerate(simulation.signals):
                     self.assertEqual(readings[place], recording[name][row], name)

@@ -48,7 +48,7 @@ TEST(RunLoop, AsksEveryStepAndRecordsEveryInterval) {
     EXPECT_EQ(rows[i].is_due, i % 2 == 0) << i;
   }
   EXPECT_DOUBLE_EQ(rows[5].time_s, 0.05);
-  EXPECT_EQ(rows[5].command, rows[4].command) << "the last row repeats the command before";
+  EXPECT_EQ(rows[5].command, rows[5].time_s) << "the last row, too, has the command of its time";
   EXPECT_TRUE(rows[5].is_due);
   EXPECT_EQ(late, (std::vector<double>{0.02, 0.02})) << "commands changed at 0.01 s and 0.03 s, between rows";
 }

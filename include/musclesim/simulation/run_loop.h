@@ -1,4 +1,4 @@
-/// The paper's run loop: state, output, step, with rows to record; for programs of one's own and for Python.
+/// The paper's run loop: state, output, step. The program's runs, those of Python and of programs of one's own go through it.
 #pragma once
 
 #include <functional>
@@ -17,10 +17,17 @@ namespace musclesim {
 /// to settle (docs/reference/parameters.md).
 double defaultDecisionIntervalS(const PhysicsSettings& physics);
 
+/// Name of the controller of a run that names none: the paper's for its arm, and where there is a task; for other robots a slow triangle of
+/// their antagonists, or of all muscles, which every robot can follow.
+std::string defaultController(const Robot& robot, bool has_task);
+/// Simulated time of a run that gives none, s: to the end of the controller's commands, if they have one; else the published 300 s.
+double defaultDurationS(const Controller& controller);
+
 /// What a controller for the simulation's robot is built from. Throws BadParameter unless the decision interval is positive and finite.
 ControllerRequest controllerRequest(Simulation& simulation, const std::string& task, const std::optional<double>& decision_interval_s);
 
-/// Columns of the recording of a run, without time: the robot's signals, then target and activity if the controller reports them.
+/// Columns of the recording of a run, without time: the robot's signals, then target, activity and further signals if the controller
+/// reports them.
 std::vector<std::string> runColumns(const Robot& robot, const Controller& controller);
 /// The values of one row, in the order of runColumns.
 std::vector<double> runRow(const Robot& robot, const Controller& controller, const State& state);
