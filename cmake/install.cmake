@@ -1,11 +1,12 @@
 # Components: `program` (program, manual page, completion, desktop file, documents), `development` (library, headers, CMake package,
-# pkg-config file, examples) and, if the module is built, `python` (python/CMakeLists.txt). find_package(musclesim) gives the target
-# musclesim::musclesim.
+# pkg-config file, examples) and, if the module is built, `python` (python/CMakeLists.txt). find_package(musclesim) gives the targets
+# musclesim::musclesim and, if the program was built, musclesim::program.
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/musclesim)
 
 if(MUSCLESIM_PROGRAM)
   install(TARGETS musclesim COMPONENT program)
+  install(TARGETS musclesim_own_program EXPORT musclesimTargets COMPONENT development)
   install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
   install(DIRECTORY docs/user docs/reference DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs COMPONENT program)
   install(FILES packaging/musclesim.bash-completion DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME musclesim

@@ -160,9 +160,10 @@ double latticeStep(const std::vector<double>& values) {
 }
 
 NoiseSigma noiseSigma(const std::vector<Recording>& recordings, const std::string& name) {
-  constexpr double imperceptible = 1e-9, usual_share = 1e-3;
-  constexpr double held_by_chance = 0.1, fine_lattice = 4;  // noise of four lattice steps makes 7 % of neighbours equal
-  const double least = std::max(finestLattice(recordings, name) / std::sqrt(12.0), imperceptible);
+  constexpr double usual_share = 1e-3, finest_share = 1e-5;  // of the range; a converter of 16 bits has steps of 1.5e-5
+  constexpr double held_by_chance = 0.1, fine_lattice = 4;   // noise of four lattice steps makes 7 % of neighbours equal
+  const double range = rangeOf(recordings, name), imperceptible = std::max(1e-9, finest_share * range);
+  const double least = std::max(finestLattice(recordings, name) / std::sqrt(12.0), 1e-9);
   if (const auto repeats = fromRepeats(recordings, name)) return {std::max(*repeats, least), NoiseSigma::Source::repeats};
   if (const auto sidecar = fromSidecars(recordings, name)) return {std::max(*sidecar, least), NoiseSigma::Source::sidecar};
   const double quiet = std::max(fromQuietRows(recordings, name, false), least), changed = fromQuietRows(recordings, name, true);
@@ -170,7 +171,7 @@ NoiseSigma noiseSigma(const std::vector<Recording>& recordings, const std::strin
   const bool is_held = heldShare(recordings, name) > held_by_chance && changed > fine_lattice * finestLattice(recordings, name);
   if (!is_held && quiet > imperceptible) return {quiet, NoiseSigma::Source::quiet_rows};
   if (changed > imperceptible) return {std::max(changed, least), NoiseSigma::Source::quiet_rows};
-  return {std::max(usual_share * rangeOf(recordings, name), least), NoiseSigma::Source::range};
+  return {std::max(usual_share * range, least), NoiseSigma::Source::range};
 }
 
 }  // namespace musclesim

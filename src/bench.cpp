@@ -17,7 +17,7 @@
 #include "output_folder.h"
 #include "progress.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 namespace {
 
@@ -166,4 +166,4 @@ Action addBench(CLI::App& command, ModelOptions& model) {
   return [&model, arguments] { return bench(model, *arguments); };
 }
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

@@ -8,7 +8,7 @@
 #include "../log/svg.h"
 #include "musclesim/version.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 namespace {
 
@@ -174,4 +174,4 @@ nlohmann::json benchJson(const std::vector<BenchCurve>& curves) {
   return json;
 }
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

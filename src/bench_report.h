@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 struct BenchRun {
   int muscle_count = 0, repeat_count = 0, substeps = 0, contact_count = 0;
@@ -29,4 +29,4 @@ std::string benchTable(const std::vector<BenchCurve>& curves, double duration_s,
 std::string benchFigure(const std::vector<BenchCurve>& curves);
 nlohmann::json benchJson(const std::vector<BenchCurve>& curves);
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

@@ -19,7 +19,7 @@
 #include "interrupt.h"
 #include "progress.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 namespace {
 
@@ -218,4 +218,4 @@ Action addBlind(CLI::App& command) {
   };
 }
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

@@ -10,7 +10,7 @@
 #include "musclesim/base/parameters.h"
 #include "musclesim/version.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 namespace {
 
@@ -111,4 +111,4 @@ int CommandLine::run() {
   return run_();
 }
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

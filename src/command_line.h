@@ -9,7 +9,7 @@
 
 #include "commands.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 class CommandLine {
  public:
@@ -33,4 +33,4 @@ class CommandLine {
   std::vector<std::pair<CLI::App*, Action>> commands_;
 };
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

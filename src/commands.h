@@ -6,7 +6,7 @@
 
 #include "options.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 /// Exit statuses of the program; see the table in docs/user/getting_started.md.
 enum ExitStatus {
@@ -50,4 +50,4 @@ Action addBlind(CLI::App& command);
 /// `bench`: real-time ratio over the number of muscles.
 Action addBench(CLI::App& command, ModelOptions& model);
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

@@ -13,7 +13,7 @@
 #include "output_folder.h"
 #include "progress.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 namespace {
 
@@ -174,4 +174,4 @@ Action addDiagnose(CLI::App& command, ModelOptions& model) {
   return [&model, arguments] { return diagnoseCommand(model, *arguments); };
 }
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

@@ -7,7 +7,7 @@
 #include "commands.h"
 #include "musclesim/effect/catalogue.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 namespace {
 
@@ -106,4 +106,4 @@ Action addEffects(CLI::App& command) {
   return [arguments] { return effects(*arguments); };
 }
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

@@ -13,7 +13,7 @@
 #include "musclesim/base/file.h"
 #include "output_folder.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 namespace {
 
@@ -112,4 +112,4 @@ Action addExperiment(CLI::App& command, ModelOptions& model) {
   return [&model, arguments] { return experiment(model, *arguments); };
 }
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

@@ -11,7 +11,7 @@
 #include "musclesim/log/recording.h"
 #include "output_folder.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 namespace {
 
@@ -48,4 +48,4 @@ Action addFigure(CLI::App& command, ModelOptions& model) {
   return [&model, arguments] { return figure(model, *arguments); };
 }
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

@@ -14,7 +14,7 @@
 #include "musclesim/base/file.h"
 #include "output_folder.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 namespace {
 
@@ -131,4 +131,4 @@ Action addFit(CLI::App& command) {
   return [arguments] { return fit(*arguments); };
 }
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

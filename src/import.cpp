@@ -16,7 +16,7 @@
 #include "musclesim/robot/robot_registry.h"
 #include "output_folder.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 namespace {
 
@@ -88,4 +88,4 @@ Action addImport(CLI::App& command) {
   return [arguments] { return importCommand(*arguments); };
 }
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

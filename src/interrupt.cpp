@@ -2,7 +2,7 @@
 
 #include <csignal>
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 namespace {
 
@@ -29,4 +29,4 @@ int interruptSignal() {
   return received;
 }
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

@@ -1,7 +1,7 @@
 /// Ctrl-C and termination: the handler only notes the signal; the run ends between two steps, so that its files are complete.
 #pragma once
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 /// Installs handlers for SIGINT and SIGTERM. A second signal ends the process at once.
 void watchInterrupts();
@@ -10,4 +10,4 @@ void endAtInterrupts();
 /// The number of the signal that arrived, 0 if none did.
 int interruptSignal();
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

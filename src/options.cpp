@@ -8,7 +8,7 @@
 #include "musclesim/effect/effects_file.h"
 #include "plugin.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 namespace {
 
@@ -152,4 +152,4 @@ void say(const ModelOptions& options, const std::string& message) {
   if (!options.quiet) std::fprintf(stderr, "musclesim: %s\n", message.c_str());
 }
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

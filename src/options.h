@@ -10,7 +10,7 @@
 #include "laboratory/static_points.h"
 #include "musclesim/simulation/replay.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 /// As given on the command line; empty optionals mean "not given".
 struct ModelOptions {
@@ -60,4 +60,4 @@ ReplayOptions replayOptionsFrom(const ModelOptions& model);
 /// One line to standard error, unless --quiet.
 void say(const ModelOptions& options, const std::string& message);
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

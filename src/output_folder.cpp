@@ -10,7 +10,7 @@
 #include "musclesim/base/error.h"
 #include "musclesim/log/recording.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 namespace fs = std::filesystem;
 
@@ -76,4 +76,4 @@ void requireOther(const fs::path& output, const std::vector<std::string>& inputs
       throw BadParameter(fmt::format("{} is an input and would be overwritten: choose another name or folder for the output", input));
 }
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 /// The path log/runs/<date-time>-<label>, with a number appended if it exists. The folder is not created.
 std::filesystem::path freshFolder(const std::string& label);
@@ -33,4 +33,4 @@ void requireReplaceable(const std::filesystem::path& csv);
 /// Throws BadParameter if an output file is also an input file.
 void requireOther(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

@@ -5,7 +5,7 @@
 #include "musclesim/base/error.h"
 #include "pictures.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 void addPictureOptions(CLI::App& command, PictureOptions& options, const std::string& group) {
   command.add_option("--screenshot", options.screenshot, "Picture of the last state, FILE.png; needs no display")->group(group);
@@ -34,4 +34,4 @@ double speedRatio(const PictureOptions& options, const PhysicsSettings& physics)
   return speed;
 }
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

@@ -10,7 +10,7 @@
 #include "simulation/scene/video.h"
 #include "view.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 namespace {
 
@@ -88,4 +88,4 @@ std::unique_ptr<Spectator> makePictures(const PictureOptions& options, Simulatio
   return std::make_unique<Pictures>(options, simulation);
 }
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

@@ -11,7 +11,7 @@
 #include "options.h"
 #include "spectator.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 struct PictureOptions {
   std::optional<std::string> screenshot, video;
@@ -33,4 +33,4 @@ double speedRatio(const PictureOptions& options, const PhysicsSettings& physics)
 /// Throws BadParameter if this build cannot draw or there is no OSMesa.
 std::unique_ptr<Spectator> makePictures(const PictureOptions& options, Simulation& simulation);
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

@@ -2,10 +2,10 @@
 #include "musclesim/base/error.h"
 #include "pictures.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 std::unique_ptr<Spectator> makePictures(const PictureOptions&, Simulation&) {
   throw BadParameter("this build cannot draw pictures: build it again with libpng-dev, libgl-dev and libosmesa6-dev installed");
 }
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

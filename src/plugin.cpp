@@ -6,7 +6,7 @@
 
 #include "musclesim/base/error.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 void loadPlugin(const std::string& file) {
   // With a slash in its name, the loader does not search the system's folders.
@@ -18,4 +18,4 @@ void loadPlugin(const std::string& file) {
   registerAll();
 }
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 /// Loads a shared library and calls its function
 ///     extern "C" void musclesim_plugin();
@@ -11,4 +11,4 @@ namespace musclesim::program {
 /// compiled with the headers of this version. Throws BadFile if it cannot be loaded or lacks that function.
 void loadPlugin(const std::string& file);
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

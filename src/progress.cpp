@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 namespace {
 
@@ -63,4 +63,4 @@ void CaseProgress::show(int done, int count) {
   line_.show(fmt::format("{} of {} cases, about {} left", done, count, duration(line_.wallS() / done * (count - done))));
 }
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <string>
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 /// Rewrites one line on standard error a few times per second. Silent if standard error is not a terminal, or on request.
 class ProgressLine {
@@ -58,4 +58,4 @@ class CaseProgress {
   ProgressLine line_;
 };
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

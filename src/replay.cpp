@@ -10,7 +10,7 @@
 #include "output_folder.h"
 #include "pictures.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 namespace {
 
@@ -101,4 +101,4 @@ Action addReplay(CLI::App& command, ModelOptions& model) {
   return [&model, arguments] { return replay(model, *arguments); };
 }
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

@@ -15,7 +15,7 @@
 #include "pictures.h"
 #include "robot_template.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 namespace {
 
@@ -152,4 +152,4 @@ Action addRobot(CLI::App& command, ModelOptions& model) {
   return [action] { return (*action)(); };
 }
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

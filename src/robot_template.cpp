@@ -5,7 +5,7 @@
 #include "musclesim/base/error.h"
 #include "musclesim/robot/robot_file.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 namespace {
 
@@ -86,4 +86,4 @@ std::string robotTemplate(const std::string& name) {
   return result;
 }
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

@@ -3,9 +3,9 @@
 
 #include <string>
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 /// A lever between two muscles, with comments that say what to change. Throws BadParameter for a name that a robot cannot have.
 std::string robotTemplate(const std::string& name);
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

@@ -21,7 +21,7 @@
 #include "run_signals.h"
 #include "window.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 namespace {
 
@@ -410,4 +410,4 @@ Action addRun(CLI::App& app, ModelOptions& model) {
   return [&model, options] { return run(model, *options); };
 }
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

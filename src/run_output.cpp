@@ -9,7 +9,7 @@
 #include "musclesim/simulation/run_loop.h"
 #include "output_folder.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 namespace fs = std::filesystem;
 
@@ -80,4 +80,4 @@ nlohmann::json Score::verdict() const {
   return json;
 }
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

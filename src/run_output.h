@@ -11,7 +11,7 @@
 #include "musclesim/simulation/simulation.h"
 #include "pictures.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 /// The options of `run` except the model options.
 struct RunOptions {
@@ -53,4 +53,4 @@ class Score {
   long samples_since_ = 0, near_since_ = 0;
 };
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

@@ -9,7 +9,7 @@
 #include "musclesim/base/error.h"
 #include "musclesim/simulation/run_loop.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 namespace {
 
@@ -178,4 +178,4 @@ nlohmann::json Tracking::json() const {
   return json;
 }
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

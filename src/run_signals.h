@@ -9,7 +9,7 @@
 #include "musclesim/log/recording.h"
 #include "musclesim/simulation/simulation.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 /// The columns of a run's recording: the robot's signals, then those of its controller.
 ///
@@ -85,4 +85,4 @@ class Tracking {
   std::vector<Joint> joints_;
 };
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

@@ -12,7 +12,7 @@
 #include "musclesim/controller/test_signal.h"
 #include "output_folder.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 namespace {
 
@@ -132,4 +132,4 @@ Action addSchedule(CLI::App& command, ModelOptions& model) {
   return [&model, arguments] { return schedule(model, *arguments); };
 }
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

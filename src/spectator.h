@@ -6,7 +6,7 @@
 
 #include "musclesim/robot/state.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 /// Sees every control step of a run and changes nothing: a run gives the same bits with and without it.
 class Spectator {
@@ -22,4 +22,4 @@ class Spectator {
   virtual void finish() = 0;
 };
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

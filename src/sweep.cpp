@@ -14,7 +14,7 @@
 #include "sweep/plan.h"
 #include "sweep/work.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 namespace {
 
@@ -142,4 +142,4 @@ Action addCollect(CLI::App& command) {
   return [arguments] { return collectSweep(*arguments); };
 }
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

@@ -4,7 +4,7 @@
 
 #include "musclesim/base/error.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 namespace {
 
@@ -30,4 +30,4 @@ Camera initialCamera(const std::string& robot_name, const Snapshot& snapshot, co
   return camera;
 }
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

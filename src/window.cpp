@@ -6,7 +6,7 @@
 #include "simulation/display/display.h"
 #include "view.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 namespace {
 
@@ -52,4 +52,4 @@ std::unique_ptr<Spectator> openWindow(const PictureOptions& options, Simulation&
   return std::make_unique<WindowSpectator>(options, simulation, hands, first, folder, log_file);
 }
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

@@ -8,7 +8,7 @@
 #include "pictures.h"
 #include "spectator.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 /// Opens a window that shows the run and sets its speed. It saves pictures in `folder` and writes a line of JSON per key or click to
 /// `log_file` (empty: no log). Throws BadParameter if this build has no window or there is no display.
@@ -18,4 +18,4 @@ std::unique_ptr<Spectator> openWindow(const PictureOptions& options, Simulation&
 /// Throws BadParameter, as openWindow, for a build without a window.
 void requireWindow();
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

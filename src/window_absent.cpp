@@ -2,7 +2,7 @@
 #include "musclesim/base/error.h"
 #include "window.h"
 
-namespace musclesim::program {
+namespace musclesim::command_line {
 
 void requireWindow() {
   throw BadParameter("this build has no window: use --simple to run without one, --screenshot or --video for pictures");
@@ -14,4 +14,4 @@ std::unique_ptr<Spectator> openWindow(const PictureOptions&, Simulation&, Manual
   return nullptr;
 }
 
-}  // namespace musclesim::program
+}  // namespace musclesim::command_line

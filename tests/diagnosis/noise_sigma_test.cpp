@@ -103,6 +103,15 @@ TEST(NoiseSigma, IsAThousandthOfTheRangeWhereNothingElseTellsIt) {
   EXPECT_TRUE(sigma.isEstimated());
 }
 
+TEST(NoiseSigma, IsAThousandthOfTheRangeForTheRecordingOfASimulation) {
+  Recording smooth = noisyWave(1);
+  for (std::size_t row = 0; row < smooth.time_s.size(); ++row)
+    smooth.signals[1].values[row] = 200 + 20 * std::sin(0.01 * static_cast<double>(row)) + 1e-8 * static_cast<double>(row % 7);
+  const NoiseSigma sigma = noiseSigma({smooth}, "length_0_mm");
+  EXPECT_EQ(sigma.source, NoiseSigma::Source::range);
+  EXPECT_NEAR(sigma.value, 0.04, 1e-3);
+}
+
 TEST(NoiseSigma, IsNeverBelowTheResolutionOfTheValues) {
   Recording recording = noisyWave(4);
   for (double& value : recording.signals[1].values) value = 0.5 * std::round(value / 0.5);

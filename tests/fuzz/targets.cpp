@@ -133,7 +133,7 @@ void commandLine(const std::string& bytes) {
   }
   std::vector<const char*> pointers;
   for (const std::string& argument : arguments) pointers.push_back(argument.c_str());
-  program::CommandLine command_line;
+  command_line::CommandLine command_line;
   read([&] { command_line.parse(static_cast<int>(pointers.size()), pointers.data()); });
 }
 

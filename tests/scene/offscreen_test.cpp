@@ -75,7 +75,7 @@ class Pictures : public testing::Test {
   }
 
   Image draw(const std::string& robot, const Snapshot& snapshot, const SceneStyle& style = {}) {
-    return offscreen_->draw(snapshot, program::initialCamera(robot, snapshot, {}), style);
+    return offscreen_->draw(snapshot, command_line::initialCamera(robot, snapshot, {}), style);
   }
 
   /// Compares with tests/scene/pictures/NAME.png; with MUSCLESIM_STORE_PICTURES=1 it writes a new picture instead.
@@ -185,9 +185,9 @@ TEST(Offscreen, RefusesSizesThatCannotBe) {
 }
 
 TEST(InitialCamera, RefusesNumbersThatCannotBe) {
-  EXPECT_THROW(program::initialCamera("rig", Snapshot{}, {0, 95, 500}), BadParameter);
-  EXPECT_THROW(program::initialCamera("rig", Snapshot{}, {0, 0, 0}), BadParameter);
-  EXPECT_FLOAT_EQ(program::initialCamera("rig", Snapshot{}, {20, 30, 500}).elevation_deg, 30);
+  EXPECT_THROW(command_line::initialCamera("rig", Snapshot{}, {0, 95, 500}), BadParameter);
+  EXPECT_THROW(command_line::initialCamera("rig", Snapshot{}, {0, 0, 0}), BadParameter);
+  EXPECT_FLOAT_EQ(command_line::initialCamera("rig", Snapshot{}, {20, 30, 500}).elevation_deg, 30);
 }
 
 }  // namespace

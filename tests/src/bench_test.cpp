@@ -18,15 +18,15 @@ namespace {
 namespace fs = std::filesystem;
 
 TEST(BenchReport, FindsTheExponentOfAPowerLaw) {
-  program::BenchCurve curve{"x", {}};
+  command_line::BenchCurve curve{"x", {}};
   for (const int n : {1, 2, 10, 15, 30}) {
-    program::BenchRun run;
+    command_line::BenchRun run;
     run.muscle_count = n;
     run.ratio = n < 10 ? 5 : 0.01 * std::pow(n, 1.7);
     curve.runs.push_back(run);
   }
-  EXPECT_NEAR(program::fittedExponent(curve, 10), 1.7, 1e-12);
-  EXPECT_TRUE(std::isnan(program::fittedExponent(curve, 30)));
+  EXPECT_NEAR(command_line::fittedExponent(curve, 10), 1.7, 1e-12);
+  EXPECT_TRUE(std::isnan(command_line::fittedExponent(curve, 30)));
 }
 
 TEST(BenchCommand, WritesTableAndFigureOfEveryCandidate) {
