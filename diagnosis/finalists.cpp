@@ -83,6 +83,7 @@ void Search::fitFinalists() {
   dropHopeless();
   fitAll(explanations_, [this](Explanation& explanation) { fitFinely(explanation); });
   tryVariants();
+  tryWithoutOne();
   weigh();
   polish();
 }
@@ -103,6 +104,7 @@ void Search::polish() {
     if (plant_.interrupted()) return;
     explanation.half_width = half.head(explanation.z.size());
     explanation.numbers_half_width = half.tail(explanation.numbers.size());
+    takeFromCounterparts(explanation);
   });
 }
 
@@ -117,6 +119,36 @@ void Search::tryVariants() {
   }
 }
 
+/// The parts of the best explanation that lack one effect, from where it ended: their own fits may have ended elsewhere, for example where
+/// the motion is sensitive, so that the further effect only seems to help.
+void Search::tryWithoutOne() {
+  for (int pass = 0; pass < options_.max_effects && !plant_.interrupted(); ++pass) {
+    std::ranges::stable_sort(explanations_, std::greater<>{}, &Explanation::score);
+    const Explanation best = explanations_.front();
+    std::vector<Explanation> smaller;
+    for (std::size_t m = 0; m < best.members.size() && best.members.size() > 1; ++m) smaller.push_back(causes_.without(best, m));
+    fitAll(smaller, [this](Explanation& one) {
+      causes_.refit(one, fit_, 0, Fidelity::fine, Accuracy::ranking);
+      if (one.residual.size() == fit_.size()) one.score = evidence().score(one);
+    });
+    for (Explanation& one : smaller) keepIfBetter(std::move(one));
+    if (std::ranges::max_element(explanations_, {}, &Explanation::score)->members == best.members) return;
+  }
+}
+
+/// Fits on an explanation that is better than the same set's where it stands, and puts it in the place of that.
+void Search::keepIfBetter(Explanation one) {
+  const auto same = std::ranges::find_if(
+      explanations_, [&](const Explanation& other) { return causes_.labelsOf(other.members) == causes_.labelsOf(one.members); });
+  if (same != explanations_.end() && same->score >= one.score) return;
+  fitFinely(one);
+  if (one.residual.size() != fit_.size()) return;
+  if (same == explanations_.end())
+    explanations_.push_back(std::move(one));
+  else
+    *same = std::move(one);
+}
+
 /// In coarse steps.
 void Search::fitRoughly(Explanation& explanation) const {
   causes_.refit(explanation, fit_, coarse_rounds, Fidelity::coarse, Accuracy::ranking);
@@ -127,7 +159,6 @@ void Search::fitRoughly(Explanation& explanation) const {
 void Search::fitFinely(Explanation& explanation) const {
   goOn(explanation, Accuracy::ranking);
   if (explanation.residual.size() != fit_.size()) return;
-  takeFromCounterparts(explanation);
   explanation.is_inactive = hasInactiveEffect(explanation);
   explanation.score = evidence().score(explanation);
 }

@@ -119,6 +119,8 @@ class Search {
   bool hasInactiveEffect(const Explanation& explanation) const;
   std::vector<Explanation> otherVariants(const Explanation& explanation) const;
   void tryVariants();
+  void tryWithoutOne();
+  void keepIfBetter(Explanation one);
   void polish();
   void weigh();
 

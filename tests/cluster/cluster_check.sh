@@ -150,7 +150,7 @@ under_slurm() {
   start_slurm
   say "Slurm runs after $((SECONDS - start)) s: $(sinfo -h -o '%P %D node, %c processors, %t')"
   # The batch file from the documentation.
-  awk '/^```$/ { inside = !inside; text = ""; next } inside { text = text $0 "\n" } inside && /^musclesim work RUNS --time-limit/ { printf "%s", text }' \
+  awk '/^```/ { inside = !inside; text = ""; next } inside { text = text $0 "\n" } inside && /^musclesim work RUNS --time-limit/ { printf "%s", text }' \
     "$root/docs/user/sweeps.md" >workers.sh
   grep -q '^#SBATCH --array' workers.sh || fail "docs/user/sweeps.md has no batch file"
   local job state

@@ -1,6 +1,6 @@
-# Every public header is in musclesim.h. Variables: include (folder of public headers).
+# Every public header of the library is in musclesim.h; program.h needs another target, musclesim::program. Variables: include (folder of public headers).
 file(GLOB_RECURSE headers RELATIVE ${include} ${include}/musclesim/*.h)
-list(REMOVE_ITEM headers musclesim/musclesim.h)
+list(REMOVE_ITEM headers musclesim/musclesim.h musclesim/program.h)
 file(READ ${include}/musclesim/musclesim.h text)
 foreach(header IN LISTS headers)
   string(FIND "${text}" "#include \"${header}\"" place)

@@ -124,7 +124,8 @@ TEST(NonFinite, ForcesOfAnOwnLaw) {
       steps(simulation, 3);
       OddMuscle::force_N = value;
       const End end = endOf([&] { steps(simulation, 2); });
-      EXPECT_EQ(end, std::abs(value) < 1 ? End::done : End::diverged) << value;
+      // A muscle cannot push: less than no force is none.
+      EXPECT_EQ(end, value < 1 && std::isfinite(value) ? End::done : End::diverged) << value;
       OddMuscle::force_N = 0;
     }
 }
