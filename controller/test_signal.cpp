@@ -26,11 +26,21 @@ struct ShapeRequest {
   std::string name;
   int channel;
 
-  double seconds(const std::string& parameter, double default_s, const std::string& meaning) const {
-    return request.parameters.number(name + "." + parameter, default_s, "s", shortest_s, longest_s, meaning);
+  /// Throws BadParameter for a time shorter than so many control steps.
+  double seconds(const std::string& parameter, double default_s, const std::string& meaning, int fewest_steps = 2) const {
+    const double value_s = request.parameters.number(name + "." + parameter, default_s, "s", shortest_s, longest_s, meaning);
+    if (const double least_s = fewest_steps * request.step_s; value_s < least_s - tolerance_s)
+      throw BadParameter(name + "." + parameter, fmt::format("{:g} s", value_s),
+                         fmt::format("be at least {:g} s: a command lasts {:g} s (--step)", least_s, request.step_s));
+    return value_s;
   }
+  /// Throws BadParameter above half of the rate of commands (Nyquist 1928): it would come out as another frequency.
   double hertz(const std::string& parameter, double default_Hz, const std::string& meaning) const {
-    return request.parameters.number(name + "." + parameter, default_Hz, "Hz", lowest_Hz, highest_Hz, meaning);
+    const double value_Hz = request.parameters.number(name + "." + parameter, default_Hz, "Hz", lowest_Hz, highest_Hz, meaning);
+    if (const double largest_Hz = 0.5 / request.step_s; value_Hz > largest_Hz)
+      throw BadParameter(name + "." + parameter, fmt::format("{:g} Hz", value_Hz),
+                         fmt::format("be at most {:g} Hz, half of the commands per second (--step)", largest_Hz));
+    return value_Hz;
   }
   RandomStream random() const { return {request.seed, fmt::format("{}.channel_{}", name, channel)}; }
 };
@@ -41,7 +51,7 @@ Shape steps(const ShapeRequest& r) {
 }
 
 Shape ramp(const ShapeRequest& r) {
-  const double rise_s = r.seconds("rise_s", 5, "time from the level to the level and the amplitude, where it stays");
+  const double rise_s = r.seconds("rise_s", 5, "time from the level to the level and the amplitude, where it stays", 0);
   return [=](double t) { return std::min(1.0, t / rise_s); };
 }
 
@@ -65,7 +75,7 @@ Shape chirp(const ShapeRequest& r) {
 }
 
 Shape prbs(const ShapeRequest& r) {
-  const double hold_s = r.seconds("hold_s", 0.2, "time of one bit");
+  const double hold_s = r.seconds("hold_s", 0.2, "time of one bit", 1);
   const int order = r.request.parameters.integer("prbs.order", 7, BinarySequence::smallest_order, BinarySequence::largest_order,
                                                  "bits of the shift register; the sequence repeats after 2^order - 1 bits");
   const auto offset = static_cast<std::uint64_t>(r.random().uniform() * (1 << BinarySequence::largest_order));
@@ -89,7 +99,7 @@ Shape multisine(const ShapeRequest& r) {
 }
 
 Shape staircase(const ShapeRequest& r) {
-  const double hold_s = r.seconds("hold_s", 1, "time of one level");
+  const double hold_s = r.seconds("hold_s", 1, "time of one level", 1);
   const int count = r.request.parameters.integer("staircase.step_count", 8, 1, 1000, "steps from the lowest to the highest level");
   return [=](double t) { return stairsWave(t + tolerance_s, hold_s, count); };
 }

@@ -254,9 +254,11 @@ class Import {
   /// The value of a series at a time: a reading, a straight line between two, or the last command. NaN where nothing was read.
   double valueAt(Series& series, double time_s, const ImportColumn& column) const {
     const bool is_command = isCommand(column);
-    const auto next = std::upper_bound(series.time_s.begin(), series.time_s.end(), time_s);
+    // Clocks that agree differ by rounding: 0.3 + 0.01 k is not the same number as a cell "0.57".
+    constexpr double same_time_s = 1e-6;
+    const auto next = std::upper_bound(series.time_s.begin(), series.time_s.end(), time_s + same_time_s);
     const auto k = static_cast<std::size_t>(next - series.time_s.begin());
-    if (k > 0 && (series.time_s[k - 1] == time_s || std::isinf(series.time_s[k - 1]))) return series.values[k - 1];
+    if (k > 0 && (series.time_s[k - 1] >= time_s - same_time_s || std::isinf(series.time_s[k - 1]))) return series.values[k - 1];
     if (k == series.time_s.size() && k > 0 && is_command) {
       series.held_count += !series.is_first_tables;
       return series.values[k - 1];

@@ -8,6 +8,8 @@
 #include <chrono>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
@@ -24,6 +26,20 @@ constexpr int largest_unwritten_rows = 256;
 constexpr std::chrono::seconds longest_unwritten{1};
 
 }  // namespace
+
+/// Looks at the sidecar, because the table of a killed run may be incomplete.
+void requireReplaceable(const std::string& csv) {
+  namespace fs = std::filesystem;
+  const std::string sidecar = sidecarPath(csv);
+  if (!fs::exists(csv) && !fs::exists(sidecar)) return;
+  std::ifstream text(sidecar);
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  const bool is_recording = json.is_object() && json.contains("format");
+  const auto program = is_recording ? json.find("program") : json.end();
+  if (program != json.end() && program->is_string() && program->get<std::string>().starts_with("musclesim ")) return;
+  throw BadParameter(fmt::format("{} exists and {}: choose another name, or remove it", fs::exists(csv) ? csv : sidecar,
+                                 is_recording ? "belongs to a recording that musclesim did not simulate" : "belongs to no recording"));
+}
 
 /// The open CSV file, the rows not yet written, and the sidecar for close().
 struct Recorder::Implementation {

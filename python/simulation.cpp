@@ -259,8 +259,10 @@ Recording PythonSimulation::run(RunArguments arguments) {
   recording.notes = controller.notes();
   for (const std::string& name : runColumns(simulation.robot(), controller)) recording.signals.push_back({name, {}});
   std::unique_ptr<Recorder> recorder;
-  if (arguments.record)
+  if (arguments.record) {
+    requireReplaceable(*arguments.record);
     recorder = std::make_unique<Recorder>(*arguments.record, recording.info, runColumns(simulation.robot(), controller));
+  }
   Heed heed(*this);
   const Release release(simulation);
   try {

@@ -56,19 +56,6 @@ void requireUnfinished(const fs::path& csv) {
     throw BadParameter(fmt::format("{} holds a finished run: choose another folder, or --overwrite it", csv.parent_path().string()));
 }
 
-/// Looks at the sidecar, because the table of a killed run may be incomplete.
-void requireReplaceable(const fs::path& csv) {
-  const fs::path sidecar = sidecarPath(csv.string());
-  if (!fs::exists(csv) && !fs::exists(sidecar)) return;
-  std::ifstream text(sidecar);
-  const auto json = nlohmann::json::parse(text, nullptr, false);
-  const bool is_recording = json.is_object() && json.contains("format");
-  const auto program = is_recording ? json.find("program") : json.end();
-  if (program != json.end() && program->is_string() && program->get<std::string>().starts_with("musclesim ")) return;
-  throw BadParameter(fmt::format("{} exists and {}: choose another name, or remove it", (fs::exists(csv) ? csv : sidecar).string(),
-                                 is_recording ? "belongs to a recording that musclesim did not simulate" : "belongs to no recording"));
-}
-
 void requireOther(const fs::path& output, const std::vector<std::string>& inputs) {
   std::error_code ignored;
   for (const std::string& input : inputs)

@@ -27,9 +27,6 @@ bool prepareRecording(const std::filesystem::path& csv);
 /// Throws BadParameter if there is a recording of a run that has been finished; the message names --overwrite.
 void requireUnfinished(const std::filesystem::path& csv);
 
-/// Throws BadParameter if writing a recording there would replace a measured recording or a file that is not a recording.
-void requireReplaceable(const std::filesystem::path& csv);
-
 /// Throws BadParameter if an output file is also an input file.
 void requireOther(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 

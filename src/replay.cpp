@@ -7,6 +7,7 @@
 
 #include "commands.h"
 #include "interrupt.h"
+#include "musclesim/log/recorder.h"
 #include "output_folder.h"
 #include "pictures.h"
 

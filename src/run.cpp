@@ -7,6 +7,7 @@
 
 #include "commands.h"
 #include "interrupt.h"
+#include "log/figure_panels.h"
 #include "musclesim/base/color.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
@@ -102,13 +103,14 @@ class Run {
     const State first_state = robot().getState();
     const musclesim::Action first_action = controller_->output(first_state);
     const fs::path csv = recordingPath(options_, simulation_);
-    requireReplaceable(csv);
+    requireReplaceable(csv.string());
     if (options_.out && !options_.overwrite) requireUnfinished(csv);
     if (options_.against) requireOther(csv, {*options_.against});
     if (options_.commands) requireOther(csv, {*options_.commands});
     signals_.emplace(robot(), *controller_, options_.record_signals, simulation_.stepS());
     summary_.emplace(options_.summarise, signals_->names());
     tracking_.emplace(signals_->names());
+    requireFigureSignals();
     if (prepareRecording(csv) && options_.record) say(model_, fmt::format("made the folder {}", csv.parent_path().string()));
     addSpectator(first_state, csv);
     Recorder recorder(csv.string(), describe(simulation_, options_, initial_state), signals_->names());
@@ -192,6 +194,13 @@ class Run {
     options.parameters = parametersFrom(model);
     options.effects = effectsFrom(model);
     return options;
+  }
+
+  /// Before the run, not after it.
+  void requireFigureSignals() const {
+    Recording columns;
+    for (const std::string& name : signals_->names()) columns.signals.push_back({name, {}});
+    signalsNamed(columns, options_.figure_signals);
   }
 
   /// Writes the figure beside the recording. Returns an empty path if the run ended before its first row.

@@ -10,6 +10,7 @@
 #include "musclesim/base/file.h"
 #include "musclesim/controller/controller_registry.h"
 #include "musclesim/controller/test_signal.h"
+#include "musclesim/log/recorder.h"
 #include "output_folder.h"
 
 namespace musclesim::command_line {
@@ -86,7 +87,7 @@ int schedule(const ModelOptions& model, const ScheduleArguments& arguments) {
   TestSignalController controller(arguments.signal, request);
   simulation->parameters().requireAllKnown();
   const std::filesystem::path csv = arguments.out;
-  requireReplaceable(csv);
+  requireReplaceable(csv.string());
   if (prepareRecording(csv)) say(model, fmt::format("made the folder {}", csv.parent_path().string()));
   for (const std::string& note : controller.notes()) say(model, note);
   Recording recording = scheduleOf(*simulation, controller, arguments);

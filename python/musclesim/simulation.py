@@ -40,6 +40,13 @@ class Simulation(_musclesim._Simulation):
             raise BadParameter(f"commands are for the controller schedule; {controller} does not heed them")
         if targets is not None and controller != "position":
             raise BadParameter(f"targets are for the controller position; {controller} does not heed them")
+        if controller is not None and not isinstance(controller, str):
+            given = {"task": task, "target_mm": target_mm, "decision_interval_s": decision_interval_s, "channels": channels or None}
+            unheeded = [name for name, value in given.items() if value is not None]
+            if unheeded:
+                raise BadParameter(f"{', '.join(unheeded)}: for controllers with a name; a function or an object decides for itself")
+        if interpolate != "hold" and controller not in (None, "schedule"):
+            raise BadParameter(f"interpolate = {interpolate} is for the controller schedule; {controller} does not heed it")
         if interpolate not in ("hold", "linear"):
             raise BadParameter(f"interpolate = {interpolate}: must be one of hold, linear")
         file = None if record is None else os.fspath(record)

@@ -32,6 +32,17 @@ double commanded(const std::string& signal, double time_s, std::vector<std::stri
   return action.at(0);
 }
 
+TEST(TestSignals, RefuseWhatCommandsCannotShow) {
+  const auto refusal = [](const std::string& signal, const std::string& assignment) {
+    return messageOf<BadParameter>([&] { commanded(signal, 0, {assignment}); });
+  };
+  EXPECT_TRUE(contains(refusal("multisine", "high_Hz=80"), "be at most 50 Hz"));
+  EXPECT_TRUE(contains(refusal("chirp", "to_Hz=400"), "chirp.to_Hz"));
+  EXPECT_TRUE(contains(refusal("sine", "period_s=0.01"), "be at least 0.02 s"));
+  EXPECT_TRUE(contains(refusal("prbs", "hold_s=0.003"), "be at least 0.01 s"));
+  EXPECT_NO_THROW(commanded("prbs", 0, {"hold_s=0.01"}));
+}
+
 TEST(TestSignals, FollowTheirFormulas) {
   EXPECT_DOUBLE_EQ(commanded("steps", 1.9, {"period_s=4"}), 0.7);
   EXPECT_DOUBLE_EQ(commanded("steps", 2, {"period_s=4"}), 0.3);

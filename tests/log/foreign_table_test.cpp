@@ -1,4 +1,5 @@
 /// Tables as instruments and other programs write them: each kind of writing, of clock and of unit with the right values.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -358,6 +359,17 @@ TEST_F(ForeignTable, FilesOfRealLoggersImportAsTheyWereWritten) {
   EXPECT_NEAR(values(tensile, "length_0_mm").front(), 660, 1e-9);
   EXPECT_NEAR(values(tensile, "force_0_N").front(), 0.01866, 1e-9);
   EXPECT_EQ(values(tensile, "command_0").front(), 0.5);
+}
+
+TEST_F(ForeignTable, CommandsOfAClockThatIsRoundedAreThoseOfTheirRows) {
+  for (const double step_s : {0.005, 0.01, 0.02}) {
+    std::string table = "t,u,x\n";
+    for (int row = 0; row < 400; ++row) table += fmt::format("{:.3f},{:.3f},250\n", 0.3 + row * step_s, 0.006 * (row % 100));
+    const Recording r = import(table, plain + fmt::format("[rows]\nstep_s = {}\n", step_s));
+    ASSERT_EQ(r.time_s.size(), 400U);
+    for (int row = 0; row < 400; ++row)
+      ASSERT_NEAR(values(r, "command_0")[static_cast<std::size_t>(row)], 0.001 * (row % 100), 1e-9) << "step " << step_s << ", row " << row;
+  }
 }
 
 }  // namespace

@@ -174,6 +174,16 @@ class Controllers(unittest.TestCase):
         with self.assertRaises(musclesim.IoError):
             musclesim.run("elbow", "hold", 0.1, parameters=line, record=os.path.join(self.folder.name, "no/such/run.csv"))
 
+    def test_measured_recordings_are_never_overwritten(self):
+        musclesim.Recording.from_dict({"time_s": [0, 0.01], "command_0": [0.1, 0.1], "command_1": [0, 0]}, robot="elbow").write(self.file)
+        with self.assertRaisesRegex(musclesim.BadParameter, "did not simulate"):
+            musclesim.run("elbow", "hold", 0.1, parameters=line, record=self.file, overwrite=True)
+
+    def test_options_that_a_function_does_not_heed_are_refused(self):
+        for option in ({"channels": "0"}, {"task": "reach"}, {"target_mm": [0, 0, 0]}, {"interpolate": "linear"}):
+            with self.assertRaises(musclesim.BadParameter, msg=option):
+                musclesim.run("elbow", lambda state: [0, 0], 0.1, parameters=line, **option)
+
     def test_wrong_times(self):
         for named in ({"duration_s": 0}, {"duration_s": float("nan")}, {"duration_s": 1, "record_interval_s": -1}):
             with self.assertRaises(musclesim.BadParameter):

@@ -9,6 +9,9 @@
 
 namespace musclesim {
 
+/// Throws BadParameter if writing a recording there would replace a measured recording or a file that is not a recording.
+void requireReplaceable(const std::string& csv_file);
+
 /// Appends rows to NAME.csv and keeps NAME.json beside it.
 ///
 /// The constructor writes the sidecar with "complete": false, then the CSV's header row. Rows are handed to the operating system after 256
