@@ -41,7 +41,7 @@ class Simulation(_musclesim._Simulation):
         if targets is not None and controller != "position":
             raise BadParameter(f"targets are for the controller position; {controller} does not heed them")
         if controller is not None and not isinstance(controller, str):
-            given = {"task": task, "target_mm": target_mm, "decision_interval_s": decision_interval_s, "channels": channels or None}
+            given = {"task": task, "target_mm": target_mm, "channels": channels or None}
             unheeded = [name for name, value in given.items() if value is not None]
             if unheeded:
                 raise BadParameter(f"{', '.join(unheeded)}: for controllers with a name; a function or an object decides for itself")
