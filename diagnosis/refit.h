@@ -25,7 +25,7 @@ struct FitProblem {
   double enough = 5e-4;
   /// Nats that may be gained since the derivatives were computed without computing them again at the end.
   double still_valid = 0;
-  bool known_elsewhere = true;  ///< the known derivatives are those of another place, so that still_valid does not hold for them
+  bool known_elsewhere = true;     ///< the known derivatives are those of another place, so that still_valid does not hold for them
   bool narrow_differences = true;  ///< whether the last rounds use narrow differences
 };
 

@@ -8,8 +8,9 @@
 
 namespace musclesim {
 
-/// Cross-validated errors; missing where the points outside of one of the groups are too few for a fit. Each group, all points of one length or of one pressure, is predicted by a fit to all other points. The
-/// outermost lengths and pressures are counted separately, because there the fit must extrapolate.
+/// Cross-validated errors; missing where the points outside of one of the groups are too few for a fit. Each group, all points of one
+/// length or of one pressure, is predicted by a fit to all other points. The outermost lengths and pressures are counted separately,
+/// because there the fit must extrapolate.
 struct CrossValidation {
   FitError lengths, pressures;              ///< inner groups
   FitError outer_lengths, outer_pressures;  ///< the shortest and the longest, the lowest and the highest

@@ -21,7 +21,7 @@ struct LookedColumn {
 
 struct LookedClock {
   std::size_t column = 0;
-  TableClock clock;       ///< without `from`
+  TableClock clock;        ///< without `from`
   std::string unit = "s";  ///< a unit of time in which the numbers may be; "" for the number of the row
   bool unit_is_guessed = false;
   double step_s = 0, duration_s = 0, longest_gap_s = 0;

@@ -76,7 +76,8 @@ void RunLoop::requireTimes(double step_s) const {
     throw BadParameter("record-interval", fmt::format("{} s", *record_interval_s), "be positive and finite");
 }
 
-void runLoop(Simulation& simulation, Controller& controller, Action action, const RunLoop& loop) {
+void runLoop(Simulation& simulation, Controller& controller, Action first_command, const RunLoop& loop) {
+  Action action = std::move(first_command);
   Robot& robot = simulation.robot();
   const double step_s = simulation.stepS();
   const long step_count = std::lround(loop.duration_s / step_s);

@@ -202,8 +202,9 @@ struct Diagnosis {
   std::string model_options;              ///< options of the program for the robot of the recordings: "--robot rig --set rig.load_kg=2"
   std::vector<std::string> refitted;      ///< parameters of the model that the nominal refit re-tunes
   double nominal_refit_percent = 0, negative_control_percent = 0, unexplained_percent = 0;
-  std::vector<TunedParameter> tuned;     ///< of DiagnosisOptions::tune; before and after are gaps of the model with these values
-  std::vector<std::string> model_effects;  ///< "id@component" of effects that the diagnosed model has already: the recordings' active_effects
+  std::vector<TunedParameter> tuned;  ///< of DiagnosisOptions::tune; before and after are gaps of the model with these values
+  std::vector<std::string>
+      model_effects;                     ///< "id@component" of effects that the diagnosed model has already: the recordings' active_effects
   std::vector<std::string> not_excited;  ///< effects that these recordings could not have shown
   std::vector<std::string> notes;        ///< remarks on the data and the answer for the user
   Unsteady unsteady;
