@@ -86,14 +86,16 @@ void Search::fitFinalists() {
   tryWithoutOne();
   weigh();
   polish();
+  weigh();
+  takeOutNothing();
 }
 
-/// Exact parameters and fresh intervals for the explanations that are listed, and for the numbers without any effect.
+/// Exact parameters, scores and fresh intervals for the explanations that are listed, and for the numbers without any effect.
 void Search::polish() {
   constexpr double listed = 0.01;
-  std::vector<Explanation*> chosen = {&nothing_};
+  std::vector<Explanation*> chosen;
   for (Explanation& explanation : explanations_)
-    if (explanation.probability >= listed) chosen.push_back(&explanation);
+    if (explanation.probability >= listed || explanation.members.empty()) chosen.push_back(&explanation);
   parallelFor(static_cast<int>(chosen.size()), options_.job_count, [&](int i) {
     Explanation& explanation = *chosen[static_cast<std::size_t>(i)];
     if (plant_.interrupted() || explanation.residual.size() != fit_.size()) return;
@@ -105,6 +107,7 @@ void Search::polish() {
     explanation.half_width = half.head(explanation.z.size());
     explanation.numbers_half_width = half.tail(explanation.numbers.size());
     takeFromCounterparts(explanation);
+    explanation.score = evidence().score(explanation);
   });
 }
 
@@ -227,6 +230,9 @@ void Search::weigh() {
   for (Explanation& explanation : explanations_) explanation.probability /= sum;
   none_of_these_ = 1 / (1 + std::exp(-evidence().ofSomethingElse(explanations_)));
   std::ranges::stable_sort(explanations_, std::greater<>{}, &Explanation::probability);
+}
+
+void Search::takeOutNothing() {
   const auto nothing = std::ranges::find_if(explanations_, [](const Explanation& explanation) { return explanation.members.empty(); });
   if (nothing != explanations_.end()) {
     nothing_ = *nothing;

@@ -123,6 +123,7 @@ class Search {
   void keepIfBetter(Explanation one);
   void polish();
   void weigh();
+  void takeOutNothing();
 
   const Plant& plant_;
   const DiagnosisOptions& options_;
