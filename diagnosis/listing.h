@@ -23,7 +23,8 @@ void listEffects(const Search& search, const HeldOut& held_out, const DiagnosisO
 void listTrials(const Search& search, Diagnosis& diagnosis);
 /// The numbers of the model as fitted with an explanation: those known within tolerances, and the tuned ones.
 void listNumbers(const Plant& plant, const Explanation& fitted, Diagnosis& diagnosis);
-/// Curves of the held-out rows, the gap by actuation phase, and what is left of it (`after`; may be empty).
+/// The held-out rows: curves, the gap by actuation phase, and the remainder. `after`: residual with the explanation that is offered; empty
+/// if none is.
 void listHeldOut(const Search& search, const HeldOut& held_out, const Eigen::VectorXd& after, Diagnosis& diagnosis);
 
 }  // namespace musclesim
