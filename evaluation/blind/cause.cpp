@@ -27,11 +27,6 @@ double sign(RandomStream& random) {
   return happens(random, 0.5) ? 1 : -1;
 }
 
-/// Parameters that are whole numbers: a larger number is a weaker effect, and half as many levels are one bit less.
-bool countsBits(const EffectParameter& parameter) {
-  return parameter.unit == "bit";
-}
-
 double drawShape(const EffectParameter& p, RandomStream& random) {
   return p.usual_low > 0 ? logUniform(random, p.usual_low, p.usual_high) : random.uniform(p.usual_low, p.usual_high);
 }
@@ -69,6 +64,10 @@ double gapOf(const ActiveEffect& law, const Truth& truth) {
 }
 
 }  // namespace
+
+bool countsBits(const EffectParameter& parameter) {
+  return parameter.unit == "bit";
+}
 
 const std::vector<std::string>& sizeNames() {
   static const std::vector<std::string> names = {"weak", "clear", "strong"};

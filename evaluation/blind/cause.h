@@ -49,6 +49,9 @@ std::vector<OutOfCatalogueLaw> lawsInTurn(const Robot& robot, const std::vector<
 /// The components of the robot on which the cause that a law stands for has an effect; of sensors only those that are recorded.
 std::vector<std::string> componentsOf(const OutOfCatalogueLaw& law, const Robot& robot, const std::vector<std::string>& signals);
 
+/// Parameters that are whole numbers: a larger number is a weaker effect, and half as many levels are one bit less.
+bool countsBits(const EffectParameter& parameter);
+
 /// Draws parameters within the usual ranges: the first log-uniform, with either sign if the range has both, shape parameters anywhere in
 /// their range.
 std::vector<double> drawSizes(const EffectInfo& law, RandomStream& random);

@@ -20,16 +20,17 @@ double drawScale(RandomStream& random) {
 }  // namespace
 
 NumberErrors drawNumbers(const Recording& plan, RandomStream& random) {
-  NumberErrors errors{drawScale(random), {}, {}};
-  if (errors.scale == 0) return errors;
+  NumberErrors errors{drawScale(random), {}, {}, {}};
   Simulation model(simulationOptionsFor(plan.info, plan.file));
   const std::map<std::string, double> tolerances = model.build(plan.info.robot).parameterTolerances();
   for (const Parameter& parameter : model.parameters().declared()) {
     const auto tolerance = tolerances.find(parameter.name);
     if (tolerance == tolerances.end()) continue;
-    const double nominal = std::get<double>(parameter.value),
-                 drawn = nominal * std::exp(errors.scale * tolerance->second * random.normal());
+    const double nominal = std::get<double>(parameter.value);
+    errors.tolerance[parameter.name] = tolerance->second;
     errors.nominal[parameter.name] = nominal;
+    if (errors.scale == 0) continue;
+    const double drawn = nominal * std::exp(errors.scale * tolerance->second * random.normal());
     errors.truth[parameter.name] = std::clamp(drawn, parameter.minimum, parameter.maximum);
   }
   return errors;

@@ -11,8 +11,9 @@ namespace musclesim::blind {
 
 /// The numbers of one plant and of the model that a diagnosis compares it with, by full name.
 struct NumberErrors {
-  double scale = 0;  ///< the drawn standard deviations over the robot's tolerances: 0 (no errors), 1 or 2
-  std::map<std::string, double> nominal, truth;
+  double scale = 0;                                  ///< the drawn standard deviations over the robot's tolerances: 0 (no errors), 1 or 2
+  std::map<std::string, double> tolerance, nominal;  ///< of all numbers with a tolerance
+  std::map<std::string, double> truth;               ///< empty if there are no errors
 };
 
 /// Draws truth = nominal exp(scale s z) for each number with a tolerance s (Robot::parameterTolerances), z normal; a number stays within

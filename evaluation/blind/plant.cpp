@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "chance.h"
+#include "contribution.h"
 #include "machine.h"
 #include "musclesim/base/error.h"
 #include "musclesim/robot/robot.h"
@@ -14,6 +15,16 @@
 namespace musclesim::blind {
 
 namespace {
+
+/// NaN if one is NaN: the plant diverges.
+double largestOf(const std::map<std::string, double>& over_noise) {
+  double largest = 0;
+  for (const auto& [signal, value] : over_noise) {
+    if (!std::isfinite(value)) return value;
+    largest = std::max(largest, value);
+  }
+  return largest;
+}
 
 /// Draws the causes of a plant whose plan, numbers and truth are drawn.
 class CauseDraw {
@@ -88,9 +99,8 @@ class CauseDraw {
       PlantCause& one = plant_.causes[i];
       std::vector<ActiveEffect> laws;
       for (const Cause& other : others(i)) laws.push_back(other.law);
-      const auto rmse = truth.rmse(truth.motion(laws), plant_.motion);
-      one.contribution_over_noise = truth.gapOverNoise(rmse);
-      one.contribution = overNoise(rmse);
+      one.contribution = contributionBeside(laws, plant_.motion, truth, plant_.numbers);
+      one.contribution_over_noise = largestOf(one.contribution);
       one.demanded = isDemanded(one.contribution, gap, plant_.causes.size());
     }
   }
@@ -127,7 +137,7 @@ Plant drawWithoutCauses(const PlantRequest& request, const Robot& robot, RandomS
   for (int draw = 0; draw < most_draws; ++draw) {
     Plan plan = drawPlan(request.name, request.robot, robot, request.kinds, request.duration_s, random);
     NumberErrors numbers = drawNumbers(plan.recordings.front(), random);
-    if (request.exact_numbers) numbers = {};
+    if (request.exact_numbers) numbers.truth = {}, numbers.scale = 0;
     const auto seed = static_cast<std::uint64_t>(random.uniform(0, 9e15));
     Truth truth(plan.recordings, plan.signals, plan.noise_std, seed, numbers.truth);
     const double gap_of_step = truth.gapOverNoise(truth.rmse(truth.model(), truth.nominalMotion({})));

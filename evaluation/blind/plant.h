@@ -14,8 +14,7 @@
 
 namespace musclesim::blind {
 
-/// A cause and what only it explains: the gap that remains if it alone is left out of the true plant while the others stay as they are.
-/// Refitting the others would make it smaller where they can stand in for it; this is not done.
+/// A cause and what only it explains, as contributionBeside() says.
 struct PlantCause {
   Cause cause;
   std::map<std::string, double> contribution = {};  ///< by signal, RMSE over noise

@@ -30,6 +30,8 @@ class Truth {
   Motion motion(const std::vector<ActiveEffect>& effects) const { return motion(effects, numbers_); }
   /// The same with the model's numbers.
   Motion nominalMotion(const std::vector<ActiveEffect>& effects) const;
+  /// The same with other numbers, by full name, in place of the plant's.
+  Motion motion(const std::vector<ActiveEffect>& effects, const std::map<std::string, double>& numbers) const;
 
   /// RMSE per signal between two motions over all their recordings. NaN if one of them diverges.
   std::map<std::string, double> rmse(const Motion& one, const Motion& other) const;
@@ -47,7 +49,6 @@ class Truth {
 
  private:
   using Numbers = std::map<std::string, double>;
-  Motion motion(const std::vector<ActiveEffect>& effects, const Numbers& numbers) const;
   Recording simulated(std::size_t recording, const std::vector<ActiveEffect>& effects, const Numbers& numbers, bool noisy) const;
 
   std::vector<Recording> plans_;
