@@ -126,9 +126,9 @@ double gapReductionPercent(const Gap& before, const Gap& after) {
   return before.normalised > 0 ? 100 * (1 - after.normalised / before.normalised) : 0;
 }
 
-bool clearlyBeats(double reduction_percent, double nominal_refit_percent, double negative_control_percent) {
+bool clearlyBeats(double reduction_percent, double control_percent) {
   constexpr double clear_gain_percent = 5, clear_rest_share = 0.5;
-  const double other_percent = std::max({0.0, nominal_refit_percent, negative_control_percent});
+  const double other_percent = std::max(0.0, control_percent);
   return reduction_percent > other_percent + clear_gain_percent || 100 - reduction_percent < clear_rest_share * (100 - other_percent);
 }
 
@@ -158,7 +158,7 @@ Estimate gapReductionInterval(const BeforeAndAfter& held_out, const BeforeAndAft
   return reduction;
 }
 
-Eigen::VectorXd nominalRefitResidual(const Comparison& fitted, const Comparison& held_out, const OnSimulation& on_simulation) {
+ControlResidual nominalRefit(const Comparison& fitted, const Comparison& held_out, const OnSimulation& on_simulation) {
   const auto& nominal = fitted.plant().nominalParameters();
   auto modelAt = [&](const Eigen::VectorXd& z) {
     Model model;
@@ -175,7 +175,7 @@ Eigen::VectorXd nominalRefitResidual(const Comparison& fitted, const Comparison&
   };
   const FitResult result = fit(fitted, problem, round_count);
   const Eigen::VectorXd predicted = held_out.predicted(modelAt(result.z));
-  return predicted.size() ? held_out.measured() - predicted : Eigen::VectorXd{};
+  return {result.residual, predicted.size() ? held_out.measured() - predicted : Eigen::VectorXd{}};
 }
 
 Eigen::VectorXd negativeControlResidual(const Comparison& fitted, const Comparison& held_out, int parameter_count, std::uint64_t seed,

@@ -11,9 +11,9 @@ namespace musclesim {
 /// 100 (1 - after / before) of the normalised gaps; 0 if there is no gap before.
 double gapReductionPercent(const Gap& before, const Gap& after);
 
-/// Whether a gap reduction clearly beats the controls: it is 5 points above the better control and above 0, or leaves less than half of
-/// what the better control leaves.
-bool clearlyBeats(double reduction_percent, double nominal_refit_percent, double negative_control_percent);
+/// Whether a gap reduction clearly beats a control's: it is 5 points above the control's and above 0, or leaves less than half of what the
+/// control leaves.
+bool clearlyBeats(double reduction_percent, double control_percent);
 
 /// Residuals without and with the effects found.
 struct BeforeAndAfter {
@@ -27,8 +27,13 @@ struct BeforeAndAfter {
 /// held out. It extends to 100 % if its upper end leaves no more gap than noise alone may.
 Estimate gapReductionInterval(const BeforeAndAfter& held_out, const BeforeAndAfter& fitted, std::uint64_t seed);
 
-/// Nominal refit: residual on held_out after fitting the plant's nominalParameters(), without any effect or prior.
-Eigen::VectorXd nominalRefitResidual(const Comparison& fitted, const Comparison& held_out, const OnSimulation& on_simulation);
+/// Residuals of a control on the rows it was fitted to and on the held-out rows; empty where it diverged.
+struct ControlResidual {
+  Eigen::VectorXd fitted, held_out;
+};
+
+/// Nominal refit: fits the plant's nominalParameters(), without any effect or prior.
+ControlResidual nominalRefit(const Comparison& fitted, const Comparison& held_out, const OnSimulation& on_simulation);
 
 /// Negative control: residual on held_out after fitting a disturbance of the commands without physical meaning: a sum of `parameter_count`
 /// sines of random frequency (0.1 .. 2 Hz) and phase, their amplitudes fitted.

@@ -11,17 +11,16 @@ namespace musclesim {
 namespace {
 
 TEST(ClearlyBeats, AsksForFivePointsOrHalfOfWhatIsLeft) {
-  EXPECT_TRUE(clearlyBeats(26, 20, 3));
-  EXPECT_FALSE(clearlyBeats(24, 20, 3));
-  EXPECT_FALSE(clearlyBeats(24, 3, 20));
-  EXPECT_TRUE(clearlyBeats(98.6, 97, 0)) << "leaves less than half of what the refit leaves";
-  EXPECT_FALSE(clearlyBeats(98.4, 97, 0));
+  EXPECT_TRUE(clearlyBeats(26, 20));
+  EXPECT_FALSE(clearlyBeats(24, 20));
+  EXPECT_TRUE(clearlyBeats(98.6, 97)) << "leaves less than half of what the control leaves";
+  EXPECT_FALSE(clearlyBeats(98.4, 97));
 }
 
-TEST(ClearlyBeats, RefusesWhatGainsNothingHoweverBadTheOthersAre) {
-  EXPECT_FALSE(clearlyBeats(-10, -80, -9));
-  EXPECT_FALSE(clearlyBeats(4, -80, -9));
-  EXPECT_TRUE(clearlyBeats(6, -80, -9));
+TEST(ClearlyBeats, RefusesWhatGainsNothingHoweverBadTheControlIs) {
+  EXPECT_FALSE(clearlyBeats(-10, -80));
+  EXPECT_FALSE(clearlyBeats(4, -80));
+  EXPECT_TRUE(clearlyBeats(6, -80));
 }
 
 /// Residuals that are constant on each recording: 10 sigmas without effects, `left` sigmas with them.
