@@ -69,7 +69,7 @@ void Comparison::addAverages() {
 /// A pressure or a tension is a channel of power 1 per segment. Signals of motion are functions of each other, so n of them are one
 /// channel, but their sensors fail one by one: it has the power sqrt(n). Blocks of a channel share its power. A single recording, or two,
 /// count as three: they hold as many motions.
-void Comparison::shareEvidence() {
+void Comparison::shareEvidence(Focus focus) {
   constexpr double usual_recordings = 3;
   const auto channelOf = [this](const Block& block) {
     const std::string& name = plant_.signals()[static_cast<std::size_t>(block.signal)].name;
@@ -88,8 +88,13 @@ void Comparison::shareEvidence() {
   const double per_segment = std::max(1.0, usual_recordings / static_cast<double>(segments_.size()));
   for (Block& block : blocks_) {
     const Channel& channel = channels[{block.segment, channelOf(block)}];
-    block.power = per_segment * std::sqrt(static_cast<double>(channel.signals.size())) / channel.blocks;
+    const bool counts = focus == Focus::all_signals || channelOf(block).starts_with("pressure_");
+    block.power = counts ? per_segment * std::sqrt(static_cast<double>(channel.signals.size())) / channel.blocks : 0;
   }
+}
+
+void Comparison::focusOn(Focus focus) {
+  shareEvidence(focus);
 }
 
 void Comparison::average(Eigen::VectorXd& values) const {

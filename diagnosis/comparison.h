@@ -73,6 +73,10 @@ class Comparison {
   Eigen::VectorXd predicted(const std::vector<Prediction>& per_segment, Fidelity fidelity) const;
   const Eigen::VectorXd& measured() const { return measured_; }
 
+  enum class Focus { pressures, all_signals };
+  /// Which signals count in misfits and weights from here on; the others get no power.
+  void focusOn(Focus focus);
+
   /// Mean square of the part of a vector that belongs to one block.
   double meanSquare(const Block& block, const Eigen::VectorXd& residual) const;
   /// Tells how large the gap is: what the right cause may leave if its law differs from ours grows with it (misfit). `nominal_residual`
@@ -98,7 +102,7 @@ class Comparison {
 
  private:
   void addAverages();
-  void shareEvidence();
+  void shareEvidence(Focus focus = Focus::all_signals);
   void average(Eigen::VectorXd& values) const;
   Unsteady unsteadiness(const Eigen::VectorXd& change, const Eigen::VectorXd& residual) const;
   Eigen::VectorXd gathered(const std::vector<Prediction>& per_segment) const;

@@ -226,14 +226,8 @@ Explanation Search::earlierFinding() const {
   return result;
 }
 
-void Search::decide() {
-  nothing_.numbers = Eigen::VectorXd::Zero(plant_.numberCount());
-  nothing_.residual = screening_residual_;
-  about_nothing_ = std::make_unique<Surroundings>(surroundingsOf(nothing_));
-  std::vector<Proposal> proposals = singleEffects(*about_nothing_);
-  std::ranges::move(largerSets(*about_nothing_), std::back_inserter(proposals));
-  if (!options_.earlier.empty()) proposals.push_back({earlierFinding(), 0});
-  fitOnScreening(std::move(proposals));
+/// Expands the best explanations of each size, from one effect on, and in the end the best of all.
+void Search::extendBySize() {
   for (int size = 1; size <= options_.max_effects && !plant_.interrupted(); ++size) {
     const auto of_size = static_cast<std::size_t>(size);
     const std::vector<std::size_t> best = bestOnScreening(0, 1), bases = bestOnScreening(of_size, base_counts[of_size - 1]);
@@ -242,6 +236,59 @@ void Search::decide() {
   }
   for (int further = 0; further < 2 && !plant_.interrupted(); ++further)
     for (const std::size_t index : bestOnScreening(0, 1)) expand(pool_[index]);
+}
+
+/// Whether an effect changes a signal in focus by a noticeable part of its noise.
+bool Search::changesFocus(std::size_t hypothesis) const {
+  constexpr double noticeable = 0.3;  // noise floors
+  return std::ranges::any_of(catalogue_.sensitivities[hypothesis].per_strength, [&](const Eigen::VectorXd& change) {
+    return change.size() == screening_.size() && std::ranges::any_of(screening_.blocks(), [&](const Comparison::Block& block) {
+             return block.power > 0 && std::sqrt(screening_.meanSquare(block, change)) > noticeable * block.sigma;
+           });
+  });
+}
+
+/// The sets that explain the measured pressures alone best. What happens behind the pressures does not disturb them, so that the causes in
+/// front of them can be told there while those behind them are not yet known.
+std::vector<Explanation> Search::explainPressures() {
+  constexpr std::size_t kept = 2;
+  constexpr double too_small = 1;  // nats: less than a parameter costs
+  screening_.focusOn(Comparison::Focus::pressures);
+  if (screening_.misfit(screening_residual_) < too_small) {
+    screening_.focusOn(Comparison::Focus::all_signals);
+    return {};
+  }
+  const std::vector<char> allowed = catalogue_.allowed;
+  for (std::size_t i = 0; i < allowed.size(); ++i)
+    if (!changesFocus(i)) catalogue_.allowed[i] = false;
+  about_nothing_ = std::make_unique<Surroundings>(surroundingsOf(nothing_));
+  fitOnScreening(singleEffects(*about_nothing_));
+  extendBySize();
+  std::vector<Explanation> found;
+  for (const std::size_t index : bestOnScreening(0, kept))
+    if (pool_[index].score > screeningEvidence().score(nothing_)) found.push_back(pool_[index]);
+  pool_.clear();
+  expanded_.clear();
+  catalogue_.allowed = allowed;
+  screening_.focusOn(Comparison::Focus::all_signals);
+  return found;
+}
+
+void Search::decide() {
+  nothing_.numbers = Eigen::VectorXd::Zero(plant_.numberCount());
+  nothing_.residual = screening_residual_;
+  const std::vector<Explanation> of_pressures = explainPressures();
+  about_nothing_ = std::make_unique<Surroundings>(surroundingsOf(nothing_));
+  std::vector<Proposal> proposals = singleEffects(*about_nothing_);
+  std::ranges::move(largerSets(*about_nothing_), std::back_inserter(proposals));
+  for (const Explanation& one : of_pressures) proposals.push_back({one, 0});
+  if (!options_.earlier.empty()) proposals.push_back({earlierFinding(), 0});
+  fitOnScreening(std::move(proposals));
+  for (const Explanation& one : of_pressures) {
+    const auto fitted = std::ranges::find(pool_, one.members, &Explanation::members);
+    if (fitted != pool_.end()) expand(*fitted);
+  }
+  extendBySize();
   fitFinalists();
 }
 

@@ -104,6 +104,9 @@ class Search {
   void fitOnScreening(std::vector<Proposal> proposals);
   void expand(const Explanation& base);
   std::vector<std::size_t> bestOnScreening(std::size_t member_count, std::size_t count) const;
+  void extendBySize();
+  bool changesFocus(std::size_t hypothesis) const;
+  std::vector<Explanation> explainPressures();
   Explanation earlierFinding() const;
   Evidence screeningEvidence() const { return {screening_, screening_residual_, causes_}; }
 

@@ -28,18 +28,18 @@ void accept(const Attempt& attempt, Diagnosis& diagnosis) {
   diagnosis.reduction_high_percent = attempt.reduction_high_percent;
 }
 
-/// Whether a refit of the model's numbers, which competes as an explanation, explains the fitted data nearly as well: its score, at the
-/// price of as many parameters, is less than some nats behind.
-bool refitDoesAsWell(const Search& search, const Eigen::VectorXd& refitted, double score) {
+/// Whether a model without effects explains the fitted data nearly as well: with its numbers within their tolerances, or with a refit of
+/// what is never measured, which pays for its numbers as an explanation pays for its parameters.
+bool numbersDoAsWell(const Search& search, const Eigen::VectorXd& refitted, double score) {
   constexpr double clearly = 2;  // nats
   const Comparison& comparison = search.fitComparison();
-  if (refitted.size() != comparison.size()) return false;
   const auto number_count = static_cast<double>(comparison.plant().nominalParameters().size());
-  return score < clearly - comparison.misfit(refitted) - prices.parameters * number_count;
+  const double of_refit = -comparison.misfit(refitted) - prices.parameters * number_count;
+  return score < clearly + std::max(of_refit, search.nothing().score);
 }
 
-/// Measures the controls, the negative one with as many disturbances as the best explanation has coordinates. True if a refit of the
-/// model's numbers does as well as the best explanation.
+/// Measures the controls, the negative one with as many disturbances as the best explanation has coordinates. True if
+/// numbersDoAsWell().
 bool measureControls(const Search& search, const HeldOut& held_out, const DiagnosisOptions& options, const OnSimulation& on_simulation,
                      Diagnosis& diagnosis) {
   const Explanation& best = search.explanations().front();
@@ -56,7 +56,7 @@ bool measureControls(const Search& search, const HeldOut& held_out, const Diagno
   const auto percentOf = [&](const Eigen::VectorXd& residual) { return residual.size() ? held_out.reductionPercent(residual) : 0.0; };
   diagnosis.nominal_refit_percent = percentOf(nominal.held_out);
   diagnosis.negative_control_percent = percentOf(negative_control);
-  return refitDoesAsWell(search, nominal.fitted, best.score);
+  return numbersDoAsWell(search, nominal.fitted, best.score);
 }
 
 /// What the tolerances of the model's numbers allow explains the gap better than any effect.
@@ -88,7 +88,7 @@ Offer judge(const Search& search, const HeldOut& held_out, const DiagnosisOption
   const Eigen::VectorXd predicted = held_out.comparison.predicted(model);
   if (!predicted.size()) return {};
   const Eigen::VectorXd after = held_out.comparison.measured() - predicted;
-  const bool refit_does_as_well = measureControls(search, held_out, options, on_simulation, diagnosis);
+  const bool numbers_do_as_well = measureControls(search, held_out, options, on_simulation, diagnosis);
   if (search.causes().plant().interrupted()) return {};
   const Estimate interval = gapReductionInterval({held_out.comparison, held_out.before, after},
                                                  {search.fitComparison(), search.nominalResidual(), best.residual}, options.seed);
@@ -96,7 +96,7 @@ Offer judge(const Search& search, const HeldOut& held_out, const DiagnosisOption
   const Attempt attempt{labelsOf(model), model.effects, gap_after, held_out.reductionPercent(after), interval.low, interval.high};
   // The share of the RMS that they leave on unseen data bounds the probability that none of these effects acts.
   const double none = std::min(std::sqrt(std::max(0.0, 1 - attempt.reduction_percent / 100)), search.noneOfThese());
-  const bool found = none <= named && !refit_does_as_well && attempt.reduction_percent > diagnosis.nominal_refit_percent &&
+  const bool found = none <= named && !numbers_do_as_well && attempt.reduction_percent > diagnosis.nominal_refit_percent &&
                      clearlyBeats(attempt.reduction_percent, diagnosis.negative_control_percent);
   if (found) diagnosis.none_of_these = none;
   // Not offered, because it does not hold on the held-out data or gains no more than a control.

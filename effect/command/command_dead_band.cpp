@@ -7,11 +7,14 @@ EffectInfo CommandDeadBand::info() {
           .stage = Stage::command,
           .acts_on = {ComponentKind::muscle},
           .summary = "small commands do not open the valve",
-          .equation = "u' = 0 for u < u_t, u otherwise    u commanded, u' delivered, u_t = threshold",
+          .equation =
+              "closed: u' = 0 until u >= u_t, open: u' = u until u < (1 - h) u_t    u commanded, u' delivered, u_t = threshold, "
+              "h = hysteresis",
           .signature = "below the threshold the pressure stays at zero and nothing moves",
-          .source = "definition; 0.056 of full scale measured on a pneumatic muscle drive",
-          .parameters = {{"threshold", "", 0, 0, 1, 0.02, 0.1, "u_t, fraction of full scale"}},
-          .make = [](const EffectValues& values) { return std::make_unique<CommandDeadBand>(values["threshold"]); }};
+          .source = "definition; 0.056 of full scale measured on a pneumatic muscle drive; a sticking spool opens later than it closes",
+          .parameters = {{"threshold", "", 0, 0, 1, 0.02, 0.1, "u_t, fraction of full scale"},
+                         {"hysteresis", "", 0, 0, 1, 0, 0.5, "h, the valve closes at (1 - h) u_t", true}},
+          .make = [](const EffectValues& values) { return std::make_unique<CommandDeadBand>(values["threshold"], values["hysteresis"]); }};
 }
 
 }  // namespace musclesim

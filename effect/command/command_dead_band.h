@@ -1,7 +1,8 @@
 /// Command stage: the valve does not open for small commands.
-///     u' = 0 for u < u_t,  u otherwise
-/// u commanded, u' delivered pressure, fractions of full scale; u_t = threshold.
-/// Neutral: u_t = 0. Range 0 .. 1, usually 0.02 .. 0.1.  Source: definition; 0.056 measured on a pneumatic muscle drive.
+///     closed: u' = 0 until u >= u_t;  open: u' = u until u < (1 - h) u_t
+/// u commanded, u' delivered pressure, fractions of full scale; u_t = threshold, h = hysteresis.
+/// Neutral: u_t = 0, h = 0. Range 0 .. 1 each, u_t usually 0.02 .. 0.1, h 0 .. 0.5.  Source: definition; u_t = 0.056 measured on a
+/// pneumatic muscle drive; a spool that sticks opens later than it closes.
 #pragma once
 
 #include "musclesim/effect/effect_info.h"
@@ -10,14 +11,22 @@ namespace musclesim {
 
 class CommandDeadBand final : public MuscleRatioEffect {
  public:
-  explicit CommandDeadBand(double threshold) : threshold_(threshold) {}
+  CommandDeadBand(double threshold, double hysteresis) : opens_at_(threshold), closes_at_((1 - hysteresis) * threshold) {}
   static EffectInfo info();
 
  private:
-  double output(double input, const StepTime&) override { return settled(input); }
-  double settled(double input) override { return input < threshold_ ? 0 : input; }
+  double output(double input, const StepTime&) override {
+    is_open_ = input >= (is_open_ ? closes_at_ : opens_at_);
+    return is_open_ ? input : 0;
+  }
+  /// A command that has been there for ever was reached from zero.
+  double settled(double input) override {
+    is_open_ = input >= opens_at_;
+    return is_open_ ? input : 0;
+  }
 
-  double threshold_;
+  double opens_at_, closes_at_;
+  bool is_open_ = false;
 };
 
 }  // namespace musclesim

@@ -86,6 +86,7 @@ std::vector<std::string> acceptableAnswers(const std::string& id, const std::str
   if (id == "transport_delay" && only_motion) patterns.push_back(single ? "sensor_delay@*" : "sensor_delay@all");
   if (id == "sensor_delay" && only_motion && single)
     patterns.push_back(robot.actuatorCount() == 1 ? "transport_delay@*" : "transport_delay@all");
+  if (id == "base_tilt" && robot.angles().size() <= 1) patterns.emplace_back("external_force@*");
   if (id == "joint_stop_offset") patterns.push_back(patternOf("contact", component, robot));
   return patterns;
 }

@@ -23,7 +23,8 @@ Measured measuredBy(const std::vector<std::string>& signals);
 /// component. Look-alikes (docs/reference/effects.md):
 ///   neither pressure nor force measured   valve_lag, viscous_loss, joint_viscous_friction; transport_delay, sensor_delay of all signals
 ///   pressure not measured                 force_gain, pressure_calibration; leak, creep
-///   always                                contact of a joint for joint_stop_offset: a stop within reach is a wall
+///   one joint or none                     external_force for base_tilt: to first order, a tilt is a sideways force in proportion to the
+///   mass always                                contact of a joint for joint_stop_offset: a stop within reach is a wall
 /// Look-alikes that depend on the motion (small range, static data) do not count as right.
 std::vector<std::string> acceptableAnswers(const std::string& id, const std::string& component, const std::vector<std::string>& signals,
                                            const Robot& robot);

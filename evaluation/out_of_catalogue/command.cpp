@@ -57,22 +57,26 @@ class UnequalSteps final : public MuscleRatioEffect {
   double levels_, bow_;
 };
 
-/// Opens at u_t, closes at 0.75 u_t.
+/// Opens at u_t, closes at 0.75 u_t, and opens its orifice gradually: open, u' = u - u_t / 2 exp(-2 (u - 0.75 u_t) / u_t).
 class StickingDeadBand final : public MuscleRatioEffect {
  public:
   explicit StickingDeadBand(const EffectValues& v) : threshold_(v["threshold"]) {}
 
  private:
   double output(double input, const StepTime&) override {
-    constexpr double closing_ratio = 0.75;
     open_ = input >= (open_ ? closing_ratio : 1) * threshold_;
-    return open_ ? input : 0;
+    return delivered(input);
   }
   double settled(double input) override {
     open_ = input >= threshold_;
-    return open_ ? input : 0;
+    return delivered(input);
+  }
+  double delivered(double input) const {
+    if (!open_ || threshold_ <= 0) return open_ ? input : 0;
+    return input - 0.5 * threshold_ * std::exp(-2 * (input / threshold_ - closing_ratio));
   }
 
+  static constexpr double closing_ratio = 0.75;
   double threshold_;
   bool open_ = false;
 };
@@ -110,7 +114,8 @@ std::vector<OutOfCatalogueLaw> commandLaws() {
              {{"bits", "bit", INFINITY, 1, INFINITY, 4, 7, "resolution"}, {"bow_levels", "", 0.1, 0, 100, 0.05, 0.2, "c", true}},
              [](const EffectValues& v) { return std::make_unique<UnequalSteps>(v); }),
        "command_quantisation"},
-      {entry("sticking_dead_band", Stage::command, muscle, "0 until u reaches the threshold, then u until it falls below 0.75 of it",
+      {entry("sticking_dead_band", Stage::command, muscle,
+             "0 until u reaches the threshold, then u - u_t / 2 exp(-2 (u - 0.75 u_t) / u_t) until it falls below 0.75 of it",
              {{"threshold", "", 0, 0, 1, 0.1, 0.35, "of full scale"}},
              [](const EffectValues& v) { return std::make_unique<StickingDeadBand>(v); }),
        "command_dead_band"},

@@ -18,7 +18,7 @@ class BoucWen final : public ForceEffect {
   explicit BoucWen(const EffectValues& v)
       : width_(v["relative_width"]), scale_mm_(v["scale_mm"]), exponent_(v["exponent"]), share_(v["pressure_share"]) {}
   double tensionN(const MuscleInput& input, const ForceBelow& below) const override {
-    const double tension_N = below(input), full_N = actuator().forceLaw().tensionN(1, actuator().maximumLengthMm());
+    const double tension_N = below(input), full_N = actuator().forceLaw().tensionN(1, actuator().restLengthMm());
     const double friction_N = width_ * ((1 - share_) * tension_N + share_ * std::max(0.0, input.pressure_ratio) * full_N);
     return std::max(0.0, tension_N + friction_N * stateAt(input.length_mm));
   }
@@ -67,12 +67,12 @@ class TwoKelvinElements final : public ForceEffect {
     return below(inside);
   }
   void advance(const MuscleInput& input) override {
-    const double immediate_mm = input.length_mm - fast_mm_ - slow_mm_ - actuator().maximumLengthMm();
+    const double immediate_mm = input.length_mm - fast_mm_ - slow_mm_ - actuator().restLengthMm();
     fast_mm_ += input.time.h_s / tau_s_ * (fast_share * amount_ * immediate_mm - fast_mm_);
     slow_mm_ += input.time.h_s / (slow_factor * tau_s_) * ((1 - fast_share) * amount_ * immediate_mm - slow_mm_);
   }
   void settle(const MuscleInput& input) override {
-    const double total_mm = amount_ / (1 + amount_) * (input.length_mm - actuator().maximumLengthMm());
+    const double total_mm = amount_ / (1 + amount_) * (input.length_mm - actuator().restLengthMm());
     fast_mm_ = fast_share * total_mm;
     slow_mm_ = (1 - fast_share) * total_mm;
   }
@@ -98,7 +98,7 @@ class GradualOnset final : public ForceEffect {
 };
 
 double lengthRatio(const Actuator& actuator, double length_mm) {
-  return (length_mm - actuator.minimumLengthMm()) / (actuator.maximumLengthMm() - actuator.minimumLengthMm());
+  return (length_mm - actuator.contractedLengthMm()) / (actuator.restLengthMm() - actuator.contractedLengthMm());
 }
 
 /// F' = (g + s (r - 1/2) + c (r - 1/2)^2) F

@@ -110,7 +110,7 @@ class Tank final : public RatioEffect {
   std::vector<double> before_;
 };
 
-/// dp/dt = (u - p) / tau - (p + p_atm) (dV/dt) / V,  V ~ l (b^2 - l^2), b = 1.1 l_max
+/// dp/dt = (u - p) / tau - (p + p_atm) (dV/dt) / V,  V ~ l (b^2 - l^2), b = 1.1 l_0
 class BraidVolume final : public MuscleRatioEffect {
  public:
   explicit BraidVolume(const EffectValues& v) : coupling_(v["coupling"]), regulator_s_(v["regulator_time_constant_s"]) {}
@@ -118,7 +118,7 @@ class BraidVolume final : public MuscleRatioEffect {
  private:
   double output(double input, const StepTime& time) override {
     constexpr double strand_ratio = 1.1;
-    const double l = actuator().lengthMm(), b = strand_ratio * actuator().maximumLengthMm();
+    const double l = actuator().lengthMm(), b = strand_ratio * actuator().restLengthMm();
     const double volume_rate = lengthRateMmPerS() * (b * b - 3 * l * l) / (l * (b * b - l * l));
     const double rate = (input - pressure_) / regulator_s_ - coupling_ * (pressure_ + atmosphere_ratio) * volume_rate;
     return pressure_ = std::max(0.0, pressure_ + time.h_s * rate);

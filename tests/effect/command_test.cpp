@@ -44,6 +44,16 @@ TEST(CommandDeadBand, LeavesSmallCommandsAtZero) {
   }
 }
 
+TEST(CommandDeadBand, WithHysteresisClosesBelowWhereItOpened) {
+  const Recording commands = commandsFor("rig", 0.6, [](double t) { return Action{0.3 - std::abs(t - 0.3)}; });
+  const ReplayResult run = replayWith(commands, {{"command_dead_band", "all", {{"threshold", 0.2}, {"hysteresis", 0.4}}}});
+  for (std::size_t row = 0; row < commands.time_s.size(); ++row) {
+    const double u = commands.signals[0].values[row];
+    const bool rises = commands.time_s[row] < 0.3;
+    EXPECT_EQ(valuesOf(run, "pressure_0")[row], u >= (rises ? 0.2 : 0.12) ? u : 0) << commands.time_s[row];
+  }
+}
+
 TEST(ChannelSwap, ExchangesTwoMusclesAndTwiceNothing) {
   const Recording commands = wavesFor("elbow", 0.3);
   const ReplayResult run = replayWith(commands, {{"channel_swap", "muscle_1+muscle_0", {}}});
