@@ -146,7 +146,7 @@ std::string mappingText(const TableLook& look) {
       "# Mapping of {}, begun by musclesim import --look. What follows is what can be seen of the file;\n"
       "# what the columns mean, only you know: complete and correct it.\n",
       inQuotes(std::filesystem::path(look.file).filename().string()));
-  text += "robot = \"rig\"                        # rig, elbow, arm, wrist, spring_bench, or a robot file\n";
+  text += "robot = \"rig\"                        # rig, elbow, arm, wrist, pulley_arm, spring_bench, or a robot file\n";
   text += "pressure_full_scale_kPa = 600        # the pressure that counts as 1\n";
   if (!isMatlabFile(look.file)) text += formatMembers(look.format);
   text += "\n[columns]                            # column of the recording = column of the table\n" + clockLine(look) + "\n";

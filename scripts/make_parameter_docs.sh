@@ -92,6 +92,8 @@ tables() {
   config --robot elbow --controller hold | rows elbow | table
   section 'Robot `wrist`'
   config --robot wrist --controller hold | rows wrist | table
+  section 'Robot `pulley_arm`'
+  config --robot pulley_arm --controller hold | rows pulley_arm | table
   section 'Robot `spring_bench`'
   config --robot spring_bench --controller hold | rows spring_bench | table
   section 'Robot `arm`'

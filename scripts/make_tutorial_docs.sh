@@ -108,7 +108,7 @@ TEXT
 show 'for run in 1 2 3 4; do musclesim import logger$run.csv bench.toml bench$run.csv --quiet; done'
 text <<'TEXT'
 
-A robot of your own is a text file; see [A robot of your own](own_robot.md). `spring_bench`, `wrist`, `rig`, `elbow` and `arm` come with the program, and `[robot_parameters]` sets their numbers.
+A robot of your own is a text file; see [A robot of your own](own_robot.md). `spring_bench`, `wrist`, `rig`, `elbow`, `pulley_arm` and `arm` come with the program, and `[robot_parameters]` sets their numbers.
 
 ## 3. The gap
 

@@ -24,9 +24,9 @@ std::pair<std::string, std::string> splitAssignment(const std::string& option, c
 void addModelOptions(CLI::App& command, ModelOptions& options) {
   const std::string model = "Model";
   command
-      .add_option(
-          "--robot", options.robot,
-          "Robot: a file NAME.toml, or arm, rig, elbow, wrist, spring_bench or a plugin's robot (default: the recording's, else arm)")
+      .add_option("--robot", options.robot,
+                  "Robot: a file NAME.toml, or arm, rig, elbow, wrist, pulley_arm, spring_bench or a plugin's robot (default: the "
+                  "recording's, else arm)")
       ->group(model);
   command
       .add_option_function<std::vector<std::string>>(

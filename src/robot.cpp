@@ -142,7 +142,7 @@ Action addRobot(CLI::App& command, ModelOptions& model) {
   begins->callback([=] { *action = [=] { return begin(*name, *out); }; });
 
   CLI::App* exports = sub("export", "Writes the file of a robot that comes with the program");
-  exports->add_option("name", *name, "arm, rig, elbow, wrist or spring_bench")->required();
+  exports->add_option("name", *name, "arm, rig, elbow, wrist, pulley_arm or spring_bench")->required();
   exports->add_option("-o,--out", *out, "File to write (default: standard output)");
   exports->callback([=] { *action = [=] { return exportRobot(*name, *out); }; });
   CLI::App* imports = sub("import", "Turns a robot description of another program (URDF, SDF, MJCF) into a robot file");

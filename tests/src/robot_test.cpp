@@ -111,7 +111,7 @@ TEST_F(RobotCommand, ShowPrintsTheTreeAndDrawsMomentArms) {
 }
 
 TEST_F(RobotCommand, ExportedRobotsCanBeUsed) {
-  for (const std::string name : {"arm", "rig", "elbow", "wrist", "spring_bench"}) {
+  for (const std::string name : {"arm", "rig", "elbow", "wrist", "pulley_arm", "spring_bench"}) {
     const auto exported = run({"robot", "export", name, "-o", name + ".toml"});
     EXPECT_EQ(exported.status, 0) << exported.err;
     const auto checked = run({"robot", "check", name + ".toml"});
