@@ -10,8 +10,10 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <tuple>
 #include <vector>
 
+#include "gap_plot.h"
 #include "plot.h"
 
 namespace musclesim {
@@ -147,11 +149,15 @@ class ImGuiPanel final : public Panel {
     ImGui::SetNextWindowSize({panel_width_px, height});
     ImGui::Begin("panel", nullptr,
                  ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav);
-    drawRun(console, snapshot);
-    ImGui::Separator();
-    drawPressures(console, snapshot);
-    ImGui::Separator();
-    drawPlots(console, snapshot, history);
+    if (console.player()) {
+      drawReplay(console, snapshot);
+    } else {
+      drawRun(console, snapshot);
+      ImGui::Separator();
+      drawPressures(console, snapshot);
+      ImGui::Separator();
+      drawPlots(console, snapshot, history);
+    }
     ImGui::Separator();
     drawSwitches(console);
     ImGui::End();
@@ -164,14 +170,54 @@ class ImGuiPanel final : public Panel {
     if (ImGui::RadioButton("automatic", !by_hand) && by_hand) console.toggleManual();
     ImGui::SameLine();
     if (ImGui::RadioButton("by hand", by_hand) && !by_hand) console.toggleManual();
-    if (ImGui::Button(console.pace().isPaused() ? "Resume" : "Pause", {76, 0})) console.press('p');
-    ImGui::SameLine();
+    drawPause(console);
     if (ImGui::Button("Step")) console.press(key::right);
     ImGui::SameLine();
+    drawSpeed(console);
+    ImGui::TextUnformatted(paceLine(console).c_str());
+  }
+
+  static void drawPause(Console& console) {
+    if (ImGui::Button(console.pace().isPaused() ? "Resume" : "Pause", {76, 0})) console.press('p');
+    ImGui::SameLine();
+  }
+
+  static void drawSpeed(Console& console) {
     ImGui::SetNextItemWidth(-1);
     auto speed = static_cast<float>(console.pace().speed());
     if (ImGui::SliderFloat("##speed", &speed, 0.01F, 100, "speed %.3g", ImGuiSliderFlags_Logarithmic)) console.pace().setSpeed(speed);
-    ImGui::TextUnformatted(paceLine(console).c_str());
+  }
+
+  static void drawReplay(Console& console, const Snapshot& snapshot) {
+    const Player& player = *console.player();
+    ImGui::Text("%.2f of %.2f s", player.timeS(), player.endS());
+    drawPause(console);
+    for (const auto& [name, code] : {std::pair{"<", key::left}, std::pair{">", key::right}}) {
+      if (ImGui::Button(name)) console.press(code);
+      ImGui::SameLine();
+    }
+    drawSpeed(console);
+    // Each switch does what its key does.
+    for (auto [name, code, is_on] :
+         {std::tuple{"effects (e)", 'e', player.withEffects()}, std::tuple{"ghost (g)", 'g', player.hasGhost() && console.style.ghost},
+          std::tuple{"loop (l)", 'l', player.isLooping()}}) {
+      if (ImGui::Checkbox(name, &is_on)) console.press(code);
+      if (code != 'l') ImGui::SameLine();
+    }
+    for (const std::string& line : replayLines(console, snapshot)) ImGui::TextWrapped("%s", line.c_str());
+    ImGui::Separator();
+    drawSignalChoice(*console.player());
+    constexpr float switches_px = 34, titles_px = 60, smallest_px = 40;
+    drawGapPlots(player, std::max(smallest_px, (ImGui::GetContentRegionAvail().y - switches_px - titles_px) / 2));
+  }
+
+  static void drawSignalChoice(Player& player) {
+    if (!player.gap()) return;
+    ImGui::SetNextItemWidth(-1);
+    if (!ImGui::BeginCombo("##signal", player.gap()->name.c_str())) return;
+    for (int i = 0; i < static_cast<int>(player.gaps().size()); ++i)
+      if (ImGui::Selectable(player.gaps()[static_cast<std::size_t>(i)].name.c_str(), i == player.chosen())) player.choose(i);
+    ImGui::EndCombo();
   }
 
   /// One slider per muscle with a patch of its colour; a click on the patch selects the muscle. Many muscles scroll.

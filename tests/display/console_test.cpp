@@ -25,10 +25,12 @@ class ConsoleOfTwelveMuscles : public testing::Test {
 };
 
 TEST_F(ConsoleOfTwelveMuscles, NoKeyHasTwoMeanings) {
-  std::set<int> seen;
-  for (const auto& binding : Console::bindings()) {
-    EXPECT_FALSE(binding.meaning.empty());
-    for (const int code : binding.codes) EXPECT_TRUE(seen.insert(code).second) << code;
+  for (const auto& bindings : {Console::bindingsOfRun(), Console::bindingsOfReplay()}) {
+    std::set<int> seen;
+    for (const auto& binding : bindings) {
+      EXPECT_FALSE(binding.meaning.empty());
+      for (const int code : binding.codes) EXPECT_TRUE(seen.insert(code).second) << code;
+    }
   }
 }
 
@@ -75,9 +77,10 @@ TEST_F(ConsoleOfTwelveMuscles, UnboundKeysDoNothing) {
 /// docs/user/window.md lists the same keys as the help.
 TEST(KeysOfTheWindow, AreDocumented) {
   const std::string page = readTextFile(MUSCLESIM_WINDOW_PAGE, 1 << 20);
-  for (const auto& binding : Console::bindings())
-    EXPECT_NE(page.find("| `" + binding.keys + "` | " + binding.meaning + " |"), std::string::npos)
-        << binding.keys << ": " << binding.meaning;
+  for (const auto& bindings : {Console::bindingsOfRun(), Console::bindingsOfReplay()})
+    for (const auto& binding : bindings)
+      EXPECT_NE(page.find("| `" + binding.keys + "` | " + binding.meaning + " |"), std::string::npos)
+          << binding.keys << ": " << binding.meaning;
 }
 
 }  // namespace
