@@ -144,6 +144,7 @@ std::optional<DrawnTarget> SnapshotTaker::target(const State& state) {
 Snapshot SnapshotTaker::take(const State& state) {
   Snapshot snapshot;
   snapshot.state = state;
+  for (const Robot::Angle& angle : simulation_.robot().angles()) snapshot.angle_names.push_back(angle.name);
   if (const Controller* controller = simulation_.controller()) snapshot.activity = controller->activity();
   for (const auto& primitive : simulation_.world().primitives())
     if (primitive->isVisible()) snapshot.parts.push_back(partOf(*primitive));

@@ -50,6 +50,7 @@ struct DrawnTarget {
 /// A copy of the state, taken between two steps. Drawing it needs no simulation, so another thread may draw it.
 struct Snapshot {
   State state;
+  std::vector<std::string> angle_names;  ///< of the state's angles
   std::optional<double> activity;
   std::vector<DrawnPart> parts;
   std::vector<DrawnHose> hoses;

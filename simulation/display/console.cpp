@@ -39,7 +39,7 @@ Bindings bindingsOfView() {
       {"Up  Down",
        "zoom in, out (also the wheel)",
        {key::up, key::down},
-       [](Console& c, int code) { c.camera.zoom(code == key::up ? zoom_step : 1 / zoom_step); }},
+       [](Console& c, int code) { c.zoom(code == key::up ? zoom_step : 1 / zoom_step); }},
       {"c", "reset the view", {'c'}, [](Console& c, int) { c.resetView(); }},
       {"t", "transparent bones", {'t'}, [](Console& c, int) { flip(c, c.style.transparent, "transparent bones"); }},
       {"m", "colour muscles by tension", {'m'}, [](Console& c, int) { flip(c, c.style.color_tension, "colours by tension"); }},
@@ -89,6 +89,7 @@ const std::vector<Console::Binding>& Console::bindingsOfRun() {
         {'r'},
         [](Console& c, int) {
           c.hands().reset();
+          c.keeps_in_view = true;  // without pressure it hangs down, often out of the picture
           c.say("all pressures 0, by hand");
         }}},
       bindingsOfView(),
@@ -145,6 +146,32 @@ Console::Console(Player& player, Pace& pace, const Camera& first)
       pace_(pace),
       first_camera_(first),
       muscle_count_(static_cast<int>(player.snapshot()->hoses.size())) {}
+
+void Console::resetView() {
+  camera = first_camera_;
+  keeps_in_view = false;
+}
+
+void Console::zoom(float factor) {
+  camera.zoom(factor);
+  keeps_in_view = false;
+}
+
+void Console::rotate(float right_px, float down_px) {
+  camera.rotate(right_px, down_px);
+  keeps_in_view = false;
+}
+
+void Console::pan(float right_px, float down_px, float height_px) {
+  camera.pan(right_px, down_px, height_px);
+  keeps_in_view = false;
+}
+
+/// A little per picture, so that the view glides.
+void Console::keepInView(const Bounds& bounds, float width_px, float height_px) {
+  constexpr float glide = 1.03F;
+  if (keeps_in_view && !camera.shows(bounds.low, bounds.high, width_px, height_px)) camera.zoom(1 / glide);
+}
 
 void Console::play(double wall_s) {
   if (pace_.isPaused()) return;
@@ -227,6 +254,7 @@ nlohmann::json Console::state() const {
                           {"frames", style.frames},
                           {"help", show_help},
                           {"panel", show_panel},
+                          {"hidden_plots", hidden_plots},
                           {"video", wants_video}};
   if (divergence) state["divergence"] = *divergence;
   if (hands_) {

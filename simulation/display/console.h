@@ -4,6 +4,7 @@
 #include <chrono>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -56,7 +57,13 @@ class Console {
   /// Replays: plays on by a time on the wall.
   void play(double wall_s);
   void togglePause();
-  void resetView() { camera = first_camera_; }
+  /// The user's changes of the view.
+  void resetView();
+  void zoom(float factor);
+  void rotate(float right_px, float down_px);
+  void pan(float right_px, float down_px, float height_px);
+  /// To be called before every picture.
+  void keepInView(const Bounds& bounds, float width_px, float height_px);
   void toggleEffects();
   void toggleGhost();
   int selected() const { return style.selected; }
@@ -68,6 +75,8 @@ class Console {
   Camera camera;
   SceneStyle style;
   bool show_help = false, show_panel = true;
+  bool keeps_in_view = false;  ///< moves the camera away until the whole robot is visible; until the user moves it
+  std::set<std::string> hidden_plots = {"hand x", "hand z"};  ///< plots of the panel that the user does not want
   bool wants_screenshot = false, wants_video = false;
   std::optional<std::string> divergence;  ///< text of the banner
 

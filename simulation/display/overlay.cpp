@@ -37,12 +37,16 @@ const Color ink{0.13, 0.14, 0.16, ""}, paper{1, 1, 1, ""}, night{0.10, 0.11, 0.1
     alarm{0.72, 0.08, 0.06, ""};
 constexpr float margin = 12;
 
+float boxHeight(const Painter& painter, const std::vector<std::string>& lines) {
+  return painter.lineHeight() * static_cast<float>(lines.size()) + margin;
+}
+
 /// Draws lines of text in a box.
 void drawBox(Painter& painter, float x, float y, const std::vector<std::string>& lines, const Color& text, const Color& box, float alpha) {
   float width = 0;
   for (const std::string& line : lines) width = std::max(width, painter.widthOf(line));
   const float line = painter.lineHeight();
-  painter.rectangle(x, y, width + 2 * margin, line * static_cast<float>(lines.size()) + margin, box, alpha);
+  painter.rectangle(x, y, width + 2 * margin, boxHeight(painter, lines), box, alpha);
   for (std::size_t i = 0; i < lines.size(); ++i) painter.text(x + margin, y + margin / 2 + line * static_cast<float>(i), lines[i], text);
 }
 
@@ -160,16 +164,17 @@ void drawOverlay(Painter& painter, const Console& console, const Snapshot& snaps
     drawTimeLine(painter, *console.player(), time_line);
     height = time_line.top;
   }
+  if (console.divergence) drawBanner(painter, console, width, 2 * margin);
+  if (console.show_help) return drawHelp(painter, console, width, whole_height);  // nothing shines through its box
   if (console.style.frames) drawLabels(painter, console, snapshot, width, whole_height);
+  const float notice_top = height - 3 * line - margin;
   if (with_status) {
     const std::vector<std::string> lines = statusLines(console, snapshot);
-    drawBox(painter, margin, height - line * static_cast<float>(lines.size() + 4), lines, ink, paper, 0.78F);
+    drawBox(painter, margin, notice_top - margin - boxHeight(painter, lines), lines, ink, paper, 0.78F);
   }
   if (const std::string notice = console.notice(); !notice.empty())
-    drawBox(painter, (width - painter.widthOf(notice)) / 2 - margin, height - 3 * line - margin, {notice}, paper, night, 0.80F);
+    drawBox(painter, (width - painter.widthOf(notice)) / 2 - margin, notice_top, {notice}, paper, night, 0.80F);
   painter.text(margin, height - line - margin / 2, "h: keys", ink);
-  if (console.divergence) drawBanner(painter, console, width, 2 * margin);
-  if (console.show_help) drawHelp(painter, console, width, whole_height);
 }
 
 }  // namespace musclesim

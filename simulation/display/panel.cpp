@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <tuple>
 #include <vector>
 
@@ -257,45 +258,97 @@ class ImGuiPanel final : public Panel {
     ImGui::PopID();
   }
 
-  static void drawPlots(const Console& console, const Snapshot& snapshot, const History& history) {
-    constexpr float switches_px = 34, title_px = 21, smallest_px = 30;
-    const bool has_height = snapshot.state.hand_mm.has_value();
-    const float plot_count = has_height ? (snapshot.activity ? 5 : 4) : 3;
-    const float height = std::max(smallest_px, (ImGui::GetContentRegionAvail().y - switches_px) / plot_count - title_px - 5);
-    drawReach();
-    if (has_height) drawTask(snapshot, history, height);
+  /// A plot that the user may choose.
+  struct LivePlot {
+    std::string name, title;
+    std::vector<PlotCurve> curves;
+    std::optional<std::pair<double, double>> range;
+  };
+
+  static std::vector<LivePlot> plotsOf(const Console& console, const Snapshot& snapshot) {
+    std::vector<LivePlot> plots;
+    if (snapshot.state.hand_mm) plots.push_back({"height", "", heightCurves(snapshot), {}});
+    if (snapshot.activity)
+      plots.push_back({"activity", "", {{"activity", activity_color, [](const History::Sample& s) { return s.activity; }}}, {}});
+    if (!snapshot.angle_names.empty()) plots.push_back({"angles", "angles/deg", angleCurves(snapshot), {}});
     const auto muscle = static_cast<std::size_t>(std::max(0, console.selected()));
-    const auto of = [muscle](std::vector<double> State::*signal) {
-      return [muscle, signal](const History::Sample& sample) -> std::optional<double> {
-        const auto& values = sample.state.*signal;
-        return muscle < values.size() ? std::optional(values[muscle]) : std::nullopt;
-      };
-    };
-    drawPlot(fmt::format("muscle {}", muscle),
-             {{"command", command_color, of(&State::command)}, {"pressure", pressure_color, of(&State::pressure)}}, history, height,
-             std::pair(0.0, 1.0));
-    drawPlot("", {{"length/mm", length_color, of(&State::length_mm)}}, history, height, std::nullopt);
-    drawPlot("", {{"force/N", force_color, of(&State::force_N)}}, history, height, std::nullopt);
+    plots.push_back(
+        {"pressure",
+         fmt::format("muscle {}", muscle),
+         {{"command", command_color, entryOf(&State::command, muscle)}, {"pressure", pressure_color, entryOf(&State::pressure, muscle)}},
+         std::pair(0.0, 1.0)});
+    plots.push_back({"length", "", {{"length/mm", length_color, entryOf(&State::length_mm, muscle)}}, {}});
+    plots.push_back({"force", "", {{"force/N", force_color, entryOf(&State::force_N, muscle)}}, {}});
+    for (const int axis : {0, 2})
+      if (snapshot.state.hand_mm) {
+        const std::string name = axis == 0 ? "hand x" : "hand z";
+        plots.push_back({name, "", {{name + "/mm", height_color, handCurve(axis)}}, {}});
+      }
+    return plots;
   }
 
-  /// Writes the duration of the plots at the right end of the first title.
+  using Value = std::function<std::optional<double>(const History::Sample&)>;
+
+  static Value entryOf(std::vector<double> State::*signal, std::size_t entry) {
+    return [entry, signal](const History::Sample& sample) -> std::optional<double> {
+      const auto& values = sample.state.*signal;
+      return entry < values.size() ? std::optional(values[entry]) : std::nullopt;
+    };
+  }
+
+  static Value handCurve(int axis) {
+    return [axis](const History::Sample& sample) -> std::optional<double> {
+      return sample.state.hand_mm ? std::optional((*sample.state.hand_mm)[axis]) : std::nullopt;
+    };
+  }
+
+  static std::vector<PlotCurve> heightCurves(const Snapshot& snapshot) {
+    std::vector<PlotCurve> curves;
+    if (snapshot.target) curves.push_back({"target", target_color, [](const History::Sample& s) { return s.target_height_mm; }});
+    curves.push_back({"height/mm", height_color, handCurve(1)});
+    return curves;
+  }
+
+  static std::vector<PlotCurve> angleCurves(const Snapshot& snapshot) {
+    const Color colors[] = {pressure_color, force_color, activity_color, length_color};
+    std::vector<PlotCurve> curves;
+    for (std::size_t i = 0; i < snapshot.angle_names.size(); ++i)
+      curves.push_back({snapshot.angle_names[i], colors[i % std::size(colors)], entryOf(&State::angle_deg, i)});
+    return curves;
+  }
+
+  static void choosePlots(Console& console, const std::vector<LivePlot>& plots) {
+    ImGui::SetNextItemWidth(90);
+    if (!ImGui::BeginCombo("##plots", "plots")) return;
+    for (const LivePlot& plot : plots) {
+      const bool is_shown = !console.hidden_plots.contains(plot.name);
+      if (!ImGui::Selectable(plot.name.c_str(), is_shown, ImGuiSelectableFlags_DontClosePopups)) continue;
+      if (is_shown)
+        console.hidden_plots.insert(plot.name);
+      else
+        console.hidden_plots.erase(plot.name);
+    }
+    ImGui::EndCombo();
+  }
+
+  static void drawPlots(Console& console, const Snapshot& snapshot, const History& history) {
+    constexpr float switches_px = 34, title_px = 21, smallest_px = 30;
+    std::vector<LivePlot> plots = plotsOf(console, snapshot);
+    drawReach();
+    choosePlots(console, plots);
+    std::erase_if(plots, [&](const LivePlot& plot) { return console.hidden_plots.contains(plot.name); });
+    const auto count = static_cast<float>(std::max<std::size_t>(1, plots.size()));
+    const float height = std::max(smallest_px, (ImGui::GetContentRegionAvail().y - switches_px) / count - title_px - 5);
+    for (const LivePlot& plot : plots) drawPlot(plot.title, plot.curves, history, height, plot.range);
+  }
+
+  /// Writes the duration of the plots at the right end of the line.
   static void drawReach() {
     const std::string reach = fmt::format("last {:g} s", History::duration_s);
     const ImVec2 line = ImGui::GetCursorScreenPos();
     const float right = line.x + ImGui::GetContentRegionAvail().x;
     ImGui::GetWindowDrawList()->AddText({right - ImGui::CalcTextSize(reach.c_str()).x, line.y}, IM_COL32(130, 135, 142, 255),
                                         reach.c_str());
-  }
-
-  static void drawTask(const Snapshot& snapshot, const History& history, float height) {
-    std::vector<PlotCurve> curves;
-    if (snapshot.target) curves.push_back({"target", target_color, [](const History::Sample& s) { return s.target_height_mm; }});
-    curves.push_back({"height/mm", height_color, [](const History::Sample& s) -> std::optional<double> {
-                        return s.state.hand_mm ? std::optional(s.state.hand_mm->y()) : std::nullopt;
-                      }});
-    drawPlot("", curves, history, height, std::nullopt);
-    if (snapshot.activity)
-      drawPlot("", {{"activity", activity_color, [](const History::Sample& s) { return s.activity; }}}, history, height, std::nullopt);
   }
 
   static void drawSwitches(Console& console) {

@@ -247,6 +247,7 @@ void Window::draw() {
   const auto snapshot = current();
   if (!shared_.player) history_.add(*snapshot);
   fitTarget();
+  console_.keepInView(boundsOf(*snapshot), static_cast<float>(target_->width()), static_cast<float>(height_));
   scene_->draw(*snapshot, console_.camera, console_.style, *target_);
   savePictures();
   drawOver(*snapshot);
@@ -290,7 +291,7 @@ void Window::button(int which, int state, int x, int y) {
   if (panel_ && panel_->button(which, state, x, y)) return;
   if (scrub(which, state, x, y)) return;
   if (which == wheel_up || which == wheel_down) {
-    if (state == GLUT_DOWN) console_.camera.zoom(which == wheel_up ? wheel_zoom : 1 / wheel_zoom);
+    if (state == GLUT_DOWN) console_.zoom(which == wheel_up ? wheel_zoom : 1 / wheel_zoom);
     return log("wheel");
   }
   if (state == GLUT_DOWN) {
@@ -316,9 +317,9 @@ void Window::drag(int x, int y) {
   last_y_ = y;
   const auto dx = static_cast<float>(right), dy = static_cast<float>(down);
   if (dragged_button_ == GLUT_LEFT_BUTTON)
-    console_.camera.rotate(dx, dy);
+    console_.rotate(dx, dy);
   else
-    console_.camera.pan(dx, dy, static_cast<float>(height_));
+    console_.pan(dx, dy, static_cast<float>(height_));
 }
 
 /// Selects the muscle whose line passes nearest to the pointer, if one is near.

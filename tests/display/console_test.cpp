@@ -63,6 +63,20 @@ TEST_F(ConsoleOfTwelveMuscles, PressureGoesInHundredthsAndStaysInRange) {
   EXPECT_EQ(hands.pressures()[3], 1);
 }
 
+TEST_F(ConsoleOfTwelveMuscles, AfterVentingTheWholeRobotComesIntoView) {
+  const Bounds hanging{{-200, -2000, -200}, {200, 400, 200}};
+  const auto draw = [&] {
+    for (int picture = 0; picture < 200; ++picture) console.keepInView(hanging, 640, 480);
+    return console.camera.shows(hanging.low, hanging.high, 640, 480);
+  };
+  EXPECT_FALSE(draw());
+  console.press('r');
+  EXPECT_TRUE(draw());
+  EXPECT_LT(console.camera.distance_mm, 10000) << "and no farther away than needed";
+  for (int i = 0; i < 20; ++i) console.press(key::up);
+  EXPECT_FALSE(draw()) << "the user's view stays";
+}
+
 TEST_F(ConsoleOfTwelveMuscles, CapitalsCount) {
   EXPECT_TRUE(console.press('I'));
   EXPECT_TRUE(hands.isManual());
