@@ -113,6 +113,11 @@ void Svg::frame(const SvgBox& box, const std::string& color) {
                       pixels(box.left), pixels(box.top), pixels(box.width), pixels(box.height), color);
 }
 
+void Svg::fill(const SvgBox& box, const std::string& color) {
+  out_ += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\"/>\n", pixels(box.left), pixels(box.top),
+                      pixels(box.width), pixels(box.height), color);
+}
+
 void Svg::text(SvgPoint where, const std::string& words, const SvgTextStyle& style) {
   const char* anchor = style.anchor == SvgAnchor::start ? "start" : style.anchor == SvgAnchor::middle ? "middle" : "end";
   const std::string turn = style.turned ? fmt::format(" transform=\"rotate(-90 {} {})\"", pixels(where.x), pixels(where.y)) : "";

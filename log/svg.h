@@ -53,6 +53,7 @@ class Svg {
 
   void line(SvgPoint from, SvgPoint to, const std::string& color, double width);
   void frame(const SvgBox& box, const std::string& color);
+  void fill(const SvgBox& box, const std::string& color);
   void text(SvgPoint where, const std::string& words, const SvgTextStyle& style);
   /// Lines through the points of each piece, clipped to `clip`. A piece of one point is drawn as a dot. Light colours get a darker outline
   /// to be visible on white. `hint` is the tooltip.

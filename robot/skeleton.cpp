@@ -58,13 +58,13 @@ std::string Coordinate::name() const {
   return only ? joint->name() : fmt::format("axis {} of {}", axis, joint->name());
 }
 
-Skeleton::Skeleton(const World& world) {
-  addBones(world);
+Skeleton::Skeleton(const World& world, Loops loops) {
+  addBones(world, loops);
   setPose(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(coordinates_.size())));
 }
 
 /// From the environment outwards: every round hangs bodies on those that already hang.
-void Skeleton::addBones(const World& world) {
+void Skeleton::addBones(const World& world, Loops loops) {
   std::vector<const Joint*> waiting = jointsOfBones(world);
   const auto bodyOf = [&](dBodyID id) -> const Body& {
     return **std::ranges::find_if(world.bodies(), [&](const auto& body) { return body->id == id; });
@@ -75,6 +75,10 @@ void Skeleton::addBones(const World& world) {
     std::vector<const Joint*> later;
     for (const Joint* joint : waiting) {
       const dBodyID first = dJointGetBody(joint->id(), 0), second = dJointGetBody(joint->id(), 1);
+      if (isHeld(first) && isHeld(second) && loops == Loops::opened && joint->kind() == Joint::Kind::ball) {
+        closures_.push_back(joint);
+        continue;
+      }
       if (isHeld(first) && isHeld(second))
         throw BadParameter(joint->name() + " closes a loop of joints; robots settle only if their joints form a tree");
       if (!isHeld(first) && !isHeld(second)) {

@@ -32,10 +32,14 @@ struct Coordinate {
 /// about the second axis of two-axis hinges belong to other joints of ODE and are left out.
 class Skeleton {
  public:
+  /// What becomes of a joint that closes a loop. Opened: ball joints become closures(), which a pose need not fulfil.
+  enum class Loops { refused, opened };
   /// Throws BadParameter for a body that nothing holds and for joints that close a loop; the message names them.
-  explicit Skeleton(const World& world);
+  explicit Skeleton(const World& world, Loops loops = Loops::refused);
 
   const std::vector<Coordinate>& coordinates() const { return coordinates_; }
+  /// Ball joints at which loops were opened.
+  const std::vector<const Joint*>& closures() const { return closures_; }
   /// Coordinates after a small displacement: the sum, but rotation vectors of ball joints are composed.
   Eigen::VectorXd displaced(const Eigen::VectorXd& coordinates, const Eigen::VectorXd& by) const;
   /// Poses of all bodies; the bodies themselves stay where they are until placeBodies().
@@ -77,13 +81,14 @@ class Skeleton {
     Eigen::Matrix3d rotation;
     Vector force_N, torque_Nmm;  ///< about the origin of the world
   };
-  void addBones(const World& world);
+  void addBones(const World& world, Loops loops);
   Bone boneOn(const Joint& joint, const Body& body, int parent);
   void addCoordinates(Bone& bone, bool is_first);
   void setPose(Bone& bone, const Eigen::VectorXd& coordinates) const;
 
   std::vector<Bone> bones_;  ///< a body stands behind the one that it hangs on
   std::vector<Coordinate> coordinates_;
+  std::vector<const Joint*> closures_;
 };
 
 }  // namespace musclesim

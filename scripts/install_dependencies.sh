@@ -44,7 +44,7 @@ test_packages=(
   "libgtest-dev           test framework"
   "python3                the test of scripts/check_layers.py"
   "gnuplot-nox            draws figures from recordings"
-  "librsvg2-bin           checks that figures can be rendered"
+  "librsvg2-bin           figures as PNG"
   "ffmpeg                 videos"
   "xvfb                   a display for the tests of the window"
   "xdotool                keys and mouse for the tests of the window"

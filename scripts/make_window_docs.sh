@@ -1,15 +1,17 @@
 #!/usr/bin/env bash
 # Makes the pictures of docs/user/window.md, docs/user/figures/window*.png, and the table of its section "Measured".
-# Usage: scripts/make_window_docs.sh [build folder]   (default: build/release)
-# Needs Xvfb, xdotool, ffmpeg and ImageMagick.
+# Usage: scripts/make_window_docs.sh [--pictures] [build folder]   (default: build/release)
+# With --pictures the table stays. Needs Xvfb, xdotool and ffmpeg.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+only_pictures=
+[[ "${1:-}" == --pictures ]] && { only_pictures=1; shift; }
 build="${1:-build/release}"
 program="$PWD/$build/musclesim"
 figures="$PWD/docs/user/figures"
 page="$PWD/docs/user/window.md"
 [[ -x "$program" ]] || { echo "make_window_docs.sh: there is no program $program; build it first" >&2; exit 1; }
-for tool in Xvfb xdotool ffmpeg ffprobe import montage; do
+for tool in Xvfb xdotool ffmpeg ffprobe; do
   command -v "$tool" >/dev/null || { echo "make_window_docs.sh: $tool is not installed" >&2; exit 1; }
 done
 
@@ -34,7 +36,7 @@ close_window() {
   xdotool key q
   wait "$child" || true
 }
-shot() { import -window root png24:"$figures/$1"; }
+shot() { ffmpeg -v error -y -f x11grab -draw_mouse 0 -video_size 1024x768 -i "$DISPLAY" -frames:v 1 -pix_fmt rgb24 "$figures/$1"; }
 
 window --seed 1
 sleep 5
@@ -58,13 +60,15 @@ close_window
 for robot in rig elbow; do
   "$program" --robot "$robot" --controller hold --duration 1 --plane --picture-size 800x600 --screenshot "$robot.png" --out "$robot" --quiet >/dev/null
 done
-montage rig.png elbow.png -tile 2x1 -geometry 512x384+2+0 -depth 8 png24:"$figures/window_rig_elbow.png"
+ffmpeg -v error -y -i rig.png -i elbow.png -filter_complex hstack,scale=1024:-2 -frames:v 1 -pix_fmt rgb24 "$figures/window_rig_elbow.png"
 
 begin=$(date +%s.%N)
 "$program" --video arm.mp4 --duration 20 --out video --quiet >/dev/null
 video_s=$(echo "$(date +%s.%N) - $begin" | bc)
 frames=$(ffprobe -v error -show_entries stream=nb_frames -of csv=p=0 arm.mp4)
 ffmpeg -v error -y -i arm.mp4 -vf "select='eq(mod(n-30,100),0)',crop=700:768:150:0,scale=350:-1,tile=6x1" -frames:v 1 "$figures/window_video.png"
+
+[[ -n "$only_pictures" ]] && { echo "written: $figures/window*.png"; exit; }
 
 # measure SECONDS ARGUMENT...: rate of pictures and pace in a window of 1024 x 768 with software rendering.
 measure() {

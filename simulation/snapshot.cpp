@@ -1,6 +1,7 @@
 #include "snapshot.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <limits>
 
 #include "../robot/ode_vector.h"
@@ -43,7 +44,14 @@ DrawnPart partOf(const Pulley& pulley) {
   return {Shape::Kind::cylinder, {radius_mm, drum_width_mm, 0}, poseFrom(pulley.center_mm, turn), color};
 }
 
-/// The chain's ends lie one radius beyond the first and the last bead.
+/// Where a chain is attached. The direction of its outer link does not say it: the two beads of a short link coincide.
+Eigen::Vector3f attachmentOf(const Joint& joint) {
+  dVector3 anchor = {};
+  dJointGetBallAnchor(joint.id(), anchor);
+  return fromOde(anchor).cast<float>();
+}
+
+/// Loose ends of a chain lie one radius beyond the first and the last bead.
 std::vector<Eigen::Vector3f> pointsOf(const Actuator& muscle) {
   std::vector<Eigen::Vector3f> points;
   if (muscle.line()) {
@@ -53,16 +61,17 @@ std::vector<Eigen::Vector3f> pointsOf(const Actuator& muscle) {
   const double radius = muscle.settings().bead_radius_mm;
   const auto along = [](const Link& link) { return (positionOf(link.bead[1]) - positionOf(link.bead[0])).stableNormalized(); };
   const Link &first = muscle.links().front(), &last = muscle.links().back();
-  points.push_back((positionOf(first.bead[0]) - radius * along(first)).cast<float>());
+  points.push_back(muscle.startJoint() ? attachmentOf(*muscle.startJoint())
+                                       : (positionOf(first.bead[0]) - radius * along(first)).cast<float>());
   for (const Link& link : muscle.links())
     for (const dBodyID bead : link.bead) points.push_back(positionOf(bead).cast<float>());
-  points.push_back((positionOf(last.bead[1]) + radius * along(last)).cast<float>());
+  points.push_back(muscle.endJoint() ? attachmentOf(*muscle.endJoint()) : (positionOf(last.bead[1]) + radius * along(last)).cast<float>());
   return points;
 }
 
 DrawnHose hoseOf(const Actuator& muscle, const Color& color) {
   const float radius = muscle.line() ? line_radius_mm : static_cast<float>(muscle.settings().bead_radius_mm);
-  return {pointsOf(muscle), radius, color, muscle.tensionN(), muscle.minimumLengthMm(), muscle.maximumLengthMm()};
+  return {pointsOf(muscle), radius, color, muscle.tensionN(), muscle.minimumLengthMm(), muscle.maximumLengthMm(), muscle.lengthMm()};
 }
 
 std::optional<Vector> anchorOf(const Joint& joint) {
@@ -135,6 +144,7 @@ std::optional<DrawnTarget> SnapshotTaker::target(const State& state) {
 Snapshot SnapshotTaker::take(const State& state) {
   Snapshot snapshot;
   snapshot.state = state;
+  for (const Robot::Angle& angle : simulation_.robot().angles()) snapshot.angle_names.push_back(angle.name);
   if (const Controller* controller = simulation_.controller()) snapshot.activity = controller->activity();
   for (const auto& primitive : simulation_.world().primitives())
     if (primitive->isVisible()) snapshot.parts.push_back(partOf(*primitive));
@@ -149,14 +159,19 @@ Snapshot SnapshotTaker::take(const State& state) {
   return snapshot;
 }
 
-Bounds boundsOf(const Snapshot& snapshot) {
-  constexpr float infinity = std::numeric_limits<float>::infinity();
+namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+/// A box that grows around what is added.
+struct GrowingBox {
   Bounds bounds{Eigen::Vector3f::Constant(infinity), Eigen::Vector3f::Constant(-infinity)};
-  const auto add = [&](const Eigen::Vector3f& point, float margin) {
+
+  void add(const Eigen::Vector3f& point, float margin) {
     bounds.low = bounds.low.cwiseMin((point.array() - margin).matrix());
     bounds.high = bounds.high.cwiseMax((point.array() + margin).matrix());
-  };
-  for (const DrawnPart& part : snapshot.parts) {
+  }
+  void add(const DrawnPart& part) {
     const Eigen::Vector3f center = part.pose.topRightCorner<3, 1>();
     const Eigen::Vector3f axis =
         part.pose.block<3, 1>(0, 2) *
@@ -165,9 +180,34 @@ Bounds boundsOf(const Snapshot& snapshot) {
     add(center + axis, margin);
     add(center - axis, margin);
   }
-  for (const DrawnHose& hose : snapshot.hoses)
-    for (const auto& point : hose.points_mm) add(point, hose.radius_mm);
-  return bounds;
+  void add(const std::vector<DrawnPart>& parts, const std::vector<DrawnHose>& hoses) {
+    for (const DrawnPart& part : parts) add(part);
+    for (const DrawnHose& hose : hoses)
+      for (const auto& point : hose.points_mm) add(point, hose.radius_mm);
+  }
+};
+
+}  // namespace
+
+Bounds boundsOf(const Snapshot& snapshot) {
+  GrowingBox box;
+  box.add(snapshot.parts, snapshot.hoses);
+  if (snapshot.ghost) box.add(snapshot.ghost->parts, snapshot.ghost->hoses);
+  return box.bounds;
+}
+
+std::optional<double> distanceOfGhostMm(const Snapshot& snapshot) {
+  if (!snapshot.ghost) return std::nullopt;
+  float largest = 0;
+  const auto compare = [&](const Eigen::Vector3f& a, const Eigen::Vector3f& b) { largest = std::max(largest, (a - b).norm()); };
+  for (std::size_t i = 0; i < snapshot.parts.size(); ++i)
+    compare(snapshot.parts[i].pose.topRightCorner<3, 1>(), snapshot.ghost->parts[i].pose.topRightCorner<3, 1>());
+  if (snapshot.parts.empty())
+    for (std::size_t i = 0; i < snapshot.hoses.size(); ++i) {
+      compare(snapshot.hoses[i].points_mm.front(), snapshot.ghost->hoses[i].points_mm.front());
+      compare(snapshot.hoses[i].points_mm.back(), snapshot.ghost->hoses[i].points_mm.back());
+    }
+  return static_cast<double>(largest);
 }
 
 }  // namespace musclesim

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,7 +27,13 @@ struct DrawnHose {
   float radius_mm;
   Color color;
   double tension_N;
-  double minimum_length_mm, maximum_length_mm;
+  double minimum_length_mm, maximum_length_mm, length_mm;
+};
+
+/// A pose that is drawn as a translucent ghost: the bones and muscles as they were measured.
+struct DrawnGhost {
+  std::vector<DrawnPart> parts;  ///< in the order of the snapshot's own
+  std::vector<DrawnHose> hoses;
 };
 
 /// A point with axes and a name: a joint or the hand.
@@ -43,12 +50,14 @@ struct DrawnTarget {
 /// A copy of the state, taken between two steps. Drawing it needs no simulation, so another thread may draw it.
 struct Snapshot {
   State state;
+  std::vector<std::string> angle_names;  ///< of the state's angles
   std::optional<double> activity;
   std::vector<DrawnPart> parts;
   std::vector<DrawnHose> hoses;
   std::vector<DrawnFrame> frames;
   std::optional<DrawnTarget> target;
-  std::optional<float> floor_mm;  ///< height of the ground plane, if there is one
+  std::optional<float> floor_mm;                      ///< height of the ground plane, if there is one
+  std::shared_ptr<const DrawnGhost> ghost = nullptr;  ///< null: there is none
 };
 
 /// Takes snapshots of one simulation without changing it. The caller passes the readings, since taking readings would advance random
@@ -67,10 +76,14 @@ class SnapshotTaker {
   std::optional<Vector> first_hand_mm_;
 };
 
-/// A box around everything in a snapshot, mm: least and greatest x, y, z.
+/// A box around everything in a snapshot, with its ghost, mm: least and greatest x, y, z.
 struct Bounds {
   Eigen::Vector3f low, high;
 };
 Bounds boundsOf(const Snapshot& snapshot);
+
+/// The largest distance between the centres of a bone and of its ghost, mm. Without bones: between the ends of the muscles.
+/// Nothing without a ghost.
+std::optional<double> distanceOfGhostMm(const Snapshot& snapshot);
 
 }  // namespace musclesim

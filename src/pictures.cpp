@@ -26,12 +26,13 @@ void prepareFile(const std::string& option, const std::string& file, const std::
 /// Draws the states that it sees.
 class Pictures final : public Spectator {
  public:
-  Pictures(const PictureOptions& options, Simulation& simulation)
+  Pictures(const PictureOptions& options, Simulation& simulation, GhostOf ghost_of)
       : options_(options),
         frame_s_(speedRatio(options, simulation.physics()) / frames_per_s),
         camera_options_(options.camera),
         robot_name_(simulation.robot().name()),
         snapshots_(simulation),
+        ghost_of_(std::move(ghost_of)),
         offscreen_(options.size_px.at(0), options.size_px.at(1)) {
     if (options_.screenshot) prepareFile("screenshot", *options_.screenshot, ".png");
     if (!options_.video) return;
@@ -41,11 +42,13 @@ class Pictures final : public Spectator {
 
   bool see(const State& state) override {
     constexpr double rounding_s = 1e-9;
+    const std::size_t index = seen_count_++;
     if (!start_s_) start_s_ = state.time_s;
     const double seen_s = state.time_s - *start_s_ + rounding_s;
     const bool frame_due = video_ && seen_s >= frameTime(video_->frameCount());
     if (!frame_due && !options_.screenshot) return true;
     last_ = snapshots_.take(state);
+    if (ghost_of_) last_->ghost = ghost_of_(index, *last_);
     if (!frame_due) return true;
     const Image frame = draw(*last_);
     while (seen_s >= frameTime(video_->frameCount())) video_->add(frame);
@@ -75,6 +78,8 @@ class Pictures final : public Spectator {
   std::vector<float> camera_options_;
   std::string robot_name_;
   SnapshotTaker snapshots_;
+  GhostOf ghost_of_;
+  std::size_t seen_count_ = 0;
   Offscreen offscreen_;
   std::unique_ptr<VideoWriter> video_;
   std::optional<Camera> camera_;
@@ -84,8 +89,8 @@ class Pictures final : public Spectator {
 
 }  // namespace
 
-std::unique_ptr<Spectator> makePictures(const PictureOptions& options, Simulation& simulation) {
-  return std::make_unique<Pictures>(options, simulation);
+std::unique_ptr<Spectator> makePictures(const PictureOptions& options, Simulation& simulation, GhostOf ghost_of) {
+  return std::make_unique<Pictures>(options, simulation, std::move(ghost_of));
 }
 
 }  // namespace musclesim::command_line

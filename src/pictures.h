@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 
 #include "musclesim/simulation/simulation.h"
 #include "options.h"
+#include "simulation/snapshot.h"
 #include "spectator.h"
 
 namespace musclesim::command_line {
@@ -29,8 +31,11 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, const std::st
 /// slowly. Throws BadParameter unless it is positive and finite.
 double speedRatio(const PictureOptions& options, const PhysicsSettings& physics);
 
+/// The ghost of the state that a spectator sees as its `index`-th, and its snapshot.
+using GhostOf = std::function<std::shared_ptr<const DrawnGhost>(std::size_t index, const Snapshot& snapshot)>;
+
 /// Draws the frames of --video during the run and the --screenshot at its end, and prints the paths of the files.
 /// Throws BadParameter if this build cannot draw or there is no OSMesa.
-std::unique_ptr<Spectator> makePictures(const PictureOptions& options, Simulation& simulation);
+std::unique_ptr<Spectator> makePictures(const PictureOptions& options, Simulation& simulation, GhostOf ghost_of = nullptr);
 
 }  // namespace musclesim::command_line

@@ -4,7 +4,7 @@
 
 namespace musclesim::command_line {
 
-std::unique_ptr<Spectator> makePictures(const PictureOptions&, Simulation&) {
+std::unique_ptr<Spectator> makePictures(const PictureOptions&, Simulation&, GhostOf) {
   throw BadParameter("this build cannot draw pictures: build it again with libpng-dev, libgl-dev and libosmesa6-dev installed");
 }
 

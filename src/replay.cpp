@@ -3,23 +3,38 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
+#include "diagnosis/gap_figure.h"
 #include "interrupt.h"
+#include "log/figure_file.h"
+#include "musclesim/base/error.h"
 #include "musclesim/log/recorder.h"
 #include "output_folder.h"
 #include "pictures.h"
+#include "replay_window.h"
 
 namespace musclesim::command_line {
 
 namespace {
 
+namespace fs = std::filesystem;
+
 struct ReplayArguments {
   std::string recording;
-  std::optional<std::string> out;
+  std::optional<std::string> out, figure;
   std::vector<std::string> ignore_columns;
+  bool window = false;
+  std::string window_log;
   PictureOptions pictures;
+
+  /// Where the figure goes: beside the simulated readings unless it has a name of its own.
+  std::optional<std::string> figureFile() const {
+    if (figure || !out) return figure;
+    return fs::path(*out).replace_extension(".svg").string();
+  }
 };
 
 std::string unitOf(const std::string& signal) {
@@ -44,6 +59,7 @@ nlohmann::json verdictOf(const ReplayResult& result, const ReplayArguments& argu
   json["status"] = result.divergence ? "diverged" : result.interrupted ? "interrupted" : "done";
   if (result.divergence) json["message"] = *result.divergence;
   if (arguments.out) json["out"] = *arguments.out;
+  if (const auto figure = arguments.figureFile()) json["figure"] = *figure;
   json["stepper"] = result.stepper;
   json["substeps"] = result.substeps;
   json["worst_joint_gap_mm"] = result.worst_gap.gap_mm;
@@ -56,37 +72,100 @@ nlohmann::json verdictOf(const ReplayResult& result, const ReplayArguments& argu
   return json;
 }
 
-int replay(const ModelOptions& model, const ReplayArguments& arguments) {
-  arguments.pictures.requireUsed();
-  if (arguments.out) {
-    for (const std::string& written : {*arguments.out, sidecarPath(*arguments.out)})
-      requireOther(written, {arguments.recording, sidecarPath(arguments.recording)});
-    requireReplaceable(*arguments.out);
-    prepareRecording(*arguments.out);
+/// Throws before the simulation what would fail after it.
+void prepareOutputs(const ReplayArguments& arguments) {
+  if (!arguments.window) arguments.pictures.requireUsed("there is no --window");
+  if (!arguments.window && !arguments.window_log.empty()) throw BadParameter("--window-log needs --window");
+  const std::vector<std::string> inputs = {arguments.recording, sidecarPath(arguments.recording)};
+  if (const auto figure = arguments.figureFile()) {
+    requireFigureFile(*figure);
+    requireOther(*figure, inputs);
+    if (fs::path(*figure).has_parent_path()) makeFolder(fs::path(*figure).parent_path());
   }
+  if (!arguments.out) return;
+  for (const std::string& written : {*arguments.out, sidecarPath(*arguments.out)}) requireOther(written, inputs);
+  requireReplaceable(*arguments.out);
+  prepareRecording(*arguments.out);
+}
+
+void writeOutputs(const ReplayArguments& arguments, const Recording& recording, const ReplayResult& result) {
+  if (result.simulated.time_s.empty()) return;
+  if (arguments.out) writeRecording(result.simulated, *arguments.out);
+  if (const auto figure = arguments.figureFile())
+    writeFigure(*figure, gapFigureSvg(fmt::format("{}: measured and simulated", fs::path(arguments.recording).filename().string()),
+                                      replayGaps(recording, result.simulated)));
+}
+
+/// Pictures and the window of a replay, with the measured poses as ghosts; nothing if neither is wanted.
+class Views {
+ public:
+  Views(const ModelOptions& model, const ReplayArguments& arguments, const Recording& recording, const ReplayOptions& options)
+      : arguments_(arguments) {
+    if (!arguments.window && !arguments.pictures.wanted()) return;
+    poses_ = std::make_unique<MeasuredPoses>(recording, options);
+    say(model,
+        (poses_->areDetermined() ? "the measured pose, drawn as a ghost, follows " : "no measured pose is drawn: ") + poses_->reason());
+    const fs::path folder = arguments.out ? fs::path(*arguments.out).parent_path() : fs::path();
+    if (arguments.window)
+      window_ = makeReplayWindow(recording, options, *poses_,
+                                 {arguments.pictures, folder.empty() ? "." : folder.string(), arguments.window_log, model.quiet});
+  }
+
+  ReplayOptions::Watcher watch(Simulation& simulation) {
+    if (arguments_.pictures.wanted())
+      pictures_ = makePictures(arguments_.pictures, simulation,
+                               [this](std::size_t row, const Snapshot& simulated) { return poses_->at(row, simulated); });
+    const ReplayOptions::Watcher keep = window_ ? window_->watch(simulation) : nullptr;
+    return [this, keep](const State& state) {
+      if (pictures_) pictures_->see(state);
+      if (keep) keep(state);
+    };
+  }
+
+  void finishPictures() {
+    if (pictures_) pictures_->finish();
+  }
+
+  void show(const ReplayResult& result) {
+    std::fflush(stdout);
+    if (window_ && !result.interrupted) window_->show(result);
+  }
+
+ private:
+  const ReplayArguments& arguments_;
+  std::unique_ptr<MeasuredPoses> poses_;
+  std::unique_ptr<ReplayWindow> window_;
+  std::unique_ptr<Spectator> pictures_;
+};
+
+void sayWhatIsOdd(const ModelOptions& model, const Recording& recording, const Robot& robot) {
+  if (const std::string note = otherDescriptionNote(recording.info, robot); !note.empty()) say(model, note);
+  for (const std::string& name : unknownSignals(recording, robot.signalNames()))
+    say(model, fmt::format("{}: {} has no {}; it is not compared", recording.file, robot.name(), name));
+}
+
+int replay(const ModelOptions& model, const ReplayArguments& arguments) {
+  prepareOutputs(arguments);
   const Recording recording = readRecording(arguments.recording, {arguments.ignore_columns});
   for (const auto& note : recording.notes) say(model, note);
-  std::unique_ptr<Spectator> spectator;
   ReplayOptions options = replayOptionsFrom(model);
-  options.watch = [&](Simulation& simulation) {
-    if (arguments.pictures.wanted()) spectator = makePictures(arguments.pictures, simulation);
-    if (const std::string note = otherDescriptionNote(recording.info, simulation.robot()); !note.empty()) say(model, note);
-    for (const std::string& name : unknownSignals(recording, simulation.robot().signalNames()))
-      say(model, fmt::format("{}: {} has no {}; it is not compared", arguments.recording, simulation.robot().name(), name));
-    return [&](const State& state) {
-      if (spectator) spectator->see(state);
-    };
-  };
   options.interrupted = [] { return interruptSignal() != 0; };
+  Views views(model, arguments, recording, options);
+  options.watch = [&](Simulation& simulation) {
+    sayWhatIsOdd(model, recording, simulation.robot());
+    return views.watch(simulation);
+  };
   const ReplayResult result = replayRecording(recording, options);
-  if (spectator) spectator->finish();
-  if (arguments.out && !result.simulated.time_s.empty()) writeRecording(result.simulated, *arguments.out);
+  views.finishPictures();
+  writeOutputs(arguments, recording, result);
   if (result.interrupted)
     say(model, fmt::format("interrupted; the results cover {} of {} rows", result.simulated.time_s.size(), recording.time_s.size()));
   printTable(result);
+  if (const auto figure = arguments.figureFile(); figure && !result.simulated.time_s.empty()) fmt::print("figure  {}\n", *figure);
   if (result.divergence) std::fprintf(stderr, "musclesim: error: %s\n", result.divergence->c_str());
+  views.show(result);
   if (model.json) fmt::print("{}\n", verdictOf(result, arguments).dump());
-  if (result.interrupted) return interrupted_base + interruptSignal();
+  if (interruptSignal() != 0) return interrupted_base + interruptSignal();
   return result.divergence ? diverged : done;
 }
 
@@ -95,8 +174,19 @@ int replay(const ModelOptions& model, const ReplayArguments& arguments) {
 Action addReplay(CLI::App& command, ModelOptions& model) {
   auto arguments = std::make_shared<ReplayArguments>();
   command.add_option("recording", arguments->recording, "Recording, NAME.csv with NAME.json beside it")->required();
-  command.add_option("--out", arguments->out, "Write the simulated readings, at the recording's times, to SIM.csv");
+  command.add_option("--out", arguments->out,
+                     "Write the simulated readings, at the recording's times, to SIM.csv, and the figure of the gap to SIM.svg");
+  command.add_option("--figure", arguments->figure,
+                     "Figure of the gap, FILE.svg or FILE.png: measured, simulated and residual of every signal, and loops");
   addList(command, "--ignore-columns", arguments->ignore_columns, "Columns to skip, separated by commas");
+  command
+      .add_flag("--window", arguments->window,
+                "Play the replay in a window: the measured pose as a ghost over the simulated robot, a time line, --effects on and off")
+      ->group("Pictures");
+  command
+      .add_option("--window-log", arguments->window_log,
+                  "Log the user's actions in the window to FILE: one line of JSON per key or click, with the state after it")
+      ->group("Pictures");
   addPictureOptions(command, arguments->pictures, "Pictures");
   addModelOptions(command, model);
   return [&model, arguments] { return replay(model, *arguments); };

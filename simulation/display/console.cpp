@@ -31,46 +31,170 @@ std::vector<int> digits() {
   return codes;
 }
 
-}  // namespace
+using Bindings = std::vector<Console::Binding>;
 
-const std::vector<Console::Binding>& Console::bindings() {
-  static const std::vector<Binding> all = {
-      {"i", "muscles automatic or by hand", {'i'}, [](Console& c, int) { c.toggleManual(); }},
-      {"p  Space", "pause, resume", {'p', ' '}, [](Console& c, int) { c.pace().setPaused(!c.pace().isPaused()); }},
-      {"Right", "do one step, then pause", {key::right}, [](Console& c, int) { c.pace().stepOnce(); }},
-      {"[  ]", "slower, faster", {'[', ']'}, [](Console& c, int code) { changeSpeed(c, code == '[' ? 1 / speed_step : speed_step); }},
-      {"0 - 9", "select a muscle", digits(), [](Console& c, int code) { c.select(code - '0'); }},
-      {",  .", "previous, next muscle", {',', '.'}, [](Console& c, int code) { c.select(c.selected() + (code == ',' ? -1 : 1)); }},
-      {"+  -",
-       "pressure of the selected muscle",
-       {'+', '=', '-', '_'},
-       [](Console& c, int code) { c.raise(code == '+' || code == '=' ? pressure_step_ratio : -pressure_step_ratio); }},
-      {"r",
-       "vent all muscles",
-       {'r'},
-       [](Console& c, int) {
-         c.hands().reset();
-         c.say("all pressures 0, by hand");
-       }},
+/// Keys for the view, for runs and replays.
+Bindings bindingsOfView() {
+  return {
       {"Up  Down",
        "zoom in, out (also the wheel)",
        {key::up, key::down},
-       [](Console& c, int code) { c.camera.zoom(code == key::up ? zoom_step : 1 / zoom_step); }},
-      {"c", "reset the view", {'c'}, [](Console& c, int) { c.camera = c.first_camera_; }},
+       [](Console& c, int code) { c.zoom(code == key::up ? zoom_step : 1 / zoom_step); }},
+      {"c", "reset the view", {'c'}, [](Console& c, int) { c.resetView(); }},
       {"t", "transparent bones", {'t'}, [](Console& c, int) { flip(c, c.style.transparent, "transparent bones"); }},
       {"m", "colour muscles by tension", {'m'}, [](Console& c, int) { flip(c, c.style.color_tension, "colours by tension"); }},
       {"f", "frames and labels", {'f'}, [](Console& c, int) { flip(c, c.style.frames, "frames and labels"); }},
-      {"s", "save a picture in the run's folder", {'s'}, [](Console& c, int) { c.wants_screenshot = true; }},
-      {"v", "start or stop a video in the run's folder", {'v'}, [](Console& c, int) { c.wants_video = !c.wants_video; }},
+      {"s", "save a picture", {'s'}, [](Console& c, int) { c.wants_screenshot = true; }},
+      {"v", "start or stop a video", {'v'}, [](Console& c, int) { c.wants_video = !c.wants_video; }},
       {"Tab", "show or hide the panel", {key::tab}, [](Console& c, int) { c.show_panel = !c.show_panel; }},
       {"h  F1", "this help", {'h', key::f1}, [](Console& c, int) { c.show_help = !c.show_help; }},
-      {"q  Esc", "end the run", {'q', key::escape}, [](Console& c, int) { c.pace().close(); }},
+      {"q  Esc", "close the window, which ends a run", {'q', key::escape}, [](Console& c, int) { c.pace().close(); }},
   };
+}
+
+Bindings bindingsOfMuscles() {
+  return {
+      {"p  Space", "pause, resume", {'p', ' '}, [](Console& c, int) { c.togglePause(); }},
+      {"[  ]", "slower, faster", {'[', ']'}, [](Console& c, int code) { changeSpeed(c, code == '[' ? 1 / speed_step : speed_step); }},
+      {"0 - 9", "select a muscle", digits(), [](Console& c, int code) { c.select(code - '0'); }},
+  };
+}
+
+Bindings joined(std::initializer_list<Bindings> parts) {
+  Bindings all;
+  for (const Bindings& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+/// Goes to another row and stays there.
+void goTo(Console& console, void (*move)(Player&)) {
+  console.pace().setPaused(true);
+  move(*console.player());
+}
+
+}  // namespace
+
+const std::vector<Console::Binding>& Console::bindingsOfRun() {
+  static const Bindings all = joined({
+      {{"i", "muscles automatic or by hand", {'i'}, [](Console& c, int) { c.toggleManual(); }}},
+      bindingsOfMuscles(),
+      {{"Right", "do one step, then pause", {key::right}, [](Console& c, int) { c.pace().stepOnce(); }},
+       {",  .", "previous, next muscle", {',', '.'}, [](Console& c, int code) { c.select(c.selected() + (code == ',' ? -1 : 1)); }},
+       {"+  -",
+        "pressure of the selected muscle",
+        {'+', '=', '-', '_'},
+        [](Console& c, int code) { c.raise(code == '+' || code == '=' ? pressure_step_ratio : -pressure_step_ratio); }},
+       {"r",
+        "vent all muscles",
+        {'r'},
+        [](Console& c, int) {
+          c.hands().reset();
+          c.keeps_in_view = true;  // without pressure it hangs down, often out of the picture
+          c.say("all pressures 0, by hand");
+        }}},
+      bindingsOfView(),
+  });
+  return all;
+}
+
+const std::vector<Console::Binding>& Console::bindingsOfReplay() {
+  static const Bindings all = joined({
+      {{"e", "simulation with or without the effects of --effects", {'e'}, [](Console& c, int) { c.toggleEffects(); }},
+       {"g", "show or hide the measured pose (the ghost)", {'g'}, [](Console& c, int) { c.toggleGhost(); }}},
+      bindingsOfMuscles(),
+      {{"Left", "back by one row, then pause", {key::left}, [](Console& c, int) { goTo(c, [](Player& p) { p.step(-1); }); }},
+       {"Right", "on by one row, then pause", {key::right}, [](Console& c, int) { goTo(c, [](Player& p) { p.step(1); }); }},
+       {"Home  End",
+        "to the beginning, to the end, then pause",
+        {key::home, key::end},
+        [](Console& c, int code) {
+          c.pace().setPaused(true);
+          c.player()->seek(code == key::home ? c.player()->beginS() : c.player()->endS());
+        }},
+       {"n",
+        "to the next mark: where the residual leaves its noise band",
+        {'n'},
+        [](Console& c, int) {
+          c.pace().setPaused(true);
+          if (!c.player()->seekNextGap()) c.say("the residual of this signal nowhere leaves its noise band");
+        }},
+       {"l",
+        "begin again at the end, or stop there",
+        {'l'},
+        [](Console& c, int) {
+          c.player()->setLooping(!c.player()->isLooping());
+          c.say(c.player()->isLooping() ? "begins again at the end" : "stops at the end");
+        }},
+       {",  .",
+        "previous, next signal",
+        {',', '.'},
+        [](Console& c, int code) {
+          c.player()->choose(c.player()->chosen() + (code == ',' ? -1 : 1));
+          if (c.player()->gap()) c.say("marks and plots show " + c.player()->gap()->name);
+        }}},
+      bindingsOfView(),
+  });
   return all;
 }
 
 Console::Console(ManualController& hands, Pace& pace, const Camera& first)
-    : camera(first), hands_(hands), pace_(pace), first_camera_(first), muscle_count_(static_cast<int>(hands.pressures().size())) {}
+    : camera(first), hands_(&hands), pace_(pace), first_camera_(first), muscle_count_(static_cast<int>(hands.pressures().size())) {}
+
+Console::Console(Player& player, Pace& pace, const Camera& first)
+    : camera(first),
+      player_(&player),
+      pace_(pace),
+      first_camera_(first),
+      muscle_count_(static_cast<int>(player.snapshot()->hoses.size())) {}
+
+void Console::resetView() {
+  camera = first_camera_;
+  keeps_in_view = false;
+}
+
+void Console::zoom(float factor) {
+  camera.zoom(factor);
+  keeps_in_view = false;
+}
+
+void Console::rotate(float right_px, float down_px) {
+  camera.rotate(right_px, down_px);
+  keeps_in_view = false;
+}
+
+void Console::pan(float right_px, float down_px, float height_px) {
+  camera.pan(right_px, down_px, height_px);
+  keeps_in_view = false;
+}
+
+/// A little per picture, so that the view glides.
+void Console::keepInView(const Bounds& bounds, float width_px, float height_px) {
+  constexpr float glide = 1.03F;
+  if (keeps_in_view && !camera.shows(bounds.low, bounds.high, width_px, height_px)) camera.zoom(1 / glide);
+}
+
+void Console::play(double wall_s) {
+  if (pace_.isPaused()) return;
+  if (!player_->advance(wall_s * pace_.speed())) pace_.setPaused(true);
+}
+
+/// At the end of a replay that does not loop, resuming begins again.
+void Console::togglePause() {
+  const bool pause = !pace_.isPaused();
+  if (player_ && !pause && player_->timeS() >= player_->endS()) player_->seek(player_->beginS());
+  pace_.setPaused(pause);
+}
+
+void Console::toggleEffects() {
+  if (!player_->hasEffects()) return say("no effects were given: --effects FILE");
+  player_->setEffects(!player_->withEffects());
+  say(player_->withEffects() ? "with the effects" : "without the effects");
+}
+
+void Console::toggleGhost() {
+  if (!player_->hasGhost()) return say("no measured pose: " + player_->ghostSource());
+  flip(*this, style.ghost, "measured pose");
+}
 
 bool Console::press(int code) {
   if (code < 128) code = std::tolower(code);
@@ -90,18 +214,18 @@ void Console::select(int muscle) {
 /// Counts in hundredths, so that fifty steps from 0 give exactly 0.5.
 void Console::raise(double by_ratio) {
   if (selected() < 0) return say("select a muscle first: 0 - 9 or a click on it");
-  const double pressure = hands_.pressures()[static_cast<std::size_t>(selected())] + by_ratio;
+  const double pressure = hands_->pressures()[static_cast<std::size_t>(selected())] + by_ratio;
   setPressure(selected(), std::round(pressure * hundred) / hundred);
 }
 
 void Console::setPressure(int muscle, double pressure_ratio) {
-  if (!hands_.isManual()) say("muscles under manual control; press i for automatic");
-  hands_.set(muscle, pressure_ratio);
+  if (!hands_->isManual()) say("muscles under manual control; press i for automatic");
+  hands_->set(muscle, pressure_ratio);
 }
 
 void Console::toggleManual() {
-  hands_.isManual() ? hands_.handBack() : hands_.takeOver();
-  say(hands_.isManual() ? "by hand" : "automatic");
+  hands_->isManual() ? hands_->handBack() : hands_->takeOver();
+  say(hands_->isManual() ? "by hand" : "automatic");
 }
 
 void Console::say(const std::string& message) {
@@ -115,9 +239,7 @@ std::string Console::notice() const {
 }
 
 nlohmann::json Console::state() const {
-  nlohmann::json state = {{"manual", hands_.isManual()},
-                          {"pressures", hands_.pressures()},
-                          {"selected", style.selected},
+  nlohmann::json state = {{"selected", style.selected},
                           {"paused", pace_.isPaused()},
                           {"closed", pace_.isClosed()},
                           {"speed", pace_.speed()},
@@ -132,8 +254,28 @@ nlohmann::json Console::state() const {
                           {"frames", style.frames},
                           {"help", show_help},
                           {"panel", show_panel},
+                          {"hidden_plots", hidden_plots},
                           {"video", wants_video}};
   if (divergence) state["divergence"] = *divergence;
+  if (hands_) {
+    state["manual"] = hands_->isManual();
+    state["pressures"] = hands_->pressures();
+  }
+  if (player_) state["replay"] = replayState();
+  return state;
+}
+
+nlohmann::json Console::replayState() const {
+  const ReplayGap* gap = player_->gap();
+  nlohmann::json state = {{"row", player_->row()},
+                          {"with_effects", player_->withEffects()},
+                          {"ghost", player_->hasGhost() && style.ghost},
+                          {"looping", player_->isLooping()},
+                          {"signal", gap ? nlohmann::json(gap->name) : nullptr},
+                          {"rmse", gap ? nlohmann::json(gap->rmse()) : nullptr},
+                          {"outside_s", player_->outsideS()}};
+  const std::optional<double> distance = distanceOfGhostMm(*player_->snapshot());
+  state["ghost_distance_mm"] = distance ? nlohmann::json(*distance) : nullptr;
   return state;
 }
 

@@ -47,7 +47,17 @@ constexpr auto poll_interval = std::chrono::milliseconds(5);
 }  // namespace
 
 Display::Display(DisplayOptions options, ManualController& hands, Snapshot first)
-    : shared_(std::make_unique<DisplayShared>(std::move(options), hands, std::move(first))) {
+    : shared_(std::make_unique<DisplayShared>(std::move(options), &hands, nullptr, std::move(first))) {
+  open();
+}
+
+Display::Display(DisplayOptions options, std::unique_ptr<Player> player) {
+  Snapshot first = *player->snapshot();
+  shared_ = std::make_unique<DisplayShared>(std::move(options), nullptr, std::move(player), std::move(first));
+  open();
+}
+
+void Display::open() {
   thread_ = std::jthread([shared = shared_.get()] { runWindow(*shared); });
   auto opened = shared_->opened.get_future();
   while (opened.wait_for(poll_interval) != std::future_status::ready) {
@@ -74,6 +84,10 @@ bool Display::show(Snapshot snapshot, const Interrupted& interrupted) {
 void Display::showDivergence(const std::string& message, const Interrupted& interrupted) {
   shared_->setDivergence(message);
   shared_->pace.setPaused(true);
+  waitForEnd(interrupted);
+}
+
+void Display::waitForEnd(const Interrupted& interrupted) {
   while (!shared_->pace.isClosed() && !interrupted()) std::this_thread::sleep_for(poll_interval);
 }
 

@@ -9,6 +9,7 @@
 
 #include "display_options.h"
 #include "musclesim/controller/manual.h"
+#include "player.h"
 #include "simulation/snapshot.h"
 
 namespace musclesim {
@@ -23,6 +24,8 @@ class Display {
 
   /// Opens the window. Throws SceneError if there is no display or it cannot draw the scene, IoError if the display is lost during that.
   Display(DisplayOptions options, ManualController& hands, Snapshot first);
+  /// The same for a replay, which it plays until the user closes it.
+  Display(DisplayOptions options, std::unique_ptr<Player> player);
   /// Closes it.
   ~Display();
   Display(const Display&) = delete;
@@ -33,6 +36,8 @@ class Display {
   bool show(Snapshot snapshot, const Interrupted& interrupted);
   /// Shows the banner of a divergence and waits until the user closes the window or `interrupted` returns true.
   void showDivergence(const std::string& message, const Interrupted& interrupted);
+  /// Waits until the user closes the window or `interrupted` returns true.
+  void waitForEnd(const Interrupted& interrupted);
 
   /// Why the window failed: a lost connection, an X error, a failure to draw. Empty if it is open or was closed by the user.
   std::optional<std::string> loss() const;
@@ -41,6 +46,8 @@ class Display {
   double framesPerS() const;
 
  private:
+  void open();
+
   std::unique_ptr<DisplayShared> shared_;
   std::jthread thread_;
 };

@@ -7,11 +7,28 @@
 #include <optional>
 #include <sstream>
 
+#include "time_line.h"
+
 namespace musclesim {
 
 std::string paceLine(const Console& console) {
   const double target = console.pace().speed(), measured = console.pace().measuredSpeed();
   return fmt::format("x real time: target {:.3g}, measured {}", target, measured > 0 ? fmt::format("{:.3g}", measured) : "-");
+}
+
+std::vector<std::string> replayLines(const Console& console, const Snapshot& snapshot) {
+  const Player& player = *console.player();
+  std::vector<std::string> lines = {!player.hasEffects()   ? "simulated: the model as it is"
+                                    : player.withEffects() ? "simulated: with the effects (e)"
+                                                           : "simulated: without the effects (e)"};
+  if (!player.hasGhost())
+    lines.push_back("no measured pose: " + player.ghostSource());
+  else
+    lines.push_back("measured (blue): " + player.ghostSource() + (console.style.ghost ? "" : ", hidden (g)"));
+  if (const auto distance_mm = distanceOfGhostMm(snapshot)) lines.push_back(fmt::format("distance of the poses: {:.1f} mm", *distance_mm));
+  if (const ReplayGap* gap = player.gap())
+    lines.push_back(fmt::format("{}: residual {:.2g}, noise {:.2g}", gap->name, gap->rmse(), gap->noise_sigma));
+  return lines;
 }
 
 namespace {
@@ -20,20 +37,30 @@ const Color ink{0.13, 0.14, 0.16, ""}, paper{1, 1, 1, ""}, night{0.10, 0.11, 0.1
     alarm{0.72, 0.08, 0.06, ""};
 constexpr float margin = 12;
 
+float boxHeight(const Painter& painter, const std::vector<std::string>& lines) {
+  return painter.lineHeight() * static_cast<float>(lines.size()) + margin;
+}
+
 /// Draws lines of text in a box.
 void drawBox(Painter& painter, float x, float y, const std::vector<std::string>& lines, const Color& text, const Color& box, float alpha) {
   float width = 0;
   for (const std::string& line : lines) width = std::max(width, painter.widthOf(line));
   const float line = painter.lineHeight();
-  painter.rectangle(x, y, width + 2 * margin, line * static_cast<float>(lines.size()) + margin, box, alpha);
+  painter.rectangle(x, y, width + 2 * margin, boxHeight(painter, lines), box, alpha);
   for (std::size_t i = 0; i < lines.size(); ++i) painter.text(x + margin, y + margin / 2 + line * static_cast<float>(i), lines[i], text);
 }
 
 std::vector<std::string> statusLines(const Console& console, const Snapshot& snapshot) {
   const State& state = snapshot.state;
-  const char* mode = console.pace().isPaused() ? "paused" : "running";
-  std::vector<std::string> lines = {
-      fmt::format("{:.2f} s   {}, {}", state.time_s, mode, console.hands().isManual() ? "by hand" : "automatic"), paceLine(console)};
+  std::vector<std::string> lines = {fmt::format("{:.2f} s   {}", state.time_s, console.pace().isPaused() ? "paused" : "running")};
+  if (console.player()) {
+    lines.front() += fmt::format(", speed {:.3g}", console.pace().speed());
+    const std::vector<std::string> of_replay = replayLines(console, snapshot);
+    lines.insert(lines.end(), of_replay.begin(), of_replay.end());
+  } else {
+    lines.front() += console.hands().isManual() ? ", by hand" : ", automatic";
+    lines.push_back(paceLine(console));
+  }
   if (state.hand_mm)
     lines.push_back(fmt::format("hand {:.0f}, {:.0f}, {:.0f} mm", state.hand_mm->x(), state.hand_mm->y(), state.hand_mm->z()));
   const auto muscle = static_cast<std::size_t>(console.selected());
@@ -80,10 +107,11 @@ void drawLabels(Painter& painter, const Console& console, const Snapshot& snapsh
   }
 }
 
-void drawHelp(Painter& painter, float width, float height) {
-  const auto& bindings = Console::bindings();
+void drawHelp(Painter& painter, const Console& console, float width, float height) {
+  const auto& bindings = console.bindings();
   std::vector<std::pair<std::string, std::string>> rows = {{"drag", "rotate (left button), move (right or middle button)"},
                                                            {"click", "select the muscle under the pointer"}};
+  if (console.player()) rows.emplace_back("time line", "click or drag to go to another time");
   for (const auto& binding : bindings) rows.emplace_back(binding.keys, binding.meaning);
   float keys_width = 0, meanings_width = 0;
   for (const auto& [keys, meaning] : rows) {
@@ -117,10 +145,11 @@ std::vector<std::string> wrapped(const Painter& painter, const std::string& text
   return lines;
 }
 
-void drawBanner(Painter& painter, const std::string& divergence, float width, float y) {
+void drawBanner(Painter& painter, const Console& console, float width, float y) {
+  const char* what_now = console.player() ? "The simulation ends here; the recording goes on."
+                                          : "The run has stopped; its recording holds everything up to here. Press q to close.";
   std::vector<std::string> lines;
-  for (const std::string& text :
-       {divergence, std::string("The run has stopped; its recording holds everything up to here. Press q to close.")})
+  for (const std::string& text : {*console.divergence, std::string(what_now)})
     for (const std::string& line : wrapped(painter, text, width - 6 * margin)) lines.push_back(line);
   drawBox(painter, 2 * margin, y, lines, paper, alarm, 0.92F);
 }
@@ -129,16 +158,23 @@ void drawBanner(Painter& painter, const std::string& divergence, float width, fl
 
 void drawOverlay(Painter& painter, const Console& console, const Snapshot& snapshot, float width, float height, bool with_status) {
   const float line = painter.lineHeight();
-  if (console.style.frames) drawLabels(painter, console, snapshot, width, height);
+  const float whole_height = height;
+  if (console.player()) {  // everything else stands above the time line
+    const TimeLine time_line = TimeLine::in(width, height);
+    drawTimeLine(painter, *console.player(), time_line);
+    height = time_line.top;
+  }
+  if (console.divergence) drawBanner(painter, console, width, 2 * margin);
+  if (console.show_help) return drawHelp(painter, console, width, whole_height);  // nothing shines through its box
+  if (console.style.frames) drawLabels(painter, console, snapshot, width, whole_height);
+  const float notice_top = height - 3 * line - margin;
   if (with_status) {
     const std::vector<std::string> lines = statusLines(console, snapshot);
-    drawBox(painter, margin, height - line * static_cast<float>(lines.size() + 4), lines, ink, paper, 0.78F);
+    drawBox(painter, margin, notice_top - margin - boxHeight(painter, lines), lines, ink, paper, 0.78F);
   }
   if (const std::string notice = console.notice(); !notice.empty())
-    drawBox(painter, (width - painter.widthOf(notice)) / 2 - margin, height - 3 * line - margin, {notice}, paper, night, 0.80F);
+    drawBox(painter, (width - painter.widthOf(notice)) / 2 - margin, notice_top, {notice}, paper, night, 0.80F);
   painter.text(margin, height - line - margin / 2, "h: keys", ink);
-  if (console.divergence) drawBanner(painter, *console.divergence, width, 2 * margin);
-  if (console.show_help) drawHelp(painter, width, height);
 }
 
 }  // namespace musclesim

@@ -10,8 +10,11 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <functional>
+#include <tuple>
 #include <vector>
 
+#include "gap_plot.h"
 #include "plot.h"
 
 namespace musclesim {
@@ -147,11 +150,15 @@ class ImGuiPanel final : public Panel {
     ImGui::SetNextWindowSize({panel_width_px, height});
     ImGui::Begin("panel", nullptr,
                  ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav);
-    drawRun(console, snapshot);
-    ImGui::Separator();
-    drawPressures(console, snapshot);
-    ImGui::Separator();
-    drawPlots(console, snapshot, history);
+    if (console.player()) {
+      drawReplay(console, snapshot);
+    } else {
+      drawRun(console, snapshot);
+      ImGui::Separator();
+      drawPressures(console, snapshot);
+      ImGui::Separator();
+      drawPlots(console, snapshot, history);
+    }
     ImGui::Separator();
     drawSwitches(console);
     ImGui::End();
@@ -164,14 +171,54 @@ class ImGuiPanel final : public Panel {
     if (ImGui::RadioButton("automatic", !by_hand) && by_hand) console.toggleManual();
     ImGui::SameLine();
     if (ImGui::RadioButton("by hand", by_hand) && !by_hand) console.toggleManual();
-    if (ImGui::Button(console.pace().isPaused() ? "Resume" : "Pause", {76, 0})) console.press('p');
-    ImGui::SameLine();
+    drawPause(console);
     if (ImGui::Button("Step")) console.press(key::right);
     ImGui::SameLine();
+    drawSpeed(console);
+    ImGui::TextUnformatted(paceLine(console).c_str());
+  }
+
+  static void drawPause(Console& console) {
+    if (ImGui::Button(console.pace().isPaused() ? "Resume" : "Pause", {76, 0})) console.press('p');
+    ImGui::SameLine();
+  }
+
+  static void drawSpeed(Console& console) {
     ImGui::SetNextItemWidth(-1);
     auto speed = static_cast<float>(console.pace().speed());
     if (ImGui::SliderFloat("##speed", &speed, 0.01F, 100, "speed %.3g", ImGuiSliderFlags_Logarithmic)) console.pace().setSpeed(speed);
-    ImGui::TextUnformatted(paceLine(console).c_str());
+  }
+
+  static void drawReplay(Console& console, const Snapshot& snapshot) {
+    const Player& player = *console.player();
+    ImGui::Text("%.2f of %.2f s", player.timeS(), player.endS());
+    drawPause(console);
+    for (const auto& [name, code] : {std::pair{"<", key::left}, std::pair{">", key::right}}) {
+      if (ImGui::Button(name)) console.press(code);
+      ImGui::SameLine();
+    }
+    drawSpeed(console);
+    // Each switch does what its key does.
+    for (auto [name, code, is_on] :
+         {std::tuple{"effects (e)", 'e', player.withEffects()}, std::tuple{"ghost (g)", 'g', player.hasGhost() && console.style.ghost},
+          std::tuple{"loop (l)", 'l', player.isLooping()}}) {
+      if (ImGui::Checkbox(name, &is_on)) console.press(code);
+      if (code != 'l') ImGui::SameLine();
+    }
+    for (const std::string& line : replayLines(console, snapshot)) ImGui::TextWrapped("%s", line.c_str());
+    ImGui::Separator();
+    drawSignalChoice(*console.player());
+    constexpr float switches_px = 34, titles_px = 60, smallest_px = 40;
+    drawGapPlots(player, std::max(smallest_px, (ImGui::GetContentRegionAvail().y - switches_px - titles_px) / 2));
+  }
+
+  static void drawSignalChoice(Player& player) {
+    if (!player.gap()) return;
+    ImGui::SetNextItemWidth(-1);
+    if (!ImGui::BeginCombo("##signal", player.gap()->name.c_str())) return;
+    for (int i = 0; i < static_cast<int>(player.gaps().size()); ++i)
+      if (ImGui::Selectable(player.gaps()[static_cast<std::size_t>(i)].name.c_str(), i == player.chosen())) player.choose(i);
+    ImGui::EndCombo();
   }
 
   /// One slider per muscle with a patch of its colour; a click on the patch selects the muscle. Many muscles scroll.
@@ -211,45 +258,97 @@ class ImGuiPanel final : public Panel {
     ImGui::PopID();
   }
 
-  static void drawPlots(const Console& console, const Snapshot& snapshot, const History& history) {
-    constexpr float switches_px = 34, title_px = 21, smallest_px = 30;
-    const bool has_height = snapshot.state.hand_mm.has_value();
-    const float plot_count = has_height ? (snapshot.activity ? 5 : 4) : 3;
-    const float height = std::max(smallest_px, (ImGui::GetContentRegionAvail().y - switches_px) / plot_count - title_px - 5);
-    drawReach();
-    if (has_height) drawTask(snapshot, history, height);
+  /// A plot that the user may choose.
+  struct LivePlot {
+    std::string name, title;
+    std::vector<PlotCurve> curves;
+    std::optional<std::pair<double, double>> range;
+  };
+
+  static std::vector<LivePlot> plotsOf(const Console& console, const Snapshot& snapshot) {
+    std::vector<LivePlot> plots;
+    if (snapshot.state.hand_mm) plots.push_back({"height", "", heightCurves(snapshot), {}});
+    if (snapshot.activity)
+      plots.push_back({"activity", "", {{"activity", activity_color, [](const History::Sample& s) { return s.activity; }}}, {}});
+    if (!snapshot.angle_names.empty()) plots.push_back({"angles", "angles/deg", angleCurves(snapshot), {}});
     const auto muscle = static_cast<std::size_t>(std::max(0, console.selected()));
-    const auto of = [muscle](std::vector<double> State::*signal) {
-      return [muscle, signal](const History::Sample& sample) -> std::optional<double> {
-        const auto& values = sample.state.*signal;
-        return muscle < values.size() ? std::optional(values[muscle]) : std::nullopt;
-      };
-    };
-    drawPlot(fmt::format("muscle {}", muscle),
-             {{"command", command_color, of(&State::command)}, {"pressure", pressure_color, of(&State::pressure)}}, history, height,
-             std::pair(0.0, 1.0));
-    drawPlot("", {{"length/mm", length_color, of(&State::length_mm)}}, history, height, std::nullopt);
-    drawPlot("", {{"force/N", force_color, of(&State::force_N)}}, history, height, std::nullopt);
+    plots.push_back(
+        {"pressure",
+         fmt::format("muscle {}", muscle),
+         {{"command", command_color, entryOf(&State::command, muscle)}, {"pressure", pressure_color, entryOf(&State::pressure, muscle)}},
+         std::pair(0.0, 1.0)});
+    plots.push_back({"length", "", {{"length/mm", length_color, entryOf(&State::length_mm, muscle)}}, {}});
+    plots.push_back({"force", "", {{"force/N", force_color, entryOf(&State::force_N, muscle)}}, {}});
+    for (const int axis : {0, 2})
+      if (snapshot.state.hand_mm) {
+        const std::string name = axis == 0 ? "hand x" : "hand z";
+        plots.push_back({name, "", {{name + "/mm", height_color, handCurve(axis)}}, {}});
+      }
+    return plots;
   }
 
-  /// Writes the duration of the plots at the right end of the first title.
+  using Value = std::function<std::optional<double>(const History::Sample&)>;
+
+  static Value entryOf(std::vector<double> State::*signal, std::size_t entry) {
+    return [entry, signal](const History::Sample& sample) -> std::optional<double> {
+      const auto& values = sample.state.*signal;
+      return entry < values.size() ? std::optional(values[entry]) : std::nullopt;
+    };
+  }
+
+  static Value handCurve(int axis) {
+    return [axis](const History::Sample& sample) -> std::optional<double> {
+      return sample.state.hand_mm ? std::optional((*sample.state.hand_mm)[axis]) : std::nullopt;
+    };
+  }
+
+  static std::vector<PlotCurve> heightCurves(const Snapshot& snapshot) {
+    std::vector<PlotCurve> curves;
+    if (snapshot.target) curves.push_back({"target", target_color, [](const History::Sample& s) { return s.target_height_mm; }});
+    curves.push_back({"height/mm", height_color, handCurve(1)});
+    return curves;
+  }
+
+  static std::vector<PlotCurve> angleCurves(const Snapshot& snapshot) {
+    const Color colors[] = {pressure_color, force_color, activity_color, length_color};
+    std::vector<PlotCurve> curves;
+    for (std::size_t i = 0; i < snapshot.angle_names.size(); ++i)
+      curves.push_back({snapshot.angle_names[i], colors[i % std::size(colors)], entryOf(&State::angle_deg, i)});
+    return curves;
+  }
+
+  static void choosePlots(Console& console, const std::vector<LivePlot>& plots) {
+    ImGui::SetNextItemWidth(90);
+    if (!ImGui::BeginCombo("##plots", "plots")) return;
+    for (const LivePlot& plot : plots) {
+      const bool is_shown = !console.hidden_plots.contains(plot.name);
+      if (!ImGui::Selectable(plot.name.c_str(), is_shown, ImGuiSelectableFlags_DontClosePopups)) continue;
+      if (is_shown)
+        console.hidden_plots.insert(plot.name);
+      else
+        console.hidden_plots.erase(plot.name);
+    }
+    ImGui::EndCombo();
+  }
+
+  static void drawPlots(Console& console, const Snapshot& snapshot, const History& history) {
+    constexpr float switches_px = 34, title_px = 21, smallest_px = 30;
+    std::vector<LivePlot> plots = plotsOf(console, snapshot);
+    drawReach();
+    choosePlots(console, plots);
+    std::erase_if(plots, [&](const LivePlot& plot) { return console.hidden_plots.contains(plot.name); });
+    const auto count = static_cast<float>(std::max<std::size_t>(1, plots.size()));
+    const float height = std::max(smallest_px, (ImGui::GetContentRegionAvail().y - switches_px) / count - title_px - 5);
+    for (const LivePlot& plot : plots) drawPlot(plot.title, plot.curves, history, height, plot.range);
+  }
+
+  /// Writes the duration of the plots at the right end of the line.
   static void drawReach() {
     const std::string reach = fmt::format("last {:g} s", History::duration_s);
     const ImVec2 line = ImGui::GetCursorScreenPos();
     const float right = line.x + ImGui::GetContentRegionAvail().x;
     ImGui::GetWindowDrawList()->AddText({right - ImGui::CalcTextSize(reach.c_str()).x, line.y}, IM_COL32(130, 135, 142, 255),
                                         reach.c_str());
-  }
-
-  static void drawTask(const Snapshot& snapshot, const History& history, float height) {
-    std::vector<PlotCurve> curves;
-    if (snapshot.target) curves.push_back({"target", target_color, [](const History::Sample& s) { return s.target_height_mm; }});
-    curves.push_back({"height/mm", height_color, [](const History::Sample& s) -> std::optional<double> {
-                        return s.state.hand_mm ? std::optional(s.state.hand_mm->y()) : std::nullopt;
-                      }});
-    drawPlot("", curves, history, height, std::nullopt);
-    if (snapshot.activity)
-      drawPlot("", {{"activity", activity_color, [](const History::Sample& s) { return s.activity; }}}, history, height, std::nullopt);
   }
 
   static void drawSwitches(Console& console) {

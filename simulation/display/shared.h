@@ -12,19 +12,22 @@
 #include "display_options.h"
 #include "musclesim/controller/manual.h"
 #include "pace.h"
+#include "player.h"
 #include "simulation/snapshot.h"
 
 namespace musclesim {
 
 struct DisplayShared {
-  DisplayShared(DisplayOptions given, ManualController& controller, Snapshot first)
+  DisplayShared(DisplayOptions given, ManualController* controller, std::unique_ptr<Player> played, Snapshot first)
       : options(std::move(given)),
         hands(controller),
+        player(std::move(played)),
         pace(options.speed_ratio),
         latest_(std::make_shared<const Snapshot>(std::move(first))) {}
 
   const DisplayOptions options;
-  ManualController& hands;
+  ManualController* const hands;         ///< of a run; null for a replay
+  const std::unique_ptr<Player> player;  ///< of a replay, for the window's thread alone; null for a run
   Pace pace;
   std::promise<void> opened;            ///< set when the window is open, or to the exception why it could not open
   std::atomic<bool> is_ending = false;  ///< the window draws nothing any more

@@ -85,6 +85,10 @@ int codeOf(int glut_key) {
       return key::left;
     case GLUT_KEY_RIGHT:
       return key::right;
+    case GLUT_KEY_HOME:
+      return key::home;
+    case GLUT_KEY_END:
+      return key::end;
     default:
       return -1;
   }
@@ -97,6 +101,8 @@ std::string nameOfKey(int code) {
                                     {key::down, "Down"},
                                     {key::left, "Left"},
                                     {key::right, "Right"},
+                                    {key::home, "Home"},
+                                    {key::end, "End"},
                                     {key::tab, "Tab"},
                                     {static_cast<int>(' '), "Space"}})
     if (named == code) return name;
@@ -107,7 +113,8 @@ std::string nameOfKey(int code) {
 
 Window::Window(DisplayShared& shared)
     : shared_(shared),
-      console_(shared.hands, shared.pace, shared.options.camera),
+      console_(shared.player ? Console(*shared.player, shared.pace, shared.options.camera)
+                             : Console(*shared.hands, shared.pace, shared.options.camera)),
       width_(shared.options.width_px),
       height_(shared.options.height_px) {
   if (!shared.options.log_file.empty()) {
@@ -220,11 +227,27 @@ void Window::watchCost(Clock::duration cost) {
   if (is_smooth_ && shared_.frame_count > warm_up_frames && mean_cost_ > affordable) is_smooth_ = false;
 }
 
+std::shared_ptr<const Snapshot> Window::current() {
+  return shared_.player ? shared_.player->snapshot() : shared_.current();
+}
+
+/// Moves a replay on by the time since the last picture.
+void Window::play() {
+  const auto now = Clock::now();
+  const double wall_s = std::chrono::duration<double>(now - std::exchange(played_at_, now)).count();
+  if (!is_scrubbing_) console_.play(wall_s);
+  console_.divergence = shared_.player->divergence();
+}
+
 void Window::draw() {
-  const auto snapshot = shared_.current();
-  console_.divergence = shared_.currentDivergence();
-  history_.add(*snapshot);
+  if (shared_.player)
+    play();
+  else
+    console_.divergence = shared_.currentDivergence();
+  const auto snapshot = current();
+  if (!shared_.player) history_.add(*snapshot);
   fitTarget();
+  console_.keepInView(boundsOf(*snapshot), static_cast<float>(target_->width()), static_cast<float>(height_));
   scene_->draw(*snapshot, console_.camera, console_.style, *target_);
   savePictures();
   drawOver(*snapshot);
@@ -244,10 +267,31 @@ void Window::press(int code) {
   if (console_.press(code)) log(nameOfKey(code));
 }
 
+TimeLine Window::timeLine() const {
+  return TimeLine::in(static_cast<float>(target_->width()), static_cast<float>(height_));
+}
+
+void Window::scrubTo(int x) {
+  shared_.player->seek(timeLine().timeAt(*shared_.player, static_cast<float>(x)));
+}
+
+/// Follows the pointer from a press on the time line to its release. Returns true if the time line uses the event.
+bool Window::scrub(int which, int state, int x, int y) {
+  if (!shared_.player || which != GLUT_LEFT_BUTTON) return false;
+  const bool begins = state == GLUT_DOWN && timeLine().contains(static_cast<float>(x), static_cast<float>(y));
+  const bool ends = state == GLUT_UP && is_scrubbing_;
+  if (!begins && !ends) return false;
+  is_scrubbing_ = begins;
+  scrubTo(x);
+  if (ends) log("scrub");
+  return true;
+}
+
 void Window::button(int which, int state, int x, int y) {
   if (panel_ && panel_->button(which, state, x, y)) return;
+  if (scrub(which, state, x, y)) return;
   if (which == wheel_up || which == wheel_down) {
-    if (state == GLUT_DOWN) console_.camera.zoom(which == wheel_up ? wheel_zoom : 1 / wheel_zoom);
+    if (state == GLUT_DOWN) console_.zoom(which == wheel_up ? wheel_zoom : 1 / wheel_zoom);
     return log("wheel");
   }
   if (state == GLUT_DOWN) {
@@ -265,6 +309,7 @@ void Window::button(int which, int state, int x, int y) {
 
 void Window::drag(int x, int y) {
   if (panel_) panel_->move(x, y);
+  if (is_scrubbing_) return scrubTo(x);
   const int right = x - last_x_, down = y - last_y_;
   if (dragged_button_ < 0 || (!has_moved_ && std::abs(right) + std::abs(down) < drag_threshold_px)) return;
   has_moved_ = true;
@@ -272,16 +317,16 @@ void Window::drag(int x, int y) {
   last_y_ = y;
   const auto dx = static_cast<float>(right), dy = static_cast<float>(down);
   if (dragged_button_ == GLUT_LEFT_BUTTON)
-    console_.camera.rotate(dx, dy);
+    console_.rotate(dx, dy);
   else
-    console_.camera.pan(dx, dy, static_cast<float>(height_));
+    console_.pan(dx, dy, static_cast<float>(height_));
 }
 
 /// Selects the muscle whose line passes nearest to the pointer, if one is near.
 void Window::pickMuscle(int x, int y) {
   constexpr float near_px = 12;
   const Eigen::Vector2f pointer(static_cast<float>(x), static_cast<float>(y));
-  const auto snapshot = shared_.current();
+  const auto snapshot = current();
   float nearest = near_px;
   for (std::size_t i = 0; i < snapshot->hoses.size(); ++i) {
     for (const Eigen::Vector3f& point : smoothCurve(snapshot->hoses[i].points_mm)) {
@@ -317,7 +362,7 @@ void Window::savePictures() {
 void Window::saveScreenshot() {
   const std::string file = fileFor(".png");
   const GpuTarget target(gl_, target_->width(), target_->height(), GpuTarget::smooth);
-  scene_->draw(*shared_.current(), console_.camera, console_.style, target);
+  scene_->draw(*current(), console_.camera, console_.style, target);
   writePng(target.read(), file);
   console_.say("picture " + file);
 }
@@ -347,7 +392,7 @@ void Window::log(const std::string& event) {
   nlohmann::json line = console_.state();
   line["event"] = event;
   line["smooth"] = is_smooth_;
-  line["time_s"] = shared_.current()->state.time_s;
+  line["time_s"] = current()->state.time_s;
   line["frames_per_s"] = static_cast<double>(shared_.frame_count) / std::chrono::duration<double>(Clock::now() - shared_.opened_at).count();
   log_ << line.dump() << std::endl;
 }

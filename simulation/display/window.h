@@ -13,6 +13,7 @@
 #include "shared.h"
 #include "simulation/scene/scene.h"
 #include "simulation/scene/video.h"
+#include "time_line.h"
 
 namespace musclesim {
 
@@ -34,9 +35,15 @@ class Window {
   void closed();
   void draw();
   void drawOver(const Snapshot& snapshot);
+  void play();
   void fitTarget();
   void watchCost(Clock::duration cost);
   void press(int code);
+  /// What is to be seen now.
+  std::shared_ptr<const Snapshot> current();
+  TimeLine timeLine() const;
+  void scrubTo(int x);
+  bool scrub(int which, int state, int x, int y);
   void button(int which, int state, int x, int y);
   void drag(int x, int y);
   void pickMuscle(int x, int y);
@@ -60,7 +67,8 @@ class Window {
   std::ofstream log_;
   int window_ = 0, width_, height_;
   int dragged_button_ = -1, last_x_ = 0, last_y_ = 0;
-  bool has_moved_ = false;
+  bool has_moved_ = false, is_scrubbing_ = false;
+  Clock::time_point played_at_ = Clock::now();
 };
 
 }  // namespace musclesim

@@ -66,6 +66,16 @@ Eigen::Matrix4f Camera::projection(float aspect_ratio) const {
   return p;
 }
 
+bool Camera::shows(const Eigen::Vector3f& low_mm, const Eigen::Vector3f& high_mm, float width_px, float height_px) const {
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3f point(corner & 1 ? low_mm.x() : high_mm.x(), corner & 2 ? low_mm.y() : high_mm.y(),
+                                corner & 4 ? low_mm.z() : high_mm.z());
+    const auto at = pixelOf(point, width_px, height_px);
+    if (!at || at->x() < 0 || at->y() < 0 || at->x() > width_px || at->y() > height_px) return false;
+  }
+  return true;
+}
+
 Camera Camera::framing(const Eigen::Vector3f& low_mm, const Eigen::Vector3f& high_mm) {
   constexpr float room_ratio = 1.15F;
   Camera camera;

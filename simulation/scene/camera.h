@@ -29,6 +29,9 @@ struct Camera {
   Eigen::Matrix4f view() const;
   Eigen::Matrix4f projection(float aspect_ratio) const;
 
+  /// Whether a whole box is in a picture.
+  bool shows(const Eigen::Vector3f& low_mm, const Eigen::Vector3f& high_mm, float width_px, float height_px) const;
+
   /// Moves so that a whole box is visible with a margin.
   static Camera framing(const Eigen::Vector3f& low_mm, const Eigen::Vector3f& high_mm);
 };

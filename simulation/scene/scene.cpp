@@ -14,8 +14,10 @@ using V = Eigen::Vector3f;
 using M = Eigen::Matrix4f;
 
 constexpr float background = 0.9F, hose_grey = 0.2F;
-const V selected_color(0.80F, 0.06F, 0.06F), target_color(1.0F, 0.10F, 0.10F), shadow_color(0.80F, 0.805F, 0.815F);
-constexpr float target_radius_mm = 30, level_radius_mm = 220, target_alpha = 0.45F, bone_alpha = 0.35F;
+const V selected_color(0.80F, 0.06F, 0.06F), target_color(1.0F, 0.10F, 0.10F), shadow_color(0.80F, 0.805F, 0.815F),
+    ghost_color(0.10F, 0.42F, 0.95F);
+constexpr float target_radius_mm = 30, level_radius_mm = 220, target_alpha = 0.45F, bone_alpha = 0.35F, ghost_alpha = 0.42F;
+constexpr float ghost_margin_mm = 1.5F;  ///< by which a ghost is larger all around, so that it can be seen where the poses agree
 constexpr float grid_mm = 100, floor_reach_mm = 1600;
 constexpr float cap_cone_in_radii = 1.5F, cap_length_in_radii = 3.0F, cap_width_ratio = 1.2F;
 constexpr float frame_mm = 45, frame_radius_mm = 1.6F;
@@ -86,6 +88,7 @@ struct Scene::Item {
   M model;
   V color;
   float alpha = 1, shine = 0.12F;
+  bool has_shadow = true;
 };
 
 Scene::Scene(const Gl& gl)
@@ -152,12 +155,35 @@ void Scene::addFrame(std::vector<Item>& items, const DrawnFrame& frame) const {
   }
 }
 
+/// A ghost has one colour, and no details of its muscles.
+void Scene::addGhost(std::vector<Item>& items, const DrawnGhost& ghost) const {
+  const std::size_t first = items.size();
+  for (DrawnPart part : ghost.parts) {
+    // The length of a capped cylinder does not include its caps.
+    if (part.kind == Shape::Kind::box)
+      part.size_mm.array() += 2 * ghost_margin_mm;
+    else
+      part.size_mm.x() += ghost_margin_mm;
+    if (part.kind == Shape::Kind::cylinder) part.size_mm.y() += 2 * ghost_margin_mm;
+    addPart(items, part, ghost_alpha);
+  }
+  for (const DrawnHose& hose : ghost.hoses)
+    for (std::size_t i = 0; i + 1 < hose.points_mm.size(); ++i)
+      items.push_back(
+          {&cylinder_, between(hose.points_mm[i], hose.points_mm[i + 1], hose.radius_mm + ghost_margin_mm), V::Zero(), ghost_alpha});
+  for (std::size_t i = first; i < items.size(); ++i) {
+    items[i].color = ghost_color;
+    items[i].has_shadow = false;
+  }
+}
+
 std::vector<Scene::Item> Scene::itemsOf(const Snapshot& snapshot, const SceneStyle& style) {
   std::vector<Item> items;
   for (std::size_t i = 0; i < snapshot.hoses.size(); ++i) addHose(items, snapshot.hoses[i], i, style);
   if (style.frames)
     for (const DrawnFrame& frame : snapshot.frames) addFrame(items, frame);
   for (const DrawnPart& part : snapshot.parts) addPart(items, part, style.transparent ? bone_alpha : 1);
+  if (style.ghost && snapshot.ghost) addGhost(items, *snapshot.ghost);
   return items;
 }
 
@@ -179,6 +205,7 @@ void Scene::drawFloor(const std::vector<Item>& items, const Camera& camera, floa
   solid_.set("lit", 0.0F);
   gl_.Disable(GL_CULL_FACE);  // half of the flattened faces are seen from behind
   for (Item item : items) {
+    if (!item.has_shadow) continue;
     item.color = shadow_color;
     item.alpha = 1;
     drawItem(item, flat);

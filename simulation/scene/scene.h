@@ -17,6 +17,7 @@ struct SceneStyle {
   bool transparent = false;    ///< bones are transparent, so that the muscles behind them are visible
   bool color_tension = false;  ///< muscles have the colour of their tension
   bool frames = false;         ///< show the axes of joints and hand
+  bool ghost = true;           ///< show the snapshot's ghost, if it has one
 };
 
 /// The colour of a tension: dark at 0, then blue, yellow at 100 N and more.
@@ -39,6 +40,7 @@ class Scene {
   void addHose(std::vector<Item>& items, const DrawnHose& hose, std::size_t index, const SceneStyle& style);
   void addCap(std::vector<Item>& items, const std::vector<Eigen::Vector3f>& curve, const DrawnHose& hose) const;
   void addFrame(std::vector<Item>& items, const DrawnFrame& frame) const;
+  void addGhost(std::vector<Item>& items, const DrawnGhost& ghost) const;
   void drawItem(const Item& item, const Eigen::Matrix4f& before) const;
   void drawFloor(const std::vector<Item>& items, const Camera& camera, float height_mm, float aspect_ratio) const;
   void drawTarget(const DrawnTarget& target) const;

@@ -25,10 +25,12 @@ class ConsoleOfTwelveMuscles : public testing::Test {
 };
 
 TEST_F(ConsoleOfTwelveMuscles, NoKeyHasTwoMeanings) {
-  std::set<int> seen;
-  for (const auto& binding : Console::bindings()) {
-    EXPECT_FALSE(binding.meaning.empty());
-    for (const int code : binding.codes) EXPECT_TRUE(seen.insert(code).second) << code;
+  for (const auto& bindings : {Console::bindingsOfRun(), Console::bindingsOfReplay()}) {
+    std::set<int> seen;
+    for (const auto& binding : bindings) {
+      EXPECT_FALSE(binding.meaning.empty());
+      for (const int code : binding.codes) EXPECT_TRUE(seen.insert(code).second) << code;
+    }
   }
 }
 
@@ -61,6 +63,20 @@ TEST_F(ConsoleOfTwelveMuscles, PressureGoesInHundredthsAndStaysInRange) {
   EXPECT_EQ(hands.pressures()[3], 1);
 }
 
+TEST_F(ConsoleOfTwelveMuscles, AfterVentingTheWholeRobotComesIntoView) {
+  const Bounds hanging{{-200, -2000, -200}, {200, 400, 200}};
+  const auto draw = [&] {
+    for (int picture = 0; picture < 200; ++picture) console.keepInView(hanging, 640, 480);
+    return console.camera.shows(hanging.low, hanging.high, 640, 480);
+  };
+  EXPECT_FALSE(draw());
+  console.press('r');
+  EXPECT_TRUE(draw());
+  EXPECT_LT(console.camera.distance_mm, 10000) << "and no farther away than needed";
+  for (int i = 0; i < 20; ++i) console.press(key::up);
+  EXPECT_FALSE(draw()) << "the user's view stays";
+}
+
 TEST_F(ConsoleOfTwelveMuscles, CapitalsCount) {
   EXPECT_TRUE(console.press('I'));
   EXPECT_TRUE(hands.isManual());
@@ -75,9 +91,10 @@ TEST_F(ConsoleOfTwelveMuscles, UnboundKeysDoNothing) {
 /// docs/user/window.md lists the same keys as the help.
 TEST(KeysOfTheWindow, AreDocumented) {
   const std::string page = readTextFile(MUSCLESIM_WINDOW_PAGE, 1 << 20);
-  for (const auto& binding : Console::bindings())
-    EXPECT_NE(page.find("| `" + binding.keys + "` | " + binding.meaning + " |"), std::string::npos)
-        << binding.keys << ": " << binding.meaning;
+  for (const auto& bindings : {Console::bindingsOfRun(), Console::bindingsOfReplay()})
+    for (const auto& binding : bindings)
+      EXPECT_NE(page.find("| `" + binding.keys + "` | " + binding.meaning + " |"), std::string::npos)
+          << binding.keys << ": " << binding.meaning;
 }
 
 }  // namespace

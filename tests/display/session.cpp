@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
@@ -96,7 +97,8 @@ void XServer::kill() {
 Session::Session(const XServer& server, const fs::path& folder, std::vector<std::string> arguments)
     : display_(server.display()), folder_(folder) {
   arguments.insert(arguments.begin(), MUSCLESIM_PROGRAM);
-  arguments.insert(arguments.end(), {"--out", "run", "--window-log", "window.jsonl"});
+  if (std::ranges::find(arguments, "--out") == arguments.end()) arguments.insert(arguments.end(), {"--out", "run"});
+  arguments.insert(arguments.end(), {"--window-log", "window.jsonl"});
   child_ = start(arguments, folder, display_);
   // The first lines report that the window exists.
   waitUntil("window", [&] { return lineCount() >= 1 || !isAlive(); });

@@ -27,7 +27,8 @@ class XServer {
   std::string display_;
 };
 
-/// The program with a window, running in a folder. Its recording goes to run/run.csv in that folder, the window's log to window.jsonl.
+/// The program with a window, running in a folder. Its recording goes to run/run.csv in that folder unless the arguments have an --out,
+/// the window's log to window.jsonl.
 class Session {
  public:
   /// Waits until the window has drawn and the pointer is over its middle. Throws std::runtime_error if that takes a minute.

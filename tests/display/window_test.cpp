@@ -3,6 +3,7 @@
 
 #include <csignal>
 #include <fstream>
+#include <numbers>
 #include <set>
 #include <sstream>
 #include <thread>
@@ -50,6 +51,12 @@ double differingShare(const Image& a, const Image& b) {
   long differing = 0;
   for (std::size_t i = 0; i < a.rgb.size(); i += 3) differing += std::abs(a.rgb[i + 1] - b.rgb[i + 1]) > 24;
   return 3.0 * static_cast<double>(differing) / static_cast<double>(a.rgb.size());
+}
+
+Camera cameraOf(const json& state) {
+  const json& camera = state["camera"];
+  const Eigen::Vector3f center_mm(camera["center_mm"][0], camera["center_mm"][1], camera["center_mm"][2]);
+  return {center_mm, camera["azimuth_deg"], camera["elevation_deg"], camera["distance_mm"]};
 }
 
 /// One X server for all tests, a fresh folder for each.
@@ -107,7 +114,7 @@ TEST_F(WindowTest, HandSetsAPressureThatIsRecordedAndTheMuscleTurnsRed) {
   const long before = selectedPixels(picture(session));
   EXPECT_EQ(session.press("3")["selected"], 3);
   EXPECT_EQ(session.press("plus", 50)["pressures"][3], 0.5);
-  EXPECT_GT(selectedPixels(picture(session)), before + 300);
+  EXPECT_GT(selectedPixels(picture(session)), before + 150);
   EXPECT_EQ(session.press("minus")["pressures"][3], 0.49);
   EXPECT_EQ(session.press("equal")["pressures"][3], 0.5);
   EXPECT_EQ(session.press("KP_Subtract", 2)["pressures"][3], 0.48);
@@ -179,7 +186,7 @@ TEST_F(WindowTest, EveryKeyDoesWhatTheHelpSays) {
   EXPECT_TRUE(fs::exists(folder_ / "run" / "window-1.mp4") || fs::exists(folder_ / "run" / "window-1-frames"));
   EXPECT_EQ(sidecar().at("complete"), true);
 
-  for (const auto& binding : Console::bindings())
+  for (const auto& binding : Console::bindingsOfRun())
     EXPECT_TRUE(std::any_of(binding.codes.begin(), binding.codes.end(), [&](int code) { return tried.count(code) > 0; })) << binding.keys;
 }
 
@@ -203,9 +210,7 @@ TEST_F(WindowTest, MouseRotatesZoomsAndSelects) {
   state = session.press("c");
   const int scene_px = straight.width;
   session.press("5");
-  const Camera camera{Eigen::Vector3f(state["camera"]["center_mm"][0], state["camera"]["center_mm"][1], state["camera"]["center_mm"][2]),
-                      state["camera"]["azimuth_deg"], state["camera"]["elevation_deg"], state["camera"]["distance_mm"]};
-  const auto muscle = camera.pixelOf({-35, 120, 0}, static_cast<float>(scene_px), 480);
+  const auto muscle = cameraOf(state).pixelOf({-35, 120, 0}, static_cast<float>(scene_px), 480);
   ASSERT_TRUE(muscle);
   session.xdotool("mousemove " + std::to_string(std::lround(muscle->x())) + " " + std::to_string(std::lround(muscle->y())) + " click 1");
   EXPECT_EQ(session.press("t")["selected"], 1);
@@ -217,6 +222,22 @@ TEST_F(WindowTest, MouseRotatesZoomsAndSelects) {
     EXPECT_EQ(state["manual"], true);
     EXPECT_NEAR(state["pressures"][0], 0.5, 0.06);
   }
+  session.press("q");
+  EXPECT_EQ(session.exitStatus(), 0);
+}
+
+TEST_F(WindowTest, MouseChoosesPlots) {
+  Session session(*server_, folder_, {"--robot", "elbow", "--controller", "hold", "--picture-size", "1000x600"});
+  json state = session.press("p");
+  if (!state["panel"]) GTEST_SKIP() << "this build has no panel";
+  EXPECT_EQ(state["hidden_plots"], json({"hand x", "hand z"}));
+  const std::string x = std::to_string(1000 - 253);  // the list of plots, below the two sliders; it opens downwards
+  for (const char* y : {"154", "199"}) {             // its second entry
+    session.xdotool("mousemove " + x + " " + y + " click 1");
+    std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  }
+  state = session.press("0");
+  EXPECT_EQ(state["hidden_plots"], json({"angles", "hand x", "hand z"}));
   session.press("q");
   EXPECT_EQ(session.exitStatus(), 0);
 }
@@ -293,6 +314,126 @@ TEST_F(WindowTest, DivergenceStandsStillUntilTheUserEndsIt) {
   EXPECT_NE(std::string(state["divergence"]).find("diverged at"), std::string::npos);
   session.press("q");
   EXPECT_EQ(session.exitStatus(), 4);
+}
+
+/// A replay of an elbow whose valves lag, with the lag as the effects of --effects.
+class ReplayWindowTest : public WindowTest {
+ protected:
+  void SetUp() override {
+    WindowTest::SetUp();
+    if (IsSkipped()) return;
+    std::ofstream(folder_ / "lag.json") << R"({"format": "musclesim-effects-1", "effects": [{"id": "valve_lag", "component": "all",
+              "parameters": {"fill_time_constant_s": 0.15, "vent_time_constant_s": 0.25}}]})";
+    ASSERT_EQ(runProgram({"--simple", "--quiet", "--robot", "elbow", "--controller", "triangle", "--duration", "4", "--effects", "lag.json",
+                          "--record", "elbow.csv", "--out", "record"},
+                         folder_)
+                  .status,
+              0);
+    json sidecar = json::parse(contentOf(folder_ / "elbow.json"));
+    sidecar.erase("active_effects");  // a machine does not know its own lag
+    std::ofstream(folder_ / "elbow.json") << sidecar.dump();
+  }
+
+  /// Where a point is in the pictures of the window.
+  static Eigen::Vector2f pixelOf(const json& state, const Image& picture, const Eigen::Vector3f& point_mm) {
+    return *cameraOf(state).pixelOf(point_mm, static_cast<float>(picture.width), static_cast<float>(picture.height));
+  }
+
+  enum class Seen { background, robot, ghost };
+  static Seen seenAt(const Image& picture, const Eigen::Vector2f& at) {
+    const std::size_t i = 3 * (static_cast<std::size_t>(std::lround(at.y())) * static_cast<std::size_t>(picture.width) +
+                               static_cast<std::size_t>(std::lround(at.x())));
+    const int red = picture.rgb[i], blue = picture.rgb[i + 2];
+    if (blue > red + 40) return Seen::ghost;
+    return std::abs(red - 230) <= 1 && std::abs(blue - 230) <= 1 ? Seen::background : Seen::robot;
+  }
+
+  double angleOf(const std::string& recording, std::size_t row) const {
+    return readRecording((folder_ / recording).string()).find("angle_elbow_deg")->values[row];
+  }
+
+  /// The middle of the elbow's forearm at an angle.
+  static Eigen::Vector3f forearmAt(double angle_deg) {
+    const double rad = angle_deg * std::numbers::pi / 180;
+    return Eigen::Vector3d(200 * std::sin(rad), -200 * std::cos(rad), 0).cast<float>();
+  }
+};
+
+TEST_F(ReplayWindowTest, TheGhostIsWhereTheRecordingSaysAndTheEffectsCloseTheGap) {
+  Session session(*server_, folder_,
+                  {"replay", "elbow.csv", "--window", "--effects", "lag.json", "--out", "run/sim.csv", "--camera", "0,0,900",
+                   "--picture-size", "950x480"});
+  session.press("p");
+  json state = session.press("e");
+  EXPECT_EQ(state["replay"]["with_effects"], false);
+  EXPECT_FALSE(state["replay"]["outside_s"].empty());
+  const Image any = picture(session);
+
+  // The time line runs 14 pixels from both edges of the scene, 19 pixels above its lower edge.
+  const double at_s = 3.2;
+  const auto x = std::lround(14 + at_s / 4 * (any.width - 28));
+  const std::size_t lines = session.lineCount();
+  session.xdotool("mousemove 60 461 mousedown 1 mousemove 90 461 mousemove " + std::to_string(x) + " 461 mouseup 1");
+  state = session.stateAfter(lines + 1);
+  EXPECT_EQ(state["event"], "scrub");
+  EXPECT_NEAR(state["time_s"], at_s, 0.02);
+  const std::size_t row = state["replay"]["row"];
+  ASSERT_EQ(runProgram({"replay", "elbow.csv", "--out", "without.csv"}, folder_).status, 0);
+
+  const Image without = picture(session);
+  const Eigen::Vector2f measured = pixelOf(state, without, forearmAt(angleOf("elbow.csv", row))),
+                        simulated = pixelOf(state, without, forearmAt(angleOf("without.csv", row)));
+  EXPECT_EQ(seenAt(without, measured), Seen::ghost);
+  EXPECT_EQ(seenAt(without, simulated), Seen::robot);
+  EXPECT_GT(state["replay"]["ghost_distance_mm"], 10.0);
+  session.press("g");
+  EXPECT_EQ(seenAt(picture(session), measured), Seen::background) << "without the ghost";
+  session.press("g");
+
+  state = session.press("e");
+  EXPECT_EQ(state["replay"]["with_effects"], true);
+  EXPECT_LT(state["replay"]["ghost_distance_mm"], 0.1);
+  EXPECT_TRUE(state["replay"]["outside_s"].empty());
+  const Image with = picture(session);
+  EXPECT_EQ(seenAt(with, measured), Seen::ghost);
+  EXPECT_EQ(seenAt(with, simulated), Seen::background) << "the robot has moved onto the ghost";
+  session.press("q");
+  EXPECT_EQ(session.exitStatus(), 0);
+}
+
+/// Tests every key of a replay's help that a run has not, or has with another meaning.
+TEST_F(ReplayWindowTest, EveryKeyDoesWhatTheHelpSays) {
+  Session session(*server_, folder_, {"replay", "elbow.csv", "--window", "--out", "run/sim.csv", "--picture-size", "640x480"});
+  EXPECT_EQ(session.press("e")["replay"]["with_effects"], false) << "there are none";
+  EXPECT_EQ(session.press("g")["replay"]["ghost"], false);
+  EXPECT_EQ(session.press("g")["replay"]["ghost"], true);
+  EXPECT_EQ(session.press("l")["replay"]["looping"], false);
+  EXPECT_EQ(session.press("l")["replay"]["looping"], true);
+  EXPECT_EQ(session.press("End")["time_s"], 4);
+  json state = session.press("Home");
+  EXPECT_EQ(state["time_s"], 0);
+  EXPECT_EQ(state["paused"], true);
+  EXPECT_EQ(session.press("Right", 2)["replay"]["row"], 2);
+  EXPECT_EQ(session.press("Left")["replay"]["row"], 1);
+  state = session.press("n");
+  EXPECT_EQ(state["time_s"], state["replay"]["outside_s"][0][0]);
+  const std::string signal = session.press("comma", 20)["replay"]["signal"];
+  EXPECT_NE(session.press("period")["replay"]["signal"], signal);
+  EXPECT_EQ(session.press("bracketleft")["speed"], 0.5);
+  session.press("Home");
+  EXPECT_EQ(session.press("space")["paused"], false);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_GT(session.press("0")["time_s"], 0.05);
+  session.press("Escape");
+  EXPECT_EQ(session.exitStatus(), 0);
+}
+
+TEST_F(ReplayWindowTest, SameBitsAsWithoutAWindow) {
+  ASSERT_EQ(runProgram({"replay", "elbow.csv", "--effects", "lag.json", "--out", "plain.csv"}, folder_).status, 0);
+  Session session(*server_, folder_, {"replay", "elbow.csv", "--window", "--effects", "lag.json", "--out", "run/sim.csv"});
+  session.press("q");
+  ASSERT_EQ(session.exitStatus(), 0);
+  EXPECT_EQ(contentOf(folder_ / "plain.csv"), contentOf(folder_ / "run" / "sim.csv"));
 }
 
 }  // namespace

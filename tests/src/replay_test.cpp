@@ -170,6 +170,44 @@ TEST_F(ReplayCommand, PrintsATableForPeople) {
   for (const char* word : {"RMSE", "angle_elbow_deg", "length_1_mm", "deg"}) EXPECT_NE(result.out.find(word), std::string::npos) << word;
 }
 
+std::string beginOf(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string begin(4, ' ');
+  stream.read(begin.data(), 4);
+  return begin;
+}
+
+TEST_F(ReplayCommand, DrawsTheFigureOfTheGap) {
+  record({});
+  replay({"--out", "sim.csv"});
+  EXPECT_EQ(beginOf(folder_ / "sim.svg"), "<svg");
+  const auto verdict = replay({"--figure", "figures/gap.svg"});
+  EXPECT_EQ(verdict.at("figure"), "figures/gap.svg");
+  std::ifstream stream(folder_ / "figures/gap.svg");
+  const std::string svg{std::istreambuf_iterator<char>(stream), {}};
+  for (const char* part : {"angle_elbow_deg: residual", "length_1_mm over pressure_1", "noise band"})
+    EXPECT_NE(svg.find(part), std::string::npos) << part;
+  EXPECT_EQ(runProgram({"replay", "run.csv", "--figure", "gap.pdf"}, folder_).status, 2);
+}
+
+TEST_F(ReplayCommand, DrawsFiguresAsPng) {
+  if (std::system("command -v rsvg-convert >/dev/null 2>&1") != 0) GTEST_SKIP() << "rsvg-convert is not installed";
+  record({});
+  replay({"--figure", "gap.png"});
+  EXPECT_EQ(beginOf(folder_ / "gap.png"), "\x89PNG");
+  EXPECT_EQ(runProgram({"figure", "run.csv", "-o", "run.png"}, folder_).status, 0);
+  EXPECT_EQ(beginOf(folder_ / "run.png"), "\x89PNG");
+  for (const auto& file : fs::directory_iterator(folder_)) EXPECT_EQ(file.path().string().find("drawing"), std::string::npos) << file;
+}
+
+TEST_F(ReplayCommand, WindowsNeedADisplay) {
+  record({});
+  unsetenv("DISPLAY");
+  const ProgramResult result = runProgram({"replay", "run.csv", "--window"}, folder_);
+  EXPECT_EQ(result.status, 2);
+  EXPECT_EQ(runProgram({"replay", "run.csv", "--window-log", "log.jsonl"}, folder_).status, 2) << "needs --window";
+}
+
 TEST_F(ReplayCommand, RefusesBadInput) {
   auto expectRefused = [&](const std::vector<std::string>& arguments, int status, const std::string& word) {
     const ProgramResult result = runProgram(arguments, folder_);

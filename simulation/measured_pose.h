@@ -1,0 +1,45 @@
+/// The poses that a recording measured, to be drawn beside the simulated ones.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+
+#include "musclesim/log/recording.h"
+#include "musclesim/simulation/replay.h"
+#include "snapshot.h"
+
+namespace musclesim {
+
+/// Finds the pose of a recording's robot in each row from what was measured.
+///
+/// A coordinate q of the skeleton whose joint angle is measured has that angle. The others follow from the lengths of the muscles and,
+/// where these do not determine them all, also from the position of the hand, by least squares (Levenberg and Marquardt):
+///     minimise  sum over readings of (measured - reading(q))^2 in mm^2.
+/// A chain is as long as the distance of its ends and the excess over that which it has in the simulation of the same row. Where bones form
+/// a loop, the distances at the ball joint that closes it are readings that are 0.
+/// The search begins at the pose of the row asked for before. A value that is missing in a row keeps that of the last row with one.
+/// Source: Nocedal & Wright, Numerical Optimization, Ch. 10.
+class MeasuredPoses {
+ public:
+  /// Builds a robot of its own, as a replay with these options does, but without effects of the options. `recording` must outlive it.
+  /// Throws as replayRecording for the model.
+  MeasuredPoses(const Recording& recording, const ReplayOptions& options);
+  ~MeasuredPoses();
+  MeasuredPoses(const MeasuredPoses&) = delete;
+  MeasuredPoses& operator=(const MeasuredPoses&) = delete;
+
+  /// Whether what is measured determines the pose.
+  bool areDetermined() const;
+  /// From what the poses follow ("from the joint angles"), or why there are none.
+  const std::string& reason() const;
+  /// The pose in a row; null if the poses are not determined. `simulated`: of the same row.
+  std::shared_ptr<const DrawnGhost> at(std::size_t row, const Snapshot& simulated);
+
+ private:
+  class Search;
+  std::unique_ptr<Search> search_;
+  std::string reason_;
+};
+
+}  // namespace musclesim
