@@ -342,10 +342,6 @@ std::string ownerWords(const std::string& id, const std::string& component) {
   return spaced(component);
 }
 
-std::string quantityWords(double value, const std::string& unit) {
-  return unit.empty() ? fmt::format("{:.3g}", value) : fmt::format("{:.3g} {}", value, unit);
-}
-
 namespace {
 
 /// A number with its unit as it is said: seconds below one as ms, shares in percent.
@@ -371,16 +367,30 @@ std::string digits(double value, double half) {
   return decimals > most_decimals ? fmt::format("{:.3g}", value) : fmt::format("{:.{}f}", value, std::max(0, decimals));
 }
 
+/// At most three digits, fewer if the interval justifies no more.
+std::string fewDigits(double value, double half) {
+  constexpr int most = 3;
+  int count = most;
+  if (half > 0 && value != 0) {
+    const int decimals = std::max(0, -static_cast<int>(std::floor(std::log10(half))));
+    count = std::clamp(static_cast<int>(std::floor(std::log10(std::abs(value)))) + 1 + decimals, 1, most);
+  }
+  return fmt::format("{:.{}g}", value, count);
+}
+
 double usualWidth(const EffectParameter& parameter) {
   const double width = parameter.usual_high - parameter.usual_low;
   return std::isfinite(width) ? width : 0;
 }
 
-/// An interval says something if it is narrower than what is known without any recording.
+/// An interval says something if it is narrower than what is known without any recording; of a parameter that only says how something
+/// acts, clearly narrower.
 bool saysSomething(const Estimate& estimate, const EffectParameter& parameter) {
+  constexpr double clearly = 0.8;
   if (!estimate.is_determined || !std::isfinite(estimate.low) || !std::isfinite(estimate.high) || estimate.low >= estimate.high)
     return false;
-  return estimate.high - estimate.low <= std::max(usualWidth(parameter), std::abs(estimate.value));
+  const double known = std::max(usualWidth(parameter), std::abs(estimate.value));
+  return estimate.high - estimate.low <= (parameter.shape ? clearly * known : known);
 }
 
 /// Whether the parameter changes nothing, or only says how something acts and is not known.
@@ -455,7 +465,8 @@ std::string numbersOf(const FoundEffect& effect, const std::vector<std::string>&
     const std::string lead = phrase.substr(0, phrase.find("{}"));
     if (lead == before) phrase = phrase.substr(lead.size());
     before = lead;
-    words.push_back(filled(phrase, quantityWords(how.factor * estimate.value, how.unit)));
+    words.push_back(filled(phrase, fewDigits(how.factor * estimate.value, how.factor * (estimate.high - estimate.low) / 2) +
+                                       (how.unit.empty() ? "" : " " + how.unit)));
   }
   return listed(words);
 }

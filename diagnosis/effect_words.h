@@ -23,9 +23,6 @@ std::string signalTitle(const std::string& signal);
 /// "mm" of "length_0_mm", "of full scale" of "pressure_0".
 std::string signalUnitWords(const std::string& signal);
 
-/// "25 ms", "2.49 mm": three digits.
-std::string quantityWords(double value, const std::string& unit);
-
 /// One parameter of a found effect in words.
 struct ParameterLine {
   std::string label;     ///< "lag while filling"

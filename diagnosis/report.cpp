@@ -42,6 +42,15 @@ std::string paragraph(const std::string& words) {
   return words.empty() ? "" : "<p>" + escapedXml(words) + "</p>\n";
 }
 
+/// A command that is split over lines only before an option.
+std::string command(const std::string& words) {
+  std::string text = escapedXml(words);
+  const std::string option = " --", split = "</span> <span class=word>--";
+  for (std::size_t at = text.find(option); at != std::string::npos; at = text.find(option, at + split.size()))
+    text.replace(at, option.size(), split);
+  return "<code><span class=word>" + text + "</span></code>";
+}
+
 /// A paragraph that introduces the following figure or table, with markup.
 std::string lead(const std::string& markup) {
   return "<p class=lead>" + markup + "</p>\n";
@@ -162,12 +171,15 @@ std::string whereAnswer(const Diagnosis& d) {
   const std::string seen = d.where.empty() ? "" : whereSentence(d) + ".";
   if (d.chosen.empty()) return seen.empty() ? "<p>Not known.</p>" : paragraph(seen);
   std::vector<std::string> places;
+  std::string unconfirmed;
   for (const FoundEffect& effect : shownEffects(d)) {
-    const std::string place =
-        fmt::format("in the {} stage ({})", nameOf(effectInfo(effect.id).stage), ownerWords(effect.id, effect.component));
+    const std::string stage = nameOf(effectInfo(effect.id).stage);
+    const std::string place = fmt::format("in the {} stage ({})", stage, ownerWords(effect.id, effect.component));
+    if (isLocated(d.where) && !mayBeAt(d.where, stage)) unconfirmed = " The signals alone do not confirm the " + stage + " stage.";
     if (std::ranges::find(places, place) == places.end()) places.push_back(place);
   }
-  return paragraph(fmt::format("{} {}.", d.chosen.size() > 1 ? "The causes act" : "The cause acts", fmt::join(places, " and "))) +
+  return paragraph(
+             fmt::format("{} {}.{}", d.chosen.size() > 1 ? "The causes act" : "The cause acts", fmt::join(places, " and "), unconfirmed)) +
          (seen.empty() ? "" : "<p class=small>From the signals alone: " + escapedXml(seen) + "</p>");
 }
 
@@ -219,8 +231,8 @@ std::string fileOptions(const Diagnosis& d) {
 }
 
 std::string foundSteps(const Diagnosis& d, Belief belief) {
-  std::string steps = fmt::format("<li>Add {} to the model: <code>musclesim replay NEW.csv {}</code>.</li>",
-                                  d.chosen.size() > 1 ? "these causes" : "this cause", fileOptions(d));
+  std::string steps = fmt::format("<li>Add {} to the model: {}.</li>", d.chosen.size() > 1 ? "these causes" : "this cause",
+                                  command("musclesim replay NEW.csv " + fileOptions(d)));
   if (!d.next_experiment.commands.empty())
     steps +=
         "<li>Play and record <code>next.csv</code>, then diagnose again with that recording first: it tells the alternatives apart.</li>";
@@ -253,7 +265,7 @@ std::string nextSteps(const Diagnosis& d, Belief belief) {
     if (!d.next_experiment.commands.empty())
       steps += "<li>Play and record <code>next.csv</code>, then diagnose again with that recording first.</li>";
     if (!d.attempt.effects.empty())
-      steps += "<li>To build on the rejected explanation: <code>musclesim diagnose ... --effects attempt.json</code>.</li>";
+      steps += "<li>To build on the rejected explanation: " + command("musclesim diagnose ... --effects attempt.json") + ".</li>";
   }
   return "<ol>" + steps + "</ol>";
 }
@@ -650,8 +662,9 @@ std::string nextExperiment(const Diagnosis& d) {
 std::string useIt(const Diagnosis& d) {
   if (!hasAfter(d)) return "";
   const std::string options = fileOptions(d);
-  return heading("Use it") + "<p><code>musclesim replay NEW.csv " + options + "</code> and <code>musclesim " + escapedXml(d.model_options) +
-         " " + options + "</code> run the model with " + (d.chosen.empty() ? "the best rejected explanation" : "the effects found") +
+  return heading("Use it") + "<p>" + command("musclesim replay NEW.csv " + options) + " and " +
+         command("musclesim " + d.model_options + " " + options) + " run the model with " +
+         (d.chosen.empty() ? "the best rejected explanation" : "the effects found") +
          (d.model_options.find("--set") == std::string::npos ? "" : "; replay takes the robot's parameters from the recording's sidecar") +
          ".</p>\n";
 }

@@ -8,7 +8,7 @@ std::string reportStyle() {
 *{box-sizing:border-box}
 body{font:16px/1.5 system-ui,sans-serif;color:var(--ink);max-width:60rem;margin:1rem auto;padding:0 1rem;overflow-wrap:break-word}
 h1{font-size:1.1rem;font-weight:normal;color:var(--soft);margin:.5rem 0}h2{font-size:1.25rem;border-bottom:1px solid var(--line);margin-top:2.2rem}
-h3{font-size:1.05rem;margin:0}p{margin:.6rem 0}code{font-size:.9em;overflow-wrap:anywhere}.small{font-size:.9rem;color:var(--soft)}
+h3{font-size:1.05rem;margin:0}p{margin:.6rem 0}code{font-size:.9em;overflow-wrap:anywhere}.word{display:inline-block;max-width:100%}.small{font-size:.9rem;color:var(--soft)}
 .verdict{border:2px solid var(--sign);border-left-width:.7rem;border-radius:.4rem;padding:.8rem 1rem;background:#fafafa}
 .explained{--sign:#14683c}.partly{--sign:#a65f00}.cannot_tell{--sign:#444}.no_gap{--sign:#1b4f91}
 .signal{display:flex;gap:.9rem;align-items:center}.sign{flex:0 0 4rem;width:4rem;height:4rem;fill:var(--sign)}
