@@ -44,7 +44,7 @@ figure{margin:.5rem 0;break-inside:avoid}svg{max-width:100%;display:block}svg te
 .term{font:inherit;color:inherit;background:none;border:0;border-bottom:2px dotted var(--after);padding:0;cursor:help}
 [popover]{max-width:min(26rem,92vw);border:2px solid var(--after);border-radius:.4rem;padding:.7rem 1rem;box-shadow:0 .3rem 1rem #0004}
 footer{margin-top:2.5rem;border-top:1px solid var(--line);font-size:.9rem;color:var(--soft)}
-@media print{.screen,.tools{display:none}body{max-width:none;margin:0;font-size:13px}h2,h3,.lead,figcaption,.legend{break-after:avoid}tr,p{break-inside:avoid}
+@media print{.screen,.tools{display:none}html{font-size:13px}body{max-width:none;margin:0;font-size:1rem}h2,h3,.lead,.trace figcaption,.loop figcaption,.legend{break-after:avoid}tr,p{break-inside:avoid}
 .verdict,.fill,.band,.sign{print-color-adjust:exact;-webkit-print-color-adjust:exact}.trace svg.plot{max-height:8.5cm}.term{border:0}
 [popover]{display:block;position:static;border:0;box-shadow:none;max-width:none;padding:0;margin:.3rem 0}}
 )css";

@@ -207,6 +207,11 @@ class Report(unittest.TestCase):
                     self.assertEqual(inside, "avoid", name)
                     self.assertLess(height, PAPER["height"], name)
                     self.assertLessEqual(right, PAPER["width"] + 1, name)
+                # What ends a figure must not be glued to what follows: a chain of glued blocks is split anywhere.
+                glued = self.run_script(
+                    "return [...document.querySelectorAll('figure, .card, .bars')].filter(e => { for (let c = e; c; c = c.lastElementChild) "
+                    "if (getComputedStyle(c).breakAfter === 'avoid') return true; return false; }).map(e => e.className)")
+                self.assertEqual(glued, [])
                 notes = self.run_script("return [...document.querySelectorAll('[popover]')].every(n => n.getBoundingClientRect().height > 0)")
                 self.assertTrue(notes)
 
