@@ -149,11 +149,28 @@ SignWords signWords(const Diagnosis& d, Belief belief) {
   return {};
 }
 
-std::string headline(const Diagnosis& d) {
-  if (d.verdict != Verdict::effects_found) {
+/// "other load (the hand) with leak (muscle 0)".
+std::string effectTitles(const std::vector<std::string>& labels) {
+  std::vector<std::string> titles;
+  for (const std::string& label : labels) titles.push_back(effectTitleOn(label));
+  return fmt::format("{}", fmt::join(titles, " with "));
+}
+
+/// The answer where no cause is believed.
+std::string headlineWithoutCause(const Diagnosis& d) {
+  const bool is_small = std::ranges::all_of(d.before.per_signal, [](const auto& entry) { return overNoise(entry.second) < out_of_noise; });
+  if (d.verdict != Verdict::unexplained || d.partial || is_small) {
     const std::vector<std::string> answer = answerSentences(d);
-    return "<div class=headline>" + paragraph(answer.empty() ? "" : answer.front()) + "</div>\n";
+    return answer.empty() ? "" : answer.front();
   }
+  const std::string gap = "There is a gap that I cannot explain.";
+  if (d.effects.empty()) return gap + " No known cause comes close.";
+  return gap + fmt::format(" The likeliest cause, {}, has a probability of only {}.", effectTitleOn(d.effects.front().label()),
+                           probabilityWords(d.effects.front().probability));
+}
+
+std::string headline(const Diagnosis& d) {
+  if (d.verdict != Verdict::effects_found) return "<div class=headline>" + paragraph(headlineWithoutCause(d)) + "</div>\n";
   const std::vector<FoundEffect> effects = shownEffects(d);
   const std::vector<std::string> claims = claimSentences(effects, comparedSignals(d));
   std::string text;
@@ -190,6 +207,19 @@ std::string largestResidual(const Diagnosis& d) {
   return fmt::format(" The largest residual is {:.2f} times its noise floor ({}).", overNoise(most->second), signalTitle(most->first));
 }
 
+/// The explanations that are as good as the best one.
+std::string alternativesSentence(const Diagnosis& d, const Caveats& caveats) {
+  constexpr std::size_t told = 3;
+  if (d.ambiguity_sets.size() < 2) return caveats.others;
+  std::vector<std::string> others;
+  const bool is_chosen_first = !d.chosen.empty();
+  for (std::size_t i = is_chosen_first ? 1 : 0; i < d.ambiguity_sets.size() && others.size() < told; ++i)
+    others.push_back(effectTitles(d.ambiguity_sets[i]));
+  const std::size_t more = d.ambiguity_sets.size() - others.size() - (is_chosen_first ? 1 : 0);
+  return capitalised(fmt::format("{}{} would explain these recordings {}.", fmt::join(others, ", or "),
+                                 more ? fmt::format(", or {} more", more) : "", is_chosen_first ? "as well" : "equally well"));
+}
+
 std::string sureAnswer(const Diagnosis& d, const Caveats& caveats) {
   std::string text;
   if (d.verdict == Verdict::effects_found) {
@@ -197,8 +227,8 @@ std::string sureAnswer(const Diagnosis& d, const Caveats& caveats) {
     if (best != d.explanations.end())
       text += fmt::format("<p>This explanation has a {} of {}{}.</p>", term("probability"), probabilityWords(best->probability),
                           d.chosen.size() > 1 ? " as a whole; each cause has its own below" : "");
-    text += paragraph(caveats.others);
   }
+  text += paragraph(alternativesSentence(d, caveats));
   if (d.verdict == Verdict::no_gap || d.verdict == Verdict::not_excited)
     text +=
         fmt::format("<p>A residual is called noise up to {} times its {}, {} times where the floor was estimated from quiet rows.{}</p>",
@@ -218,12 +248,11 @@ std::string restAnswer(const Diagnosis& d, const Caveats& caveats) {
                        caveats.rest.empty() ? noise : escapedXml(caveats.rest)) +
            paragraph(elsewhereSentence({d.reduction_percent, d.reduction_low_percent, d.reduction_high_percent}));
   }
-  std::string text = "<p>All of it, since no cause is believed.</p>";
+  std::string text = fmt::format("<p>All of it, since no cause is believed: the {} is {:.3g} times the {}.{}</p>", term("residual"),
+                                 overNoiseInAll(d.before), term("floor"), escapedXml(largestResidual(d)));
   if (d.attempt.effects.empty()) return text;
-  std::vector<std::string> titles;
-  for (const FoundEffect& effect : shownEffects(d)) titles.push_back(effectTitleOn(effect.label()));
-  return text + fmt::format("<p>The best {}, {}, would leave {}.</p>", term("attempt"),
-                            escapedXml(fmt::format("{}", fmt::join(titles, " with "))), leftWords(percentLeft(d)));
+  return text + fmt::format("<p>The best {}, {}, would leave {}.</p>", term("attempt"), escapedXml(effectTitles(d.attempt.effects)),
+                            leftWords(percentLeft(d)));
 }
 
 std::string fileOptions(const Diagnosis& d) {
@@ -379,9 +408,7 @@ std::string togetherList(const Diagnosis& d) {
   std::string items;
   for (const ExplanationProbability& fitted : d.explanations) {
     if (fitted.effects.empty()) continue;
-    std::vector<std::string> titles;
-    for (const std::string& label : fitted.effects) titles.push_back(effectTitleOn(label));
-    items += fmt::format("<li>{}: {}</li>", probabilityWords(fitted.probability), escapedXml(fmt::format("{}", fmt::join(titles, " + "))));
+    items += fmt::format("<li>{}: {}</li>", probabilityWords(fitted.probability), escapedXml(effectTitles(fitted.effects)));
   }
   return "<details class=more><summary>Probabilities of whole explanations</summary><ul>" + items + "</ul></details>\n";
 }
@@ -401,11 +428,7 @@ std::string which(const Diagnosis& d) {
   text += otherCauses(d, shown) + togetherList(d);
   if (!d.effects.empty() && !d.alternatives.empty()) {
     text += "<p>These recordings cannot distinguish:</p><ul>";
-    for (const std::vector<std::string>& set : d.ambiguity_sets) {
-      std::vector<std::string> titles;
-      for (const std::string& label : set) titles.push_back(effectTitleOn(label));
-      text += "<li>" + escapedXml(fmt::format("{}", fmt::join(titles, " with "))) + "</li>";
-    }
+    for (const std::vector<std::string>& set : d.ambiguity_sets) text += "<li>" + escapedXml(effectTitles(set)) + "</li>";
     text += "</ul>\n";
   }
   return text;
@@ -467,12 +490,12 @@ std::string signalTable(const Diagnosis& d) {
     rows += "<tr><td data-head=signal><span>" + escapedXml(signalTitle(name)) + "<br>" + breakableCode(name) + "</span></td>" +
             cell("noise floor", fmt::format("{:.3g} {}", before.noise_sigma, escapedXml(signalUnitWords(name)))) +
             cell(hasAfter(d) ? "residual before" : "residual", times(before)) + (hasAfter(d) ? cell("residual after", times(after)) : "") +
-            "<td data-head=\"shape of the rest\">" + shapeOfRest(d, name) + "</td></tr>\n";
+            "<td data-head=shape>" + shapeOfRest(d, name) + "</td></tr>\n";
   }
   return lead("By signal: typical residual (RMS), in the signal's unit and as a multiple of its noise floor.") +
          "<table class=wide><thead><tr><th>signal</th><th class=number>noise floor</th>" +
          (hasAfter(d) ? "<th class=number>residual before</th><th class=number>residual after</th>" : "<th class=number>residual</th>") +
-         "<th>shape of the rest</th></tr></thead><tbody>" + rows + "</tbody></table>\n";
+         "<th>shape</th></tr></thead><tbody>" + rows + "</tbody></table>\n";
 }
 
 std::string howFar(const Diagnosis& d) {
@@ -508,7 +531,7 @@ std::string traceRemark(const Diagnosis& d, const std::string& signal) {
   if (hasAfter(d) && after != gapAfter(d).per_signal.end()) text += fmt::format(" before, {:.3g} after,", overNoise(after->second));
   text += " times the noise floor";
   const std::string shape = shapeOfRest(d, signal);
-  return shape.empty() ? text : text + "; the rest is " + shape;
+  return shape.empty() ? text : text + (hasAfter(d) ? "; the rest is " : "; it is ") + shape;
 }
 
 std::string curves(const Diagnosis& d) {
@@ -646,17 +669,28 @@ std::string groupedWords(const std::vector<std::string>& labels) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
+/// {"a@x", "b@y"} of "a@x + b@y".
+std::vector<std::string> splitLabels(const std::string& labels) {
+  const std::string link = " + ";
+  std::vector<std::string> parts;
+  for (std::size_t first = 0, end = 0; end != std::string::npos; first = end + link.size()) {
+    end = labels.find(link, first);
+    parts.push_back(labels.substr(first, end - first));
+  }
+  return parts;
+}
+
 std::string nextExperiment(const Diagnosis& d) {
   if (d.next_experiment.commands.empty()) return "";
   std::vector<std::string> titles;
-  for (const std::string& labels : d.next_experiment.separates) titles.push_back(labels);
+  for (const std::string& labels : d.next_experiment.separates) titles.push_back(effectTitles(splitLabels(labels)));
   return heading("Next experiment") +
          paragraph(
              fmt::format("{} {} apart, play the {:.0f} s of commands in next.csv, {}. Check first that they are safe for the machine. Then "
                          "run diagnose with "
                          "the new recording as the first file, followed by the recordings of this page.",
                          d.verdict == Verdict::unexplained ? "In case one of the known effects is the cause after all: to tell" : "To tell",
-                         fmt::join(titles, ", "), d.next_experiment.time_s.back(), d.next_experiment.why));
+                         fmt::join(titles, " and "), d.next_experiment.time_s.back(), d.next_experiment.why));
 }
 
 std::string useIt(const Diagnosis& d) {
@@ -691,7 +725,7 @@ std::string whatElse(const Diagnosis& d) {
 std::string subject(const Diagnosis& d) {
   std::vector<std::string> names;
   for (const std::string& file : d.recordings) names.push_back(std::filesystem::path(file).filename().string());
-  return fmt::format("Robot {}; recordings {}.", d.robot, fmt::join(names, ", "));
+  return fmt::format("Robot {}; recordings {}.", std::filesystem::path(d.robot).filename().string(), fmt::join(names, ", "));
 }
 
 std::string foot(const Diagnosis& d, const ReportOrigin& origin) {

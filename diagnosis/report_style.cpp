@@ -40,7 +40,7 @@ figure{margin:.5rem 0;break-inside:avoid}svg{max-width:100%;display:block}svg te
 .length{display:flex;align-items:center;gap:.5rem}.fill{height:.95rem;min-width:2px;background:#8a8a8a;print-color-adjust:exact;-webkit-print-color-adjust:exact}.strong{background:#222}
 .removed{background:repeating-linear-gradient(135deg,#fff 0 3px,#0b4f9e 3px 5px);border:1px solid #0b4f9e}.added{background:#fff;border:1px dashed #222}
 @media screen and (max-width:44rem){.bar{display:block}.bar>:first-child{text-align:left}}
-.place{display:flex;gap:1.5rem}.place>:first-child{flex:1;min-width:0}.robot{flex:0 0 15rem}@media screen and (max-width:44rem){.place{display:block}.robot svg{max-height:16rem}}
+.place{display:flex;gap:1.5rem}.place>:first-child{flex:1;min-width:0}.robot{flex:0 0 15rem;break-inside:avoid}@media screen and (max-width:44rem){.place{display:block}.robot svg{max-height:16rem}}
 .term{font:inherit;color:inherit;background:none;border:0;border-bottom:2px dotted var(--after);padding:0;cursor:help}
 [popover]{max-width:min(26rem,92vw);border:2px solid var(--after);border-radius:.4rem;padding:.7rem 1rem;box-shadow:0 .3rem 1rem #0004}
 footer{margin-top:2.5rem;border-top:1px solid var(--line);font-size:.9rem;color:var(--soft)}

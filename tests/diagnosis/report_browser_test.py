@@ -201,7 +201,7 @@ class Report(unittest.TestCase):
                 self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
                 self.open(page)
                 figures = self.run_script(
-                    "return [...document.querySelectorAll('figure, .card, .bars')].map(e => [getComputedStyle(e).breakInside, "
+                    "return [...document.querySelectorAll('figure, .card, .bars, .robot')].map(e => [getComputedStyle(e).breakInside, "
                     "e.getBoundingClientRect().height, e.getBoundingClientRect().right, e.className])")
                 for inside, height, right, name in figures:
                     self.assertEqual(inside, "avoid", name)

@@ -80,6 +80,18 @@ TEST(Report, ShowsLoopsWhereACauseActsBehindThePressure) {
   EXPECT_FALSE(contains(diagnosisReport(d), "<h2>Loops"));
 }
 
+TEST(Report, SaysThatSeveralCausesWouldExplainTheGap) {
+  Diagnosis d = answer(Verdict::unexplained);
+  d.effects = {{"leak", "muscle_0", 0.37, {}}};
+  d.ambiguity_sets = {{"leak@muscle_0"}, {"creep@muscle_0"}, {"payload@hand", "creep@muscle_0"}, {"force_gain@muscle_0"}};
+  const std::string page = diagnosisReport(d);
+  EXPECT_TRUE(
+      contains(page, "There is a gap that I cannot explain. The likeliest cause, leak (muscle 0), has a probability of only 37 %."));
+  EXPECT_TRUE(
+      contains(page, "Leak (muscle 0), or creep (muscle 0), or other load (the hand) with creep (muscle 0), or 1 more would explain"));
+  EXPECT_TRUE(contains(page, "The largest residual is 10.00 times its noise floor (pressure of muscle 0)."));
+}
+
 TEST(Report, SaysWhereTheSignalsAloneDoNotConfirmACause) {
   const std::string page = diagnosisReport(sampleDiagnosis());
   EXPECT_TRUE(contains(page, "in the body stage (the hand). The signals alone do not confirm the body stage."));
@@ -151,7 +163,7 @@ TEST(Report, ListsEffectsThatActTogetherTogether) {
   d.chosen = {"payload@hand", "leak@all"};
   d.explanations = {{d.chosen, 0.2}, {{"payload@hand"}, 0.78}};
   const std::string page = diagnosisReport(d);
-  EXPECT_TRUE(contains(page, "<li>20 %: other load (the hand) + leak (every muscle)</li><li>78 %: other load (the hand)</li>"));
+  EXPECT_TRUE(contains(page, "<li>20 %: other load (the hand) with leak (every muscle)</li><li>78 %: other load (the hand)</li>"));
 }
 
 TEST(Report, GivesTheParametersOfTheBestRejectedExplanation) {
