@@ -204,7 +204,7 @@ std::string whereAnswer(const Diagnosis& d) {
 std::string largestResidual(const Diagnosis& d) {
   const auto most = std::ranges::max_element(d.before.per_signal, {}, [](const auto& entry) { return overNoise(entry.second); });
   if (most == d.before.per_signal.end()) return "";
-  return fmt::format(" The largest residual is {:.2f} times its noise floor ({}).", overNoise(most->second), signalTitle(most->first));
+  return fmt::format(" The largest residual is {:.3g} times its noise floor ({}).", overNoise(most->second), signalTitle(most->first));
 }
 
 /// The explanations that are as good as the best one.
@@ -479,7 +479,7 @@ std::string phaseFigure(const Diagnosis& d) {
 }
 
 std::string signalTable(const Diagnosis& d) {
-  const auto times = [](const SignalGap& gap) { return fmt::format("{:.3g} ({:.3g} times)", gap.rmse, overNoise(gap)); };
+  const auto times = [](const SignalGap& gap) { return fmt::format("{:.3g} ({:.3g}\u00d7)", gap.rmse, overNoise(gap)); };
   const auto cell = [](const char* head, const std::string& text) {
     return fmt::format("<td class=number data-head=\"{}\">{}</td>", head, text);
   };

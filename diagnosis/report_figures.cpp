@@ -256,6 +256,12 @@ std::vector<double> difference(const std::vector<double>& measured, const std::v
   return result;
 }
 
+double largest(const std::vector<double>& residual) {
+  Extent extent;
+  extent.add(residual);
+  return std::max(extent.maximum(), -extent.minimum());
+}
+
 std::string legend(bool has_after, bool with_band, bool with_readings) {
   std::string keys;
   for (std::size_t kind = 0; kind < (has_after ? 3U : 2U); ++kind)
@@ -279,6 +285,7 @@ std::string timeTicks(const Axis& times, double y) {
 
 std::string traceFigure(const Trace& trace, const TraceWords& words, double noise_sigma, int pixels_per_column) {
   constexpr double width = 720, left = 66, right = 708, gap = 14, band_sigmas = 2;
+  constexpr double magnified = 0.7;  // a residual that is hardly smaller needs no scale of its own
   const bool has_after = !trace.after.empty();
   const std::vector<double> before = difference(trace.measured, trace.before), after = difference(trace.measured, trace.after);
   Extent times;
@@ -303,7 +310,7 @@ std::string traceFigure(const Trace& trace, const TraceWords& words, double nois
   };
   panel(words.unit, 160, false, {{"measured", trace.measured}, {"before", trace.before}, {"after", trace.after}});
   panel("residual", 84, true, {{"before", before}, {"after", after}});
-  if (has_after) panel("after only", 84, true, {{"after", after}});
+  if (has_after && largest(after) < magnified * largest(before)) panel("after only", 84, true, {{"after", after}});
   const double bottom = top - gap;
   return fmt::format(
       "<figure class=trace data-signal=\"{0}\"><figcaption><b>{1}</b> <code>{0}</code> <span class=small>{2}</span></figcaption>{3}"
