@@ -119,12 +119,26 @@ double overNoiseInAll(const Gap& gap) {
   return std::sqrt(1 + gap.normalised);
 }
 
+/// The effects that all explanations share which are as good as the best one.
+std::vector<std::string> sharedEffects(const Diagnosis& d) {
+  if (d.ambiguity_sets.empty()) return {};
+  std::vector<std::string> shared = d.ambiguity_sets.front();
+  for (const std::vector<std::string>& set : d.ambiguity_sets)
+    std::erase_if(shared, [&](const std::string& label) { return std::ranges::find(set, label) == set.end(); });
+  return shared;
+}
+
+/// Whether an explanation without one of the causes found would do as well.
+bool isAmbiguous(const Diagnosis& d) {
+  return d.alternatives.size() > 1 && sharedEffects(d).size() < d.chosen.size();
+}
+
 Belief beliefOf(const Diagnosis& d) {
   if (d.partial) return Belief::cannot_tell;
   if (d.verdict == Verdict::no_gap) return Belief::no_gap;
   if (d.verdict != Verdict::effects_found) return Belief::cannot_tell;
   const bool is_rest = overNoiseInAll(d.after) >= stands_out_of_noise;
-  return is_rest || d.alternatives.size() > 1 || d.none_of_these > rather_none ? Belief::partly : Belief::explained;
+  return is_rest || isAmbiguous(d) || d.none_of_these > rather_none ? Belief::partly : Belief::explained;
 }
 
 struct SignWords {
@@ -138,9 +152,8 @@ SignWords signWords(const Diagnosis& d, Belief belief) {
       return {"explained", "Explained", "You can believe place, kind and numbers of the cause below."};
     case Belief::partly:
       return {"partly", "Explained in part",
-              d.alternatives.size() > 1
-                  ? "Other causes would explain these recordings as well: record more before you rely on this one."
-                  : "Believe the place and the kind of the cause; its numbers are rough, and something else is left."};
+              isAmbiguous(d) ? "Other causes would explain these recordings as well: record more before you rely on this one."
+                             : "Believe the place and the kind of the cause; its numbers are rough, and something else is left."};
     case Belief::cannot_tell:
       return {"cannot_tell", "Cannot tell", "Believe none of the causes yet."};
     case Belief::no_gap:
@@ -210,7 +223,11 @@ std::string largestResidual(const Diagnosis& d) {
 /// The explanations that are as good as the best one.
 std::string alternativesSentence(const Diagnosis& d, const Caveats& caveats) {
   constexpr std::size_t told = 3;
+  if (d.effects.empty() || d.none_of_these > rather_none) return "";
   if (d.ambiguity_sets.size() < 2) return caveats.others;
+  if (const std::vector<std::string> shared = sharedEffects(d); !shared.empty())
+    return fmt::format("{} explanations fit these recordings equally well. All hold {}; they differ in what else acts.",
+                       d.ambiguity_sets.size(), effectTitles(shared));
   std::vector<std::string> others;
   const bool is_chosen_first = !d.chosen.empty();
   for (std::size_t i = is_chosen_first ? 1 : 0; i < d.ambiguity_sets.size() && others.size() < told; ++i)
@@ -221,12 +238,18 @@ std::string alternativesSentence(const Diagnosis& d, const Caveats& caveats) {
 }
 
 std::string sureAnswer(const Diagnosis& d, const Caveats& caveats) {
+  constexpr double worth_telling = 0.05;  // difference of two probabilities
   std::string text;
   if (d.verdict == Verdict::effects_found) {
     const auto best = std::ranges::find(d.explanations, d.chosen, &ExplanationProbability::effects);
-    if (best != d.explanations.end())
-      text += fmt::format("<p>This explanation has a {} of {}{}.</p>", term("probability"), probabilityWords(best->probability),
-                          d.chosen.size() > 1 ? " as a whole; each cause has its own below" : "");
+    const double together = best == d.explanations.end() ? 0 : best->probability;
+    const auto only = std::ranges::find(d.effects, d.chosen.front(), &FoundEffect::label);
+    if (d.chosen.size() == 1 && only != d.effects.end())
+      text += fmt::format("<p>This cause has a {} of {}{}.</p>", term("probability"), probabilityWords(only->probability),
+                          together < only->probability - worth_telling ? "; that nothing else acts, " + probabilityWords(together) : "");
+    else if (together > 0)
+      text += fmt::format("<p>This explanation has a {} of {} as a whole; each cause has its own below.</p>", term("probability"),
+                          probabilityWords(together));
   }
   text += paragraph(alternativesSentence(d, caveats));
   if (d.verdict == Verdict::no_gap || d.verdict == Verdict::not_excited)
@@ -501,9 +524,9 @@ std::string signalTable(const Diagnosis& d) {
 std::string howFar(const Diagnosis& d) {
   const bool searched = d.verdict == Verdict::effects_found || d.verdict == Verdict::unexplained;
   std::string text = heading(hasAfter(d) ? "How far" : "How close the model comes");
-  text += paragraph(searched ? "Measured on " + d.held_out + "."
-                             : fmt::format("All {} recordings were compared; the figures below are of {}.", d.recordings.size(),
-                                           std::filesystem::path(d.recordings.back()).filename().string()));
+  text += lead(escapedXml(searched ? "Measured on " + d.held_out + "."
+                                   : fmt::format("All {} recordings were compared; the figures below are of {}.", d.recordings.size(),
+                                                 std::filesystem::path(d.recordings.back()).filename().string())));
   if (hasAfter(d) && d.chosen.empty()) text += paragraph("No explanation was accepted: below, \"after\" means with the best rejected one.");
   if (hasAfter(d)) text += removalFigure(d) + controlsFigure(d);
   text += phaseFigure(d) + signalTable(d);

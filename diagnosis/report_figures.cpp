@@ -77,7 +77,8 @@ std::string stagesFigure(const std::vector<Place>& where) {
     };
     words(top + 24, stages[i], 17, ink);
     words(top + 46, fmt::format("{:.0f} %", 100 * share), 18, ink);
-    if (share >= 0.05) words(top + height + 20, componentWords(withoutPrefix(place->component)), 15, "#222222");
+    if (share >= 0.05)
+      words(top + height + 20, place->component == "all" ? "all" : componentWords(withoutPrefix(place->component)), 15, "#222222");
     if (i + 1 < stages.size())
       markup += fmt::format("<path d=\"M{0:.0f} {1:.0f}h{2:.0f}m-7 -5l7 5l-7 5\" fill=\"none\" stroke=\"#555555\" stroke-width=\"1.6\"/>",
                             x + box + 4, top + height / 2, gap - 8);
@@ -284,7 +285,7 @@ std::string timeTicks(const Axis& times, double y) {
 }  // namespace
 
 std::string traceFigure(const Trace& trace, const TraceWords& words, double noise_sigma, int pixels_per_column) {
-  constexpr double width = 720, left = 66, right = 708, gap = 14, band_sigmas = 2;
+  constexpr double width = 720, left = 94, right = 706, gap = 24, band_sigmas = 2;
   constexpr double magnified = 0.7;  // a residual that is hardly smaller needs no scale of its own
   const bool has_after = !trace.after.empty();
   const std::vector<double> before = difference(trace.measured, trace.before), after = difference(trace.measured, trace.after);
@@ -292,7 +293,7 @@ std::string traceFigure(const Trace& trace, const TraceWords& words, double nois
   times.add(trace.time_s);
   const Axis time_axis(times, left, right, 8, false);
   std::string markup;
-  double top = 8;
+  double top = 14;
   const double band = band_sigmas * noise_sigma;
   const auto panel = [&](const std::string& label, double height, bool is_residual, const std::vector<LookedCurve>& curves) {
     Extent values;
@@ -324,7 +325,7 @@ std::string traceFigure(const Trace& trace, const TraceWords& words, double nois
 std::string loopFigure(const Loop& loop) {
   constexpr double width = 360, height = 290;
   constexpr std::size_t most_points = 500;
-  const SvgBox box{66, 8, width - 76, height - 56};
+  const SvgBox box{66, 12, width - 82, height - 60};
   Extent across, up;
   for (const LoopCurve& curve : loop.curves) {
     across.add(curve.x);

@@ -32,7 +32,7 @@ figure{margin:.5rem 0;break-inside:avoid}svg{max-width:100%;display:block}svg te
 .band{fill:#d9d9d9;stroke:none}.grid{stroke:#e5e5e5;fill:none}.frame{fill:none;stroke:#999;pointer-events:none}
 .trace{margin:1.4rem 0}.trace svg.plot,.loop svg.still{width:100%;height:auto;background:#fff}.plot text,.still text{font-size:12px;fill:#333}
 .plot{touch-action:pan-y;cursor:crosshair}.plot:focus-visible{outline:3px solid var(--after)}.cursor{stroke:#000;stroke-width:1;pointer-events:none}.chosen{fill:#0b4f9e;opacity:.15;pointer-events:none}
-@media screen and (max-width:44rem){.plot text{font-size:21px}.plot .unit{font-size:17px}.still text{font-size:13px}}
+@media screen and (max-width:44rem){.plot text{font-size:19px}.plot .unit{font-size:17px}.still text{font-size:13px}}
 .legend{display:flex;flex-wrap:wrap;gap:.1rem 1.1rem;font-size:.85rem}.key{white-space:nowrap}.key svg{display:inline-block;width:30px;height:10px;margin-right:.35rem}output{font-variant-numeric:tabular-nums;font-weight:bold}
 .tools{position:sticky;top:0;background:#fffd;padding:.3rem 0;z-index:1;font-size:.9rem}
 .loops{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,20rem),1fr));gap:1rem}.loop{max-width:28rem}

@@ -21,16 +21,16 @@ cat >machine.json <<'TEXT'
 {"format": "musclesim-effects-1", "effects": [
   {"id": "valve_lag", "component": "all", "parameters": {"fill_time_constant_s": 0.05, "vent_time_constant_s": 0.12}}]}
 TEXT
-# commands SEED: antagonistic steps, small enough to keep the elbow off its stops.
+# commands SEED: large steps of both muscles together, and antagonistic steps small enough to keep the elbow off its stops.
 commands() {
   python3 - "$1" <<'PYTHON'
 import random, sys
 random.seed(int(sys.argv[1]))
 print("time_s,command_0,command_1")
-difference = 0
+both, difference = 0.45, 0
 for row in range(801):
-    if row and row % 50 == 0: difference = random.uniform(-0.05, 0.05)
-    print(f"{row / 100},{0.45 + difference:.4f},{0.45 - difference:.4f}")
+    if row and row % 50 == 0: both, difference = random.uniform(0.3, 0.6), random.uniform(-0.03, 0.03)
+    print(f"{row / 100},{both + difference:.4f},{both - difference:.4f}")
 PYTHON
 }
 sidecar='{"format": "musclesim-recording-1", "robot": "elbow", "robot_parameters": {"muscle.model": "line"}}'

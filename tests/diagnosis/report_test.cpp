@@ -90,6 +90,24 @@ TEST(Report, SaysThatSeveralCausesWouldExplainTheGap) {
   EXPECT_TRUE(
       contains(page, "Leak (muscle 0), or creep (muscle 0), or other load (the hand) with creep (muscle 0), or 1 more would explain"));
   EXPECT_TRUE(contains(page, "The largest residual is 10 times its noise floor (pressure of muscle 0)."));
+  d.none_of_these = 0.9;
+  EXPECT_FALSE(contains(diagnosisReport(d), "would explain")) << "none of them does";
+}
+
+TEST(Report, IsSureOfACauseThatAllGoodExplanationsShare) {
+  Diagnosis d = sampleDiagnosis();
+  d.chosen = {"valve_lag@muscle_1"};
+  d.explanations = {{d.chosen, 0.2}};
+  d.alternatives = {"valve_lag@muscle_1", "valve_lag@muscle_1 + leak@muscle_0"};
+  d.ambiguity_sets = {{"valve_lag@muscle_1"}, {"leak@muscle_0", "valve_lag@muscle_1"}};
+  std::string page = diagnosisReport(d);
+  EXPECT_TRUE(contains(page, "<strong>Explained</strong>"));
+  EXPECT_TRUE(contains(page, "of 98 %; that nothing else acts, 20 %."));
+  EXPECT_TRUE(contains(page, "2 explanations fit these recordings equally well. All hold lag of the valve (muscle 1)"));
+  d.ambiguity_sets[1] = {"leak@muscle_0"};
+  page = diagnosisReport(d);
+  EXPECT_TRUE(contains(page, "<strong>Explained in part</strong>"));
+  EXPECT_TRUE(contains(page, "Leak (muscle 0) would explain these recordings as well."));
 }
 
 TEST(Report, SaysWhereTheSignalsAloneDoNotConfirmACause) {
