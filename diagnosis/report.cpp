@@ -634,9 +634,10 @@ std::string tuned(const Diagnosis& d) {
   std::string rows;
   const bool together = hasAfter(d);
   for (const TunedParameter& p : d.tuned) {
-    rows += fmt::format("<tr><td>{}</td><td class=number>{:.4g} {}</td><td class=number>{}</td>", breakableCode(p.name), p.start, p.unit,
-                        estimateWords(p.fitted));
-    if (together) rows += fmt::format("<td class=number>{}</td>", estimateWords(p.with_effects));
+    rows += fmt::format(
+        "<tr><td data-head=parameter>{}</td><td class=number data-head=given>{:.4g} {}</td><td class=number data-head=fitted>{}</td>",
+        breakableCode(p.name), p.start, p.unit, estimateWords(p.fitted));
+    if (together) rows += fmt::format("<td class=number data-head=\"with the effects\">{}</td>", estimateWords(p.with_effects));
     rows += "</tr>\n";
   }
   return heading("The model") +
@@ -645,8 +646,9 @@ std::string tuned(const Diagnosis& d) {
              "every gap \"before\" on this page is the gap of the model with these values. They were fitted again together with every "
              "effect that was tried, because a parameter and an effect can stand in for each other. nominal.toml holds the last column, "
              "for --config.") +
-         "<table><tr><th>parameter</th><th class=number>given</th><th class=number>fitted (95 % interval)</th>" +
-         std::string(together ? "<th class=number>fitted with the effects</th>" : "") + "</tr>\n" + rows + "</table>";
+         "<table class=wide><thead><tr><th>parameter</th><th class=number>given</th><th class=number>fitted (95 % interval)</th>" +
+         std::string(together ? "<th class=number>fitted with the effects</th>" : "") + "</tr></thead><tbody>\n" + rows +
+         "</tbody></table>";
 }
 
 /// Bars of the share of the log misfit that each effect would remove by screening: the strongest effects, and the chosen ones at any rank.

@@ -185,8 +185,8 @@ class Report(unittest.TestCase):
                 self.run_script("document.querySelectorAll('details').forEach(d => d.open = true)")
                 beyond = self.run_script(
                     "return [...document.body.querySelectorAll('*')].filter(e => !e.closest('svg.view, [popover]')).filter(e => { "
-                    "const b = e.getBoundingClientRect(); return b.width && (b.right > innerWidth + 1 || b.left < -1); })"
-                    ".map(e => e.outerHTML.slice(0, 120))")
+                    "const b = e.getBoundingClientRect(); return b.width && (b.right > arguments[0] + 1 || b.left < -1); })"
+                    ".map(e => e.outerHTML.slice(0, 120))", PHONE_WIDTH)
                 self.assertEqual(beyond, [])
                 self.assertLessEqual(self.run_script("return document.documentElement.scrollWidth"), PHONE_WIDTH)
                 smallest = self.run_script("return Math.min(...[...document.querySelectorAll('.plot text, .still text')].map(t => "

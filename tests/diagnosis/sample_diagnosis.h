@@ -69,6 +69,7 @@ inline Diagnosis sampleDiagnosis() {
   d.screenings = {{"valve_lag@muscle_1", 0.5}, {"leak@muscle_0", 0.1}};
   d.drawing.lines = {{"", {{0, 0}, {0, -250}}, 30}, {"muscle_0", {{-40, 0}, {-40, -200}}, 20}, {"muscle_1", {{40, 0}, {40, -200}}, 20}};
   d.drawing.points = {{"hand", {0, -250}}};
+  d.tuned = {{"elbow.forearm_inertia_kgm2", "kg m2", 0.0123, {0.0131, 0.0128, 0.0134}, {0.0127, 0.0124, 0.0131}}};
   d.simulation_count = 1200;
   for (const char* signal : {"angle_elbow_deg", "length_0_mm", "length_1_mm"}) addSampleSignal(d, signal, 1001, 10);
   for (const char* signal : {"pressure_0", "pressure_1"}) addSampleSignal(d, signal, 1001, 0.1);
