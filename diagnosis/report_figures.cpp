@@ -230,7 +230,7 @@ struct Panel {
                         box.top + box.height / 2, escapedXml(label));
     return text +
            fmt::format(
-               "<svg class=view x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" viewBox=\"0 0 {} {}\" preserveAspectRatio=none "
+               "<svg class=\"view\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" viewBox=\"0 0 {} {}\" preserveAspectRatio=none "
                "data-start=\"{}\" "
                "data-end=\"{}\" data-low=\"{}\" data-high=\"{}\">{}</svg><rect class=frame x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>",
                box.left, box.top, box.width, box.height, 10 * box.width, 10 * box.height, times.minimum(), times.maximum(),
