@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <set>
 
@@ -61,6 +62,32 @@ std::optional<double> singleReduction(const Search& search, const HeldOut& held_
     if (predicted.size()) return held_out.reductionPercent(held_out.comparison.measured() - predicted);
   }
   return std::nullopt;
+}
+
+/// The gap with the chosen effects added one after another, the one that removes most alone first.
+std::vector<RemovalStep> removalSteps(const Search& search, const HeldOut& held_out, const Diagnosis& diagnosis) {
+  std::vector<RemovalStep> steps;
+  if (diagnosis.chosen.size() < 2 || search.causes().plant().interrupted()) return steps;
+  const auto alone = [&](const std::string& label) {
+    const auto effect = std::ranges::find_if(diagnosis.effects, [&](const FoundEffect& found) { return found.label() == label; });
+    return effect == diagnosis.effects.end() ? 0 : effect->reduction_percent.value_or(0);
+  };
+  std::vector<std::string> order = diagnosis.chosen;
+  std::ranges::stable_sort(order, std::greater{}, alone);
+  Explanation rest = search.explanations().front();
+  double left_percent = 100 - diagnosis.reduction_percent;
+  while (!rest.members.empty()) {
+    const std::string last = order[rest.members.size() - 1];
+    const auto member = std::ranges::find_if(rest.members, [&](std::size_t index) { return labelOf(search, index) == last; });
+    if (member == rest.members.end()) return {};
+    steps.insert(steps.begin(), {last, left_percent});
+    rest = search.causes().without(rest, static_cast<std::size_t>(member - rest.members.begin()));
+    if (rest.members.empty()) break;
+    const Eigen::VectorXd predicted = held_out.comparison.predicted(search.modelOf(rest));
+    if (!predicted.size()) return {};
+    left_percent = 100 - held_out.reductionPercent(held_out.comparison.measured() - predicted);
+  }
+  return steps;
 }
 
 void listAmbiguity(const Search& search, Diagnosis& diagnosis) {
@@ -141,6 +168,7 @@ void listEffects(const Search& search, const HeldOut& held_out, const DiagnosisO
     FoundEffect& effect = diagnosis.effects[static_cast<std::size_t>(i)];
     effect.reduction_percent = singleReduction(search, held_out, effect.label());
   });
+  diagnosis.removal = removalSteps(search, held_out, diagnosis);
 }
 
 void listTrials(const Search& search, Diagnosis& diagnosis) {

@@ -1,4 +1,4 @@
-/// The figures of report.html. All are readable in black and white: important parts are darker, thicker or labelled.
+/// The figures of report.html. All are readable in black and white: important parts are darker, thicker, dashed or labelled.
 #pragma once
 
 #include <string>
@@ -13,7 +13,8 @@ struct Bar {
   std::string label;
   double value;
   std::string number;
-  bool strong = true;
+  std::string look = "plain";  ///< "plain", "strong" or "removed" (hatched)
+  double start = 0;            ///< where the bar begins
 };
 std::string barsFigure(const std::string& title, const std::vector<Bar>& bars, double full);
 
@@ -23,10 +24,27 @@ std::string stagesFigure(const std::vector<Place>& where);
 /// The robot from the front with the component of the first place marked.
 std::string robotFigure(const RobotDrawing& drawing, const Place& place);
 
-/// Measured values, simulation before and, if there is one, after, over time. The page's script zooms all traces together.
-std::string traceFigure(const Trace& trace, bool has_after);
+struct TraceWords {
+  std::string title, unit, remark;
+};
+/// Measured and simulated values over time, before and, if there is an explanation, after; below them the residuals with the band of
+/// twice the noise floor. The page's script zooms all traces together. Of the samples within `pixels_per_column` pixels only the lowest
+/// and the highest are drawn.
+std::string traceFigure(const Trace& trace, const TraceWords& words, double noise_sigma, int pixels_per_column);
 
-/// JavaScript that zooms all traces of the page: drag to select a time range, double click to see everything.
-std::string zoomScript();
+struct LoopCurve {
+  std::vector<double> x, y;
+};
+/// One signal over another: measured, simulated before and, if there is one, after.
+struct Loop {
+  std::string title, across, up;
+  std::vector<LoopCurve> curves;
+};
+std::string loopFigure(const Loop& loop);
+
+/// What a reader may believe.
+enum class Belief { explained, partly, cannot_tell, no_gap };
+/// A traffic sign whose shape differs as much as its colour.
+std::string signFigure(Belief belief);
 
 }  // namespace musclesim

@@ -357,9 +357,6 @@ std::vector<std::string> foundSentences(const Diagnosis& d) {
 
 }  // namespace
 
-namespace {
-
-/// The answer in the sense of Diagnosis::verdict.
 std::vector<std::string> answerSentences(const Diagnosis& d) {
   std::vector<std::string> sentences;
   switch (d.verdict) {
@@ -380,6 +377,8 @@ std::vector<std::string> answerSentences(const Diagnosis& d) {
   return sentences;
 }
 
+namespace {
+
 /// A recording of a simulated machine with effects is compared with a model that has them too, which surprises who looks for them.
 std::string modelEffectsWords(const Diagnosis& d) {
   if (d.model_effects.empty()) return "";
@@ -388,6 +387,15 @@ std::string modelEffectsWords(const Diagnosis& d) {
 }
 
 }  // namespace
+
+Caveats caveatsOf(const Diagnosis& d) {
+  return {d.verdict == Verdict::effects_found ? remainder(d, d.after) : "",
+          numbersWords(d),
+          noneWords(d),
+          otherwise(d),
+          unsteadyWords(d.unsteady),
+          modelEffectsWords(d)};
+}
 
 std::vector<std::string> verdictSentences(const Diagnosis& d) {
   std::vector<std::string> sentences = answerSentences(d);

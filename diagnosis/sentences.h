@@ -12,6 +12,18 @@ namespace musclesim {
 std::vector<std::string> verdictSentences(const Diagnosis& diagnosis);
 /// All of them, joined.
 std::string verdictSentence(const Diagnosis& diagnosis);
+/// The answer in the sense of Diagnosis::verdict, the most important sentence first; some may be empty.
+std::vector<std::string> answerSentences(const Diagnosis& diagnosis);
+/// What a reader should know besides the answer. Each is a sentence, or empty.
+struct Caveats {
+  std::string rest;      ///< what stands out of the noise with the effects found
+  std::string numbers;   ///< numbers of the model that are off
+  std::string none;      ///< probability that no known effect is the cause
+  std::string others;    ///< explanations that are as good
+  std::string unsteady;  ///< the motion depends on the step size
+  std::string model;     ///< effects that the model has already
+};
+Caveats caveatsOf(const Diagnosis& diagnosis);
 /// Whether the first place is more probable than all others together.
 bool isTold(const std::vector<Place>& where);
 /// Whether, besides, the signals rule out all other places; command and pressure count as one place.

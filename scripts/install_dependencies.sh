@@ -48,6 +48,9 @@ test_packages=(
   "ffmpeg                 videos"
   "xvfb                   a display for the tests of the window"
   "xdotool                keys and mouse for the tests of the window"
+  "chromium               a browser for the tests of the report"
+  "chromium-driver        drives the browser"
+  "python3-selenium       drives the browser"
   "${python_packages[@]}"
   "python3-matplotlib     the examples in Python"
 )

@@ -92,7 +92,22 @@ std::string CommandLine::messageFor(const CLI::ParseError& error) const {
   return message + (nearest.empty() ? fmt::format("; commands are {}", fmt::join(names, ", ")) : "; did you mean " + nearest + "?");
 }
 
+namespace {
+
+/// An argument as one would type it in a shell.
+std::string shellWord(const std::string& argument) {
+  constexpr const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,:/@%";
+  if (!argument.empty() && argument.find_first_not_of(plain) == std::string::npos) return argument;
+  std::string quoted = "'";
+  for (const char c : argument) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+}  // namespace
+
 std::optional<int> CommandLine::parse(int argument_count, const char* const* arguments) {
+  model_.command_line = "musclesim";
+  for (int i = 1; i < argument_count; ++i) model_.command_line += " " + shellWord(arguments[i]);
   try {
     std::vector<std::string> words = ordered({arguments + std::min(argument_count, 1), arguments + argument_count});
     std::reverse(words.begin(), words.end());  // as CLI11 takes them

@@ -1,7 +1,9 @@
 /// `musclesim diagnose`: finds from recordings where the gap lies, which effect causes it, and how far the effect reduces it.
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <ctime>
 #include <filesystem>
 
 #include "commands.h"
@@ -77,12 +79,17 @@ void writeSchedule(const Diagnosis& diagnosis, const RecordingInfo& model, const
   replaceFile(sidecar, sidecarText(info, sidecar));
 }
 
+/// "2026-11-26 21:05".
+std::string localTime() {
+  return fmt::format("{:%Y-%m-%d %H:%M}", fmt::localtime(std::time(nullptr)));
+}
+
 void writeAll(const Diagnosis& diagnosis, const std::filesystem::path& folder, const DiagnoseArguments& arguments,
-              const std::vector<ActiveEffect>& effects_of_user, const RecordingInfo& plant) {
+              const std::vector<ActiveEffect>& effects_of_user, const RecordingInfo& plant, const std::string& command_line) {
   for (const char* of_an_earlier_run : files_of_some_answers) std::filesystem::remove(folder / of_an_earlier_run);
   const std::string json = diagnosisJson(diagnosis);
   replaceFile((folder / "diagnosis.json").string(), json);
-  replaceFile((folder / "report.html").string(), diagnosisReport(diagnosis));
+  replaceFile((folder / "report.html").string(), diagnosisReport(diagnosis, {localTime(), command_line}));
   writeWith(diagnosis.chosen_effects, effects_of_user, folder / "effects.json");
   if (!diagnosis.attempt.effects.empty()) writeWith(diagnosis.attempt.active_effects, effects_of_user, folder / "attempt.json");
   if (!diagnosis.tuned.empty()) replaceFile((folder / "nominal.toml").string(), tunedToml(diagnosis.tuned));
@@ -139,7 +146,7 @@ int diagnoseCommand(const ModelOptions& model, const DiagnoseArguments& argument
   options.progress = [&](const DiagnosisProgress& now) { progress.show(now.phase, now.done, now.expected); };
   const RecordingInfo plant = modelOf(recordings.front(), options.model);
   const Diagnosis diagnosis = diagnose(std::move(recordings), options);
-  writeAll(diagnosis, folder, arguments, options.model.effects, plant);
+  writeAll(diagnosis, folder, arguments, options.model.effects, plant, model.command_line);
   fmt::print("{}report    {}\n", diagnosisSummary(diagnosis), (folder / "report.html").string());
   return diagnosis.partial ? interrupted_base + interruptSignal() : done;
 }

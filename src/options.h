@@ -24,6 +24,7 @@ struct ModelOptions {
   std::vector<std::string> set;
   std::optional<std::string> config, effects;
   bool quiet = false, json = false;
+  std::string command_line;  ///< all arguments, as one would type them
 };
 
 /// Adds the model options to a command; all commands write into the same ModelOptions, so their place among the arguments is free.

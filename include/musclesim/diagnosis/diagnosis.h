@@ -171,6 +171,12 @@ struct TunedParameter {
   Estimate with_effects;  ///< together with the chosen effects; equal to `fitted` if none was chosen
 };
 
+/// The gap that is left on the held-out data once this effect is added to those before it.
+struct RemovalStep {
+  std::string effect;  ///< "id@component"
+  double left_percent = 0;
+};
+
 /// The best rejected hypothesis of the verdict `unexplained`.
 struct Attempt {
   std::vector<std::string> effects;          ///< "id@component"
@@ -198,6 +204,7 @@ struct Diagnosis {
   std::vector<std::vector<std::string>> ambiguity_sets;  ///< sets of effects that the data cannot tell from the chosen one, that one first
   Remainder remainder;
   std::vector<FittedNumber> numbers;
+  std::vector<RemovalStep> removal;       ///< the chosen effects, added one after another; empty if there are fewer than two
   std::vector<std::string> alternatives;  ///< the same as words, "a@x + b@y"; empty if there is only the chosen one
   std::string model_options;              ///< options of the program for the robot of the recordings: "--robot rig --set rig.load_kg=2"
   std::vector<std::string> refitted;      ///< parameters of the model that the nominal refit re-tunes
@@ -228,8 +235,12 @@ Diagnosis diagnose(std::vector<Recording> recordings, const DiagnosisOptions& op
 /// diagnosis.json, format musclesim-diagnosis-1.
 std::string diagnosisJson(const Diagnosis& diagnosis, const std::string& schedule_file = "next.csv");
 
+/// How a report came to be, for its last lines; empty: not told.
+struct ReportOrigin {
+  std::string date, command_line;
+};
 /// report.html: a self-contained page.
-std::string diagnosisReport(const Diagnosis& diagnosis);
+std::string diagnosisReport(const Diagnosis& diagnosis, const ReportOrigin& origin = {});
 
 /// The tuned parameters as a file for --config.
 std::string tunedToml(const std::vector<TunedParameter>& parameters);
