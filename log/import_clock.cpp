@@ -77,7 +77,7 @@ std::vector<double> readings(const DataTable& table, const TableClock& clock) {
     std::string text(table.text(row, column));
     if (!clock.date.empty() && !text.empty()) text = std::string(table.text(row, table.indexOf(clock.date))) + " " + text;
     const auto seconds = format.seconds(text);
-    if (!seconds && !text.empty())
+    if (!seconds && !table.isMissing(row, column))
       table.refuse(row, column, fmt::format("{} is no date and time of the format {}", inQuotes(text), inQuotes(clock.format)));
     values[row] = seconds.value_or(std::nan(""));
   }
@@ -99,9 +99,9 @@ std::vector<double> rowTimes(const DataTable& table, const TableClock& clock, st
       ++turn_count;
     }
     if (time_s < last_s)
-      throw BadFile(table.file(),
-                    fmt::format("time runs backwards in data row {} (line {}): {} after {}{}", row + 1, table.line(row), time_s, last_s,
-                                clock.wraps_at_s > 0 ? "" : "; a counter that begins again needs wraps_at_s"));
+      table.refuse(row, table.indexOf(clock.from),
+                   fmt::format("time runs backwards in data row {} (line {}): {} after {}{}", row + 1, table.line(row), time_s, last_s,
+                               clock.wraps_at_s > 0 ? "" : "; a counter that begins again needs wraps_at_s"));
     times_s[row] = last_s = time_s;
   }
   if (turn_count > 0)
