@@ -219,7 +219,10 @@ bool CsvReader::readRow(std::vector<CsvCell>& cells) {
   if (cells.size() != width_) {
     const std::string than = format_.has_header ? fmt::format("the header in line {} names {} columns", header_line_, width_)
                                                 : fmt::format("the first row has {}", width_);
-    refuseShape(cells[std::min(cells.size(), width_ + 1) - 1], fmt::format("the row has {} cells but {}", cells.size(), than));
+    const bool may_be_decimals = format_.is_foreign && format_.separator == ',' && cells.size() == 2 * width_;
+    refuseShape(cells[std::min(cells.size(), width_ + 1) - 1],
+                fmt::format("the row has {} cells but {}{}", cells.size(), than,
+                            may_be_decimals ? "; if its numbers have decimal commas, save it with semicolons between the cells" : ""));
   }
   return true;
 }

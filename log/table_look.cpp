@@ -336,6 +336,7 @@ class ClockLook {
       const bool is_called_time = column.name == "t" || column.name.find("ime") != std::string::npos;
       const bool has_unit = column.unit == "s" || column.unit == "ms" || column.unit == "us" || column.unit == "min";
       const bool is_likely = is_called_time || has_unit;
+      if (!is_likely && !column.unit.empty()) continue;  // degrees that grow are no time
       if (!column.is_number || !grows(present(i), is_likely)) continue;
       if (is_likely || !found) found = i;
       if (is_likely) break;

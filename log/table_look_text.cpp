@@ -99,7 +99,9 @@ std::string describe(const LookedClock& clock) {
   if (clock.unit.empty()) text = "clock: the row's number; give rate_Hz";
   if (clock.clock.wraps_at_s > 0) text += fmt::format(", begins again at {:.12g} s", clock.clock.wraps_at_s);
   if (clock.gap_count > 0) text += fmt::format(", {} gaps, the longest {:.4g} s", clock.gap_count, clock.longest_gap_s);
-  if (clock.repeat_count > 0) text += fmt::format(", {} rows have the time of the row before", clock.repeat_count);
+  if (clock.repeat_count > 0)
+    text += fmt::format(", {} the time of the row before",
+                        clock.repeat_count == 1 ? "1 row has" : fmt::format("{} rows have", clock.repeat_count));
   return text;
 }
 

@@ -127,10 +127,11 @@ nlohmann::json SignalSummary::summaryOf(const std::vector<double>& values) const
                          {"settling_time_s", nullptr}, {"overshoot", nullptr}};
   const double change = last - first;
   if (!(std::abs(change) > smallestChange(values))) return json;
-  double settled_s = time_s_.front();
+  std::size_t settled = 0;
   for (std::size_t i = 0; i < values.size(); ++i)
-    if (std::abs(values[i] - last) > band_share * std::abs(change)) settled_s = time_s_[std::min(i + 1, values.size() - 1)];
-  json["settling_time_s"] = settled_s;
+    if (std::abs(values[i] - last) > band_share * std::abs(change)) settled = i + 1;
+  if (settled + 1 >= values.size()) return json;  // it still moves at the end
+  json["settling_time_s"] = time_s_[settled];
   json["overshoot"] = (change > 0 ? peak - last : last - trough) / std::abs(change);
   return json;
 }

@@ -52,7 +52,8 @@ class RunSignals {
 ///     settling_time_s  time of the last reading that is farther from `last` than 2 % of the whole change, last - first
 ///     overshoot        how far the signal goes beyond `last`, in the direction of the change and as a share of it
 ///     rmse             against a recording, over the times of its readings within the run; straight lines between the run's readings
-/// Settling time and overshoot are null if the change does not stand out from the signal's noise (smallestChange).
+/// Settling time and overshoot are null if the change does not stand out from the signal's noise (smallestChange), and if the signal still
+/// leaves the band with the last reading but one.
 class SignalSummary {
  public:
   /// `columns`: the names of a run's columns. Throws BadParameter for a chosen name that is not among them.

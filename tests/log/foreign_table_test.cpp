@@ -347,6 +347,7 @@ TEST_F(ForeignTable, SaysHowOtherSeparatorsAndDecimalsAreRead) {
   EXPECT_TRUE(contains(refusal(table, plain), "needs separator = \";\""));
   EXPECT_TRUE(contains(refusal(table, "[table]\nseparator = \";\"\n" + plain), "data.csv:2:3: column u: \"0,6\" is not a number"));
   EXPECT_TRUE(contains(refusal(table, "[table]\nseparator = \";\"\n" + plain), "needs decimal = \",\""));
+  EXPECT_TRUE(contains(refusal("t,u,x\n0,0,0,6,250,5\n", plain), "save it with semicolons between the cells"));
   EXPECT_TRUE(contains(refusal("t;u;x\n0;0.6;250\n", "[table]\nseparator = \";\"\ndecimal = \",\"\n" + plain), "needs decimal = \".\""));
 }
 
@@ -420,6 +421,11 @@ TEST_F(ForeignTable, LookingSaysWhatIsWrongWithAClock) {
   EXPECT_TRUE(contains(words.clock->fault, "line 4: column t: \"a1\" is not a number"));
   const TableLook back = lookAtTable(write("c.csv", "t,x\n0,1\n1,2\n2,3\n0.5,4\n1.5,5\n2.5,5\n"));
   EXPECT_TRUE(contains(lookText(back), "clock, but line 5: time runs backwards in data row 4 (line 5): 0.5 after 2"));
+}
+
+TEST_F(ForeignTable, AColumnInAnotherUnitIsNoClock) {
+  EXPECT_FALSE(lookAtTable(write("a.csv", "motion,angle_deg\na,1\nb,2\nc,3\n")).clock);
+  EXPECT_TRUE(lookAtTable(write("b.csv", "motion,n\na,1\nb,2\nc,3\n")).clock);
 }
 
 TEST_F(ForeignTable, LookingMentionsWhatIsThereTwice) {

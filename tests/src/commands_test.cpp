@@ -263,6 +263,15 @@ TEST_F(Commands, AChangeWithinTheNoiseHasNoOvershoot) {
   EXPECT_TRUE(contains(result.err, "also recorded, because the verdict needs them: length_0_mm, force_0_N")) << result.err;
 }
 
+TEST_F(Commands, WhatStillMovesHasNotSettled) {
+  const ProgramResult result = simulate("elbow", {"--controller", "sine", "--muscle", "line", "--duration", "4.25", "--record", "a.csv",
+                                                  "--summarise", "command_0", "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto summary = verdict(result)["signals"]["command_0"];
+  EXPECT_NE(summary["peak"], summary["last"]);
+  EXPECT_TRUE(summary["settling_time_s"].is_null() && summary["overshoot"].is_null()) << summary;
+}
+
 TEST_F(Commands, WhatTheVerdictNeedsIsRecordedWithChosenSignals) {
   const ProgramResult result = simulate("elbow", {"--controller", "position", "--duration", "0.2", "--record", "a.csv", "--record-signals",
                                                   "pressure_0", "--summarise", "angle_elbow_deg_per_s", "--json"});
