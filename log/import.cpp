@@ -130,7 +130,8 @@ class Import {
     try {
       return parseRecording(text, made, mapping_.sidecar_json, mapping_.file);
     } catch (const BadFile& fault) {
-      if (fault.file() == made && fault.line() > 1) refuseAtOrigin(fault, text);
+      if (fault.file() != made) throw;
+      if (fault.line() > 1) refuseAtOrigin(fault, text);
       throw BadFile(csv_file_, withoutPlace(fault));
     }
   }
@@ -147,11 +148,12 @@ class Import {
     const Series& series = series_[index - 1];
     const std::string what = withoutPlace(fault);
     if (!series.table) mapping_.refuse(memberOf(column), what);
-    const auto next = std::upper_bound(series.time_s.begin(), series.time_s.end(), clock_of_row_[row] + same_time_s);
-    const bool is_rest = std::isnan(clock_of_row_[row]) && mapping_.before.contains(column.written);
-    if (is_rest || next == series.time_s.begin()) mapping_.refuse("rows.before." + column.written, what);
-    const std::size_t at = std::isnan(clock_of_row_[row]) ? 0 : static_cast<std::size_t>(next - series.time_s.begin()) - 1;
-    const std::size_t table_row = series.rows[at];
+    const bool is_rest = std::isnan(clock_of_row_[row]);  // its commands are those of `before`, or of the first row
+    const double clock_s = clock_of_row_[is_rest ? row + 1 : row] + same_time_s;
+    const auto next = std::upper_bound(series.time_s.begin(), series.time_s.end(), clock_s);
+    if ((is_rest && mapping_.before.contains(column.written)) || next == series.time_s.begin())
+      mapping_.refuse("rows.before." + column.written, what);
+    const std::size_t table_row = series.rows[static_cast<std::size_t>(next - series.time_s.begin()) - 1];
     series.table->refuse(table_row, series.column,
                          fmt::format("column {}: {} becomes {}", series.table->shownName(series.column),
                                      inQuotes(series.table->text(table_row, series.column)), what));

@@ -304,6 +304,9 @@ TEST_F(ForeignTable, FaultsOfValuesHaveTheirPlaceInTheTableOrInTheMapping) {
   EXPECT_TRUE(contains(refusal(table, plain), "data.csv:3:5: column u: \"700\" becomes command_0_bar = 700 (116.6"));
   EXPECT_TRUE(contains(refusal(table, plain + "[rows]\nbefore_s = 1\n"), "data.csv:3:5: column u: \"700\" becomes"));
   EXPECT_TRUE(contains(refusal("t,u,x\n0,700,250\n", plain + "[rows]\nbefore_s = 1\n"), "data.csv:2:3: column u: \"700\" becomes"));
+  EXPECT_TRUE(
+      contains(refusal("t,u,x\n0,3,250\n1,700,250\n2,3,250\n", plain + "[rows]\nfrom_s = 1\nbefore_s = 1\n"), "data.csv:3:3: column u"))
+      << "the rest before the first row that is used";
   write("other.csv", "when,w\n0,3\n0.1,8\n");
   EXPECT_TRUE(contains(
       refusal("t,x\n0,250\n0.1,249\n",

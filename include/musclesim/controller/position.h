@@ -41,8 +41,8 @@ struct Antagonism;
 /// or target_y_mm, with straight lines in between. Channels are the request's or the robot's antagonists (antagonistsOf).
 class PositionController final : public Controller {
  public:
-  /// Throws BadParameter without a robot, without antagonists, for a channel whose joint is not known, for a target beyond the stops of its
-  /// joint (from a file: a note), and as Target::make. Throws BadFile for a targets file that lacks a target.
+  /// Throws BadParameter without a robot, without antagonists, for a channel whose joint is not known, for a target beyond the stops of
+  /// its joint (from a file: a note), and as Target::make. Throws BadFile for a targets file that lacks a target.
   explicit PositionController(const ControllerRequest& request);
   ~PositionController() override;
   Action output(const State& state) override;
