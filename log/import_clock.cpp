@@ -7,7 +7,6 @@
 #include <cmath>
 #include <ctime>
 #include <limits>
-#include <optional>
 
 #include "musclesim/base/error.h"
 #include "musclesim/base/text.h"
@@ -85,6 +84,10 @@ std::vector<double> readings(const DataTable& table, const TableClock& clock) {
 }
 
 }  // namespace
+
+std::optional<double> secondsSince1970(const std::string& text, const std::string& format) {
+  return DateFormat(format).seconds(text);
+}
 
 std::vector<double> rowTimes(const DataTable& table, const TableClock& clock, std::vector<std::string>& notes) {
   std::vector<double> times_s = readings(table, clock);

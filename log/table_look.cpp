@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
-#include <regex>
 #include <set>
 
 #include "data_table.h"
@@ -250,25 +248,21 @@ LookedColumn lookAtColumn(const DataTable& table, std::size_t index, const Table
   return column;
 }
 
-/// The format of a date and time, or of a time; empty if the text is neither.
-std::string dateFormat(const std::string& text) {
-  static const std::array<std::pair<std::regex, std::string>, 6> formats = {{
-      {std::regex(R"(\d{4}-\d\d?-\d\d? \d\d?:\d\d:\d\d.*)"), "%Y-%m-%d %H:%M:%S"},
-      {std::regex(R"(\d{4}-\d\d?-\d\d?T\d\d?:\d\d:\d\d(\.\d*)?)"), "%Y-%m-%dT%H:%M:%S"},
-      {std::regex(R"(\d{4}-\d\d?-\d\d?T\d\d?:\d\d:\d\d(\.\d*)?(Z|[+-]\d\d:?\d\d))"), "%Y-%m-%dT%H:%M:%S%z"},
-      {std::regex(R"(\d\d?\.\d\d?\.\d{4} \d\d?:\d\d:\d\d.*)"), "%d.%m.%Y %H:%M:%S"},
-      {std::regex(R"(\d\d?/\d\d?/\d{4} \d\d?:\d\d:\d\d.*)"), "%m/%d/%Y %H:%M:%S"},
-      {std::regex(R"(\d\d?:\d\d:\d\d.*)"), "%H:%M:%S"},
-  }};
-  for (const auto& [pattern, format] : formats)
-    if (std::regex_match(text, pattern)) return format;
+/// The first of these formats in which the text can be read; empty if there is none.
+std::string firstFormat(const std::string& text, std::initializer_list<const char*> formats) {
+  for (const char* format : formats)
+    if (secondsSince1970(text, format)) return format;
   return "";
 }
 
+/// The format of a date and time, or of a time; empty if the text is neither.
+std::string dateFormat(const std::string& text) {
+  return firstFormat(text, {"%Y-%m-%d %H:%M:%S", "%Y-%m-%dT%H:%M:%S", "%Y-%m-%dT%H:%M:%S%z", "%d.%m.%Y %H:%M:%S", "%m/%d/%Y %H:%M:%S",
+                            "%d/%m/%Y %H:%M:%S", "%H:%M:%S"});
+}
+
 std::string dayFormat(const std::string& text) {
-  if (std::regex_match(text, std::regex(R"(\d{4}-\d\d?-\d\d?)"))) return "%Y-%m-%d";
-  if (std::regex_match(text, std::regex(R"(\d\d?\.\d\d?\.\d{4})"))) return "%d.%m.%Y";
-  return std::regex_match(text, std::regex(R"(\d\d?/\d\d?/\d{4})")) ? "%m/%d/%Y" : "";
+  return firstFormat(text, {"%Y-%m-%d", "%d.%m.%Y", "%m/%d/%Y", "%d/%m/%Y"});
 }
 
 /// Whether the numbers of a column grow from row to row, but for a few turns of a counter. The clock of a column that is called so may be

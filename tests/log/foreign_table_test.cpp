@@ -392,6 +392,17 @@ TEST_F(ForeignTable, LookingRecognisesOtherWritings) {
   EXPECT_EQ(dates.clock->clock.format, "%Y-%m-%d %H:%M:%S");
   EXPECT_EQ(dates.clock->date_column, "d");
   EXPECT_NEAR(dates.clock->duration_s, 0.01, 1e-6);
+  for (const auto& [first, format] : {std::pair<std::string, std::string>{"2026-01-31T10:00:00.5", "%Y-%m-%dT%H:%M:%S"},
+                                      {"2026-01-31T10:00:00Z", "%Y-%m-%dT%H:%M:%S%z"},
+                                      {"2026-01-31T10:00:00.25+01:00", "%Y-%m-%dT%H:%M:%S%z"},
+                                      {"31.01.2026 10:00:00", "%d.%m.%Y %H:%M:%S"},
+                                      {"01/31/2026 10:00:00", "%m/%d/%Y %H:%M:%S"},
+                                      {"31/01/2026 10:00:00", "%d/%m/%Y %H:%M:%S"},
+                                      {"10:00:00.125", "%H:%M:%S"}}) {
+    const TableLook look = lookAtTable(write("z.csv", "t,u\n" + first + ",1\n" + first + ",2\n"));
+    ASSERT_TRUE(look.clock) << first;
+    EXPECT_EQ(look.clock->clock.format, format) << first;
+  }
   const TableLook counter = lookAtTable(write("d.csv", "t,u\n4294.940,1\n4294.950,1\n0.0027,2\n0.0127,2\n"));
   EXPECT_EQ(counter.clock->clock.wraps_at_s, 4294.967296);
   const TableLook numpy = lookAtTable(write("e.txt", "# t u x\n0 1 250\n0.1 1 248\n0.2 2 247\n"));
