@@ -181,6 +181,14 @@ class Import {
     return opened;
   }
 
+  const DataTable& otherTable(const ImportColumn& column) {
+    try {
+      return table(column.table);
+    } catch (const IoError& error) {
+      mapping_.refuse(memberOf(column) + ".table", error.what());
+    }
+  }
+
   void read() {
     if (std::ranges::all_of(mapping_.columns, [](const ImportColumn& column) { return column.from.empty(); }))
       mapping_.refuse("columns", "at least one must come from the table");
@@ -199,7 +207,7 @@ class Import {
         series_.push_back(seriesOf(column, first, clock_));
         series_.back().is_first_tables = true;
       } else {
-        const DataTable& other = table(column.table);
+        const DataTable& other = otherTable(column);
         const bool is_own = mapping_.places.contains(memberOf(column) + ".time");
         const std::string of_table = clockMember(fmt::format("tables.{}.", column.table));
         std::vector<double> times_s = timesOf(other, *column.clock, is_own ? memberOf(column) + ".time" : of_table);

@@ -329,6 +329,7 @@ TEST_F(ForeignTable, FaultsOfTheMappingHaveTheirPlaceInIt) {
            {columns("\"t\"", "command_0_bar = \"vlave\""), "map.toml:5:1: columns.command_0_bar: " + data +
                                                                ":1: there is no column \"vlave\"; "
                                                                "did you mean \"valve\"?"},
+           {columns("\"t\"", "command_0_bar = { from = \"u\", table = \"othr.csv\" }"), "map.toml:5:31: columns.command_0_bar.table: "},
            {columns("{ from = 7 }", "command_0_bar = \"valve\""), "map.toml:4:1: columns.time_s: " + data + ":1: there is no column 7"},
            {columns("\"t\"", "command_0_V = \"valve\""), "map.toml:5:1: columns.command_0_V: command_0_V: V can be converted"},
            {columns("\"t\"", "command_1_bar = \"valve\""), "map.toml:3:2: columns: there is no column command_0"},
