@@ -41,6 +41,20 @@ std::vector<std::string> angleNames(const Robot& robot) {
   return names;
 }
 
+/// Refuses a target that its joint cannot follow.
+void requireWithinStops(const std::string& joint, double middle_deg, double amplitude_deg, const std::pair<double, double>& stops_deg) {
+  const auto [low_deg, high_deg] = stops_deg;
+  const double room_deg = std::min(middle_deg - low_deg, high_deg - middle_deg);
+  constexpr double rounding_deg = 1e-6;  ///< stops are kept in rad
+  if (room_deg < -rounding_deg)
+    throw BadParameter(fmt::format("position.target_{}_deg", joint), fmt::format("{:g} deg", middle_deg),
+                       fmt::format("lie in {:g} .. {:g} deg, between the stops of the joint", low_deg, high_deg));
+  if (std::abs(amplitude_deg) > room_deg + rounding_deg)
+    throw BadParameter(fmt::format("position.amplitude_{}_deg", joint), fmt::format("{:g} deg", amplitude_deg),
+                       fmt::format("be at most {:g} deg about the middle of {:g} deg: the stops of the joint are at {:g} and {:g} deg",
+                                   room_deg, middle_deg, low_deg, high_deg));
+}
+
 }  // namespace
 
 PositionController::PositionController(const ControllerRequest& request) : step_s_(request.step_s) {
@@ -90,7 +104,10 @@ void PositionController::setTargets(const ControllerRequest& request) {
   auto& parameters = request.parameters;
   if (!request.targets_file.empty()) {
     const auto table = std::make_shared<TargetTable>(request.targets_file);
-    for (Loop& loop : loops_) loop.target = [table, column = table->column(loop.joint)](double t) { return table->at(column, t); };
+    for (Loop& loop : loops_) {
+      noteTargetsBeyondStops(loop, table->column(loop.joint), *request.robot);
+      loop.target = [table, column = table->column(loop.joint)](double t) { return table->at(column, t); };
+    }
     end_s_ = table->endS();
     return;
   }
@@ -109,8 +126,20 @@ void PositionController::setTargets(const ControllerRequest& request) {
         parameters.number(fmt::format("position.target_{}_deg", loop.joint), default_deg, "deg", -1e4, 1e4, "target, its middle");
     const double amplitude_deg =
         parameters.number(fmt::format("position.amplitude_{}_deg", loop.joint), 0, "deg", -1e4, 1e4, "amplitude of the target's sine");
+    requireWithinStops(loop.joint, middle_deg, amplitude_deg, {low_deg, high_deg});
     loop.target = [=](double t) { return middle_deg + amplitude_deg * std::sin(2 * std::numbers::pi * (std::max(0.0, t) / period_s)); };
   }
+}
+
+void PositionController::noteTargetsBeyondStops(const Loop& loop, const std::vector<double>& targets_deg, const Robot& robot) {
+  if (is_height_) return;
+  const Robot::Angle& angle = robot.angles()[loop.angle];
+  const auto [low_deg, high_deg] = angle.joint->stopsDeg(angle.axis);
+  const auto [least, most] = std::ranges::minmax(targets_deg);
+  if (least >= low_deg && most <= high_deg) return;
+  target_notes_.push_back(fmt::format(
+      "warning: the targets of joint {} run from {:g} to {:g} degrees, but its stops allow {:g} .. {:g}: it cannot follow there",
+      loop.joint, least, most, low_deg, high_deg));
 }
 
 void PositionController::setGains(Parameters& parameters) {
@@ -217,6 +246,7 @@ std::vector<std::string> PositionController::notes() const {
     notes.push_back(fmt::format("{} moved by {}{}", is_height_ ? "height of the hand" : "angle " + loop.joint, fmt::join(names, ","),
                                 feeds_forward_ ? "" : ", without feed-forward"));
   }
+  notes.insert(notes.end(), target_notes_.begin(), target_notes_.end());
   if (!feed_forward_note_.empty()) notes.push_back(feed_forward_note_);
   return notes;
 }

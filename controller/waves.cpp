@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <complex>
 #include <numbers>
+#include <unsupported/Eigen/FFT>
 
 #include "musclesim/base/error.h"
 
@@ -104,11 +107,37 @@ std::vector<double> Multisine::schroederPhases(std::size_t count) {
 
 Multisine::Multisine(std::vector<int> harmonics, std::vector<double> phases, double period_s)
     : harmonics_(std::move(harmonics)), phases_(std::move(phases)), period_s_(period_s) {
-  constexpr int points_per_cycle = 64;  ///< of the highest frequency; the peak between two points is at most 0.12 % higher
-  const int count = points_per_cycle * harmonics_.back();
-  double largest = 0;
-  for (int i = 0; i < count; ++i) largest = std::max(largest, std::abs(sum(period_s * i / count)));
-  scale_ = 1 / largest;
+  scale_ = 1 / peak();
+}
+
+std::vector<double> Multisine::samples(std::size_t count) const {
+  std::vector<std::complex<double>> spectrum(count), values;
+  for (std::size_t i = 0; i < harmonics_.size(); ++i) spectrum[static_cast<std::size_t>(harmonics_[i])] = std::polar(1.0, phases_[i]);
+  Eigen::FFT<double> transform;
+  transform.SetFlag(Eigen::FFT<double>::Unscaled);
+  transform.inv(values, spectrum);
+  std::vector<double> result;
+  for (const std::complex<double>& value : values) result.push_back(value.real());
+  return result;
+}
+
+double Multisine::peak() const {
+  constexpr std::size_t points_per_cycle = 64;  ///< of the highest frequency; the peak between two points is at most 0.12 % higher
+  // Samples of a power of two are transformed fast. The largest of the points lies beside one of them that is at most 0.48 % smaller: 0.12
+  // % below the peak a sum of sines has at most a twentieth of its largest slope.
+  constexpr double nearly = 0.995;
+  const std::size_t count = points_per_cycle * static_cast<std::size_t>(harmonics_.back());
+  const std::vector<double> dense = samples(std::bit_ceil(count));
+  double dense_peak = 0, peak = 0;
+  for (const double value : dense) dense_peak = std::max(dense_peak, std::abs(value));
+  std::size_t next = 0;  // point that was not looked at
+  for (std::size_t k = 0; k < dense.size(); ++k) {
+    if (std::abs(dense[k]) < nearly * dense_peak) continue;
+    const std::size_t before = k * count / dense.size();
+    for (std::size_t i = std::max(before, next); i <= before + 1; ++i, next = i)
+      peak = std::max(peak, std::abs(sum(period_s_ * static_cast<double>(i) / static_cast<double>(count))));
+  }
+  return peak;
 }
 
 double Multisine::sum(double time_s) const {

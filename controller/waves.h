@@ -67,6 +67,10 @@ class Multisine {
 
  private:
   double sum(double time_s) const;
+  /// The unscaled sum at `count` even times of a period.
+  std::vector<double> samples(std::size_t count) const;
+  /// The largest |sum| at 64 points of each cycle of the highest frequency.
+  double peak() const;
   std::vector<int> harmonics_;
   std::vector<double> phases_;
   double period_s_, scale_ = 1;

@@ -19,18 +19,26 @@ ImportMapping mappingOf(const StaticPointsOptions& options) {
   if (options.mapping.empty()) return {};
   ImportMapping mapping = readImportMapping(options.mapping);
   if (mapping.has_rows || mapping.clock)
-    throw BadFile(options.mapping, "static points have no time: neither time_s nor [rows] can be used");
+    mapping.refuse(mapping.has_rows ? "rows" : "columns", "static points have no time: neither time_s nor [rows] can be used");
   for (const ImportColumn& column : mapping.columns) {
     const std::string quantity = column.written.substr(0, column.written.find('_'));
     const bool is_plain = column.written == quantity || unitAtEnd(column.written);
     if ((quantity != "pressure" && quantity != "length" && quantity != "force") || !is_plain ||
         std::ranges::count(column.written, '_') > 1 || column.clock)
-      throw BadFile(options.mapping,
-                    fmt::format("columns.{}: static points have pressure (a fraction) or pressure_kPa, length_mm and force_N, or these in "
-                                "other units, all from one table",
-                                column.written));
+      mapping.refuse("columns." + column.written,
+                     "static points have pressure (a fraction) or pressure_kPa, length_mm and force_N, or these in other units, all from "
+                     "one table");
   }
   return mapping;
+}
+
+/// A name that the table does not have is a fault of the mapping.
+void requireColumnsOf(const ImportMapping& mapping, const DataTable& table) {
+  for (const ImportColumn& column : mapping.columns) try {
+      if (!column.from.empty()) table.indexOf(column.from);
+    } catch (const BadFile& error) {
+      mapping.refuse("columns." + column.written, error.what());
+    }
 }
 
 /// Rows of the table that pass the filters. Pressures are in kPa or fractions, as in the file; lengths in mm, forces in N.
@@ -94,6 +102,7 @@ void markCensored(StaticPoints& points, const StaticPointsOptions& options) {
 StaticPoints pointsOf(const DataTable& table, const StaticPointsOptions& options, const ImportMapping& mapping) {
   StaticPoints result;
   result.file = table.file();
+  requireColumnsOf(mapping, table);
   const PointColumns columns(table, options, mapping.columns);
   result.notes = table.notes();
   if (const auto& assumed = columns.assumed(); !assumed.empty())

@@ -127,14 +127,21 @@ void CsvReader::readHeader() {
     if (isBlank(line)) refuseAt(line_, 0, "empty line before the header: only comments that begin with # may stand there");
     header_line_ = line_;
     split(line, header_);
-    if (header_.size() == 1 && line.find_first_of(";\t") != std::string_view::npos)
-      refuseShape({line, line_, static_cast<int>(line.find_first_of(";\t")) + 1},
-                  fmt::format("cells must be separated by {}, not by semicolons or tabs",
-                              format_.separator == ',' ? "commas" : "what the mapping's [table] names as separator"));
+    requireSeparators(line);
     if (format_.is_foreign) requireNames();
     width_ = header_.size();
   }
   skipLines(format_.skip_after_header);
+}
+
+void CsvReader::requireSeparators(std::string_view line) const {
+  const auto other = line.find_first_of(";\t");
+  if (header_.size() > 1 || other == std::string_view::npos) return;
+  const std::string hint =
+      format_.is_foreign ? fmt::format("; the mapping's [table] needs separator = \"{}\"", line[other] == ';' ? ";" : "\\t") : "";
+  refuseShape({line, line_, static_cast<int>(other) + 1},
+              fmt::format("cells must be separated by {}, not by semicolons or tabs{}",
+                          format_.separator == ',' ? "commas" : "what the mapping's [table] names as separator", hint));
 }
 
 /// Refuses a first row of numbers. Empty names at the end come from separators at the end of lines.
@@ -212,7 +219,10 @@ bool CsvReader::readRow(std::vector<CsvCell>& cells) {
   if (cells.size() != width_) {
     const std::string than = format_.has_header ? fmt::format("the header in line {} names {} columns", header_line_, width_)
                                                 : fmt::format("the first row has {}", width_);
-    refuseShape(cells[std::min(cells.size(), width_ + 1) - 1], fmt::format("the row has {} cells but {}", cells.size(), than));
+    const bool may_be_decimals = format_.is_foreign && format_.separator == ',' && cells.size() == 2 * width_;
+    refuseShape(cells[std::min(cells.size(), width_ + 1) - 1],
+                fmt::format("the row has {} cells but {}{}", cells.size(), than,
+                            may_be_decimals ? "; if its numbers have decimal commas, save it with semicolons between the cells" : ""));
   }
   return true;
 }
@@ -221,6 +231,19 @@ bool CsvReader::isMissing(std::string_view text) const {
   return text.empty() || isNan(text) ||
          (format_.is_foreign &&
           (isWindowsNan(text) || std::find(format_.missing.begin(), format_.missing.end(), text) != format_.missing.end()));
+}
+
+/// What a mapping may say to make a cell of a foreign table a number.
+std::string CsvReader::helpFor(const CsvCell& cell) const {
+  double value = 0;
+  bool is_out_of_range = false;
+  const char other = format_.decimal == '.' ? ',' : '.';
+  if (!format_.is_foreign) return "";
+  if (readNumber(cell.text, other, value, is_out_of_range))
+    return fmt::format("; is this a decimal {}? Then the mapping's [table] needs decimal = \"{}\"", other == ',' ? "comma" : "point",
+                       other);
+  const bool is_below_header = format_.has_header && cell.line == header_line_ + 1;
+  return is_below_header ? "; if this is a row of units, the mapping's [table] needs skip_after_header = 1" : "";
 }
 
 double CsvReader::number(const CsvCell& cell, std::string_view column_name) const {
@@ -237,12 +260,9 @@ double CsvReader::number(const CsvCell& cell, std::string_view column_name) cons
     return fmt::format(" (allowed: {}, an empty cell, or nan{})", number,
                        format_.is_foreign ? "; other marks for no reading must stand in missing of the mapping's [table]" : "");
   };
-  const std::string units_hint = format_.is_foreign && format_.has_header && cell.line == header_line_ + 1
-                                     ? "; if this is a row of units, the mapping's [table] needs skip_after_header = 1"
-                                     : "";
   if (!is_number || std::isnan(value))
     refuse(cell, where + "is not a number" +
-                     allowed(format_.decimal == '.' ? "a number with a decimal point" : "a number with a decimal comma") + units_hint);
+                     allowed(format_.decimal == '.' ? "a number with a decimal point" : "a number with a decimal comma") + helpFor(cell));
   if (is_out_of_range) refuse(cell, where + "is too large or too small for a double");
   refuse(cell, where + "is infinite" + allowed("finite numbers"));
 }

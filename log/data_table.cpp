@@ -9,6 +9,7 @@
 #include "matlab.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
+#include "musclesim/base/parameters.h"
 #include "musclesim/base/text.h"
 
 namespace musclesim {
@@ -21,6 +22,12 @@ std::string shown(const std::string& name) {
 }
 
 }  // namespace
+
+std::string withoutPlace(const BadFile& error) {
+  const std::string message = error.what();
+  const auto colon = message.find(": ", error.file().size());
+  return colon == std::string::npos ? message : message.substr(colon + 2);
+}
 
 DataTable::DataTable(const std::string& file, const TableFormat& format) : file_(file) {
   TableFormat written = format;
@@ -83,13 +90,7 @@ std::size_t DataTable::indexOf(const ColumnName& column) const {
     throw BadFile(file_, headerLine(), 0, fmt::format("there is no column {}: the table has {} columns", column.number, names_.size()));
   }
   const auto found = std::ranges::find(names_, column.name);
-  std::vector<std::string> known;
-  for (const std::string& name : names_) known.push_back(shown(name));
-  if (found == names_.end())
-    throw BadFile(file_, headerLine(), 0,
-                  fmt::format("there is no column \"{}\"; the columns are {}{}", shown(column.name), fmt::join(known, ", "),
-                              known == names_ ? "; musclesim import --look shows how a table is written"
-                                              : " (not UTF-8: the mapping's [table] may name the encoding, or a column its number)"));
+  if (found == names_.end()) refuseName(column.name);
   const auto again = std::find(found + 1, names_.end(), column.name);
   const auto index = static_cast<std::size_t>(found - names_.begin());
   if (again != names_.end())
@@ -99,6 +100,22 @@ std::size_t DataTable::indexOf(const ColumnName& column) const {
             "several columns are named \"{}\": {} and {}; choose one by its number: from = {} in a mapping, #{} with --columns or --where",
             shown(column.name), index + 1, again - names_.begin() + 1, index + 1, index + 1));
   return index;
+}
+
+void DataTable::refuseName(const std::string& name) const {
+  std::vector<std::string> known;
+  for (const std::string& column : names_) known.push_back(shown(column));
+  const bool is_utf8 = known == names_;
+  const std::string nearest = is_utf8 ? nearestName(name, names_) : "";
+  throw BadFile(file_, headerLine(), 0,
+                fmt::format("there is no column \"{}\"{}; the columns are {}{}", shown(name),
+                            nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest), fmt::join(known, ", "),
+                            is_utf8 ? "; musclesim import --look shows how a table is written"
+                                    : " (not UTF-8: the mapping's [table] may name the encoding, or a column its number)"));
+}
+
+std::string DataTable::shownName(std::size_t column) const {
+  return shown(names_[column]);
 }
 
 std::string_view DataTable::text(std::size_t row, std::size_t column) const {

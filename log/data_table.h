@@ -6,9 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "musclesim/base/error.h"
 #include "musclesim/log/csv.h"
 
 namespace musclesim {
+
+/// An error's message without the place before it.
+std::string withoutPlace(const BadFile& error);
 
 class DataTable {
  public:
@@ -26,6 +30,9 @@ class DataTable {
   /// The column's index from 0. Throws BadFile if it does not exist, or if several columns have its name.
   std::size_t indexOf(const ColumnName& column) const;
 
+  /// A column's name for messages.
+  std::string shownName(std::size_t column) const;
+
   std::size_t rowCount() const { return lines_.size(); }
   int line(std::size_t row) const { return lines_[row]; }
   int headerLine() const { return reader_->headerLine(); }
@@ -33,6 +40,8 @@ class DataTable {
   /// NaN where there is no reading. Throws BadFile if the cell is no number.
   double number(std::size_t row, std::size_t column) const;
   std::vector<double> numbers(std::size_t column) const;
+  /// Whether the cell stands for no reading.
+  bool isMissing(std::size_t row, std::size_t column) const { return reader_->isMissing(text(row, column)); }
   [[noreturn]] void refuse(std::size_t row, std::size_t column, const std::string& what) const;
   [[noreturn]] void refuseHeader(std::size_t column, const std::string& what) const;
   /// What was left out while reading.
@@ -46,6 +55,7 @@ class DataTable {
   void dropTornLine();
   void readHeader();
   void readRows();
+  [[noreturn]] void refuseName(const std::string& name) const;
   CsvCell cellAt(std::size_t row, std::size_t column) const;
 
   std::string file_, text_;

@@ -8,9 +8,12 @@
 #include <limits>
 #include <list>
 
+#include "columns.h"
 #include "data_table.h"
 #include "import_clock.h"
 #include "musclesim/base/error.h"
+#include "musclesim/base/text.h"
+#include "sidecar.h"
 
 namespace musclesim {
 
@@ -19,6 +22,8 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 constexpr std::size_t most_rows = 10'000'000;
+/// Clocks that agree differ by rounding: 0.3 + 0.01 k is not the same number as a cell "0.57".
+constexpr double same_time_s = 1e-6;
 /// A clock that begins later than after three years counts from 1970, or from another year.
 constexpr double epoch_s = 1e8;
 
@@ -26,8 +31,10 @@ constexpr double epoch_s = 1e8;
 struct Series {
   std::vector<double> time_s, values;
   double longest_gap_s = unlimited;
-  bool is_first_tables = false;  ///< it has the clock of the first table
-  std::string file;
+  bool is_first_tables = false;      ///< it has the clock of the first table
+  const DataTable* table = nullptr;  ///< null: a constant
+  std::size_t column = 0;            ///< of the table
+  std::vector<std::size_t> rows;     ///< of the table, one per value
   // Rows of the recording without a reading: outside of the series' own times, in its gaps, and commands held after its end.
   std::size_t outside_count = 0, gap_count = 0, held_count = 0;
 };
@@ -63,16 +70,43 @@ bool isCommand(const ImportColumn& column) {
   return column.name.starts_with("command_");
 }
 
+std::string memberOf(const ImportColumn& column) {
+  return "columns." + column.written;
+}
+
+/// Whether the columns can be those of a recording with this sidecar; what is wrong with them is the mapping's fault.
+void requireColumns(const ImportMapping& mapping) {
+  std::vector<std::string> notes;
+  const RecordingInfo info = parseSidecar(mapping.sidecar_json, mapping.file, {}, notes);
+  std::vector<Column> columns;
+  for (const ImportColumn& column : mapping.columns) try {
+      const Column parsed = parseColumnName(column.name);
+      fullScale(parsed, info);
+      const auto twice = std::ranges::find(columns, parsed.name, &Column::name);
+      if (twice != columns.end())
+        throw BadParameter(
+            fmt::format("is the same column as {}", mapping.columns[static_cast<std::size_t>(twice - columns.begin())].written));
+      columns.push_back(parsed);
+    } catch (const BadParameter& error) {
+      mapping.refuse(memberOf(column), error.what());
+    }
+  try {
+    requireCommands(columns);
+  } catch (const BadParameter& error) {
+    mapping.refuse("columns", error.what());
+  }
+}
+
 /// Builds the recording.
 class Import {
  public:
   Import(const std::string& csv_file, const ImportMapping& mapping) : csv_file_(csv_file), mapping_(mapping) {
     if (!mapping.clock && !mapping.settle_s)
-      throw BadFile(
-          mapping.file,
-          "columns: time_s is missing; for rows of an even rate give time_s = { rate_Hz = ... }; if each row is the reading at the "
-          "end of a held command, give rows.settle_s, the time each command was held");
-    if (mapping.clock && mapping.settle_s) throw BadFile(mapping.file, "columns.time_s and rows.settle_s cannot both be given");
+      mapping.refuse("columns",
+                     "time_s is missing; for rows of an even rate give time_s = { rate_Hz = ... }; if each row is the reading at the "
+                     "end of a held command, give rows.settle_s, the time each command was held");
+    if (mapping.clock && mapping.settle_s) mapping.refuse("rows.settle_s", "the columns have a time; both cannot be given");
+    requireColumns(mapping);
   }
 
   Recording recording() {
@@ -84,13 +118,56 @@ class Import {
     fillBefore();
     addRest();
     noteMissing();
-    Recording result = parseRecording(text(), "recording from " + csv_file_, mapping_.sidecar_json, mapping_.file);
+    Recording result = parsed(text());
     result.file = csv_file_;
     result.notes.insert(result.notes.begin(), notes_.begin(), notes_.end());
     return result;
   }
 
  private:
+  Recording parsed(const std::string& text) const {
+    const std::string made = "recording";
+    try {
+      return parseRecording(text, made, mapping_.sidecar_json, mapping_.file);
+    } catch (const BadFile& fault) {
+      if (fault.file() != made) throw;
+      if (fault.line() > 1) refuseAtOrigin(fault, text);
+      throw BadFile(csv_file_, withoutPlace(fault));
+    }
+  }
+
+  /// Refuses a cell of the made recording where the table or the mapping has it.
+  [[noreturn]] void refuseAtOrigin(const BadFile& fault, const std::string& text) const {
+    const auto row = static_cast<std::size_t>(fault.line()) - 2;
+    std::size_t line = 0;
+    for (int i = 1; i < fault.line(); ++i) line = text.find('\n', line) + 1;
+    const auto cell = text.begin() + static_cast<std::ptrdiff_t>(line);
+    const auto index = static_cast<std::size_t>(std::count(cell, cell + fault.column() - 1, ','));
+    if (index == 0) throw BadFile(csv_file_, withoutPlace(fault));
+    const ImportColumn& column = mapping_.columns[index - 1];
+    const Series& series = series_[index - 1];
+    const std::string what = withoutPlace(fault);
+    if (!series.table) mapping_.refuse(memberOf(column), what);
+    const bool is_rest = std::isnan(clock_of_row_[row]);  // its commands are those of `before`, or of the first row
+    const double clock_s = clock_of_row_[is_rest ? row + 1 : row] + same_time_s;
+    const auto next = std::upper_bound(series.time_s.begin(), series.time_s.end(), clock_s);
+    if ((is_rest && mapping_.before.contains(column.written)) || next == series.time_s.begin())
+      mapping_.refuse("rows.before." + column.written, what);
+    const std::size_t table_row = series.rows[static_cast<std::size_t>(next - series.time_s.begin()) - 1];
+    series.table->refuse(table_row, series.column,
+                         fmt::format("column {}: {} becomes {}", series.table->shownName(series.column),
+                                     inQuotes(series.table->text(table_row, series.column)), what));
+  }
+
+  /// The column's index; a name that the table does not have is a fault of the mapping.
+  std::size_t indexIn(const DataTable& table, const ColumnName& column, const std::string& member) const {
+    try {
+      return table.indexOf(column);
+    } catch (const BadFile& error) {
+      mapping_.refuse(member, error.what());
+    }
+  }
+
   const DataTable& table(const std::string& name) {
     for (const auto& [known, opened] : tables_)
       if (known == name) return opened;
@@ -104,11 +181,19 @@ class Import {
     return opened;
   }
 
+  const DataTable& otherTable(const ImportColumn& column) {
+    try {
+      return table(column.table);
+    } catch (const IoError& error) {
+      mapping_.refuse(memberOf(column) + ".table", error.what());
+    }
+  }
+
   void read() {
     if (std::ranges::all_of(mapping_.columns, [](const ImportColumn& column) { return column.from.empty(); }))
-      throw BadFile(mapping_.file, "columns: at least one must come from the table");
+      mapping_.refuse("columns", "at least one must come from the table");
     const DataTable& first = table("");
-    clock_ = timesOf(first, mapping_.clock.value_or(TableClock{}));
+    clock_ = timesOf(first, mapping_.clock.value_or(TableClock{}), clockMember("columns."));
     const auto first_time = std::ranges::find_if(clock_, [](double time_s) { return !std::isnan(time_s); });
     if (first_time == clock_.end()) throw BadFile(csv_file_, "no row has a time");
     setZero(*first_time);
@@ -122,8 +207,10 @@ class Import {
         series_.push_back(seriesOf(column, first, clock_));
         series_.back().is_first_tables = true;
       } else {
-        const DataTable& other = table(column.table);
-        std::vector<double> times_s = timesOf(other, *column.clock);
+        const DataTable& other = otherTable(column);
+        const bool is_own = mapping_.places.contains(memberOf(column) + ".time");
+        const std::string of_table = clockMember(fmt::format("tables.{}.", column.table));
+        std::vector<double> times_s = timesOf(other, *column.clock, is_own ? memberOf(column) + ".time" : of_table);
         shift(times_s);
         series_.push_back(seriesOf(column, other, times_s));
         requireOverlap(column, series_.back());
@@ -132,7 +219,18 @@ class Import {
     std::erase_if(clock_, [](double time_s) { return std::isnan(time_s); });
   }
 
-  std::vector<double> timesOf(const DataTable& table, const TableClock& clock) { return rowTimes(table, clock, notes_); }
+  /// The member of the mapping that gives a clock, among those that begin so.
+  std::string clockMember(const std::string& beginning) const {
+    for (const auto& [member, place] : mapping_.places)
+      if (member.starts_with(beginning + "time_") && member.find('.', beginning.size()) == std::string::npos) return member;
+    return beginning + "time_s";
+  }
+
+  std::vector<double> timesOf(const DataTable& table, const TableClock& clock, const std::string& member) {
+    for (const ColumnName& column : {clock.from, clock.date})
+      if (!column.empty()) indexIn(table, column, member);
+    return rowTimes(table, clock, notes_);
+  }
 
   /// A clock that counts from 1970 begins at 0 in the recording.
   void setZero(double first_s) {
@@ -152,18 +250,19 @@ class Import {
   /// The cells that hold a number; of several rows with the same time the first.
   Series seriesOf(const ImportColumn& column, const DataTable& table, const std::vector<double>& times_s) {
     Series result;
-    result.file = table.file();
-    const std::size_t index = table.indexOf(column.from);
+    result.table = &table;
+    result.column = indexIn(table, column.from, memberOf(column));
     std::size_t empty_count = 0;
     double last_s = nan;
     for (std::size_t row = 0; row < times_s.size(); ++row) {
-      const double value = column.valueOf(table.number(row, index));
+      const double value = column.valueOf(table.number(row, result.column));
       if (std::isnan(times_s[row]) || times_s[row] == last_s) continue;
       last_s = times_s[row];
       empty_count += std::isnan(value);
       if (std::isnan(value)) continue;
       result.time_s.push_back(last_s);
       result.values.push_back(value);
+      result.rows.push_back(row);
     }
     if (empty_count > 0) notes_.push_back(fmt::format("{}: {} of {} cells hold no reading", column.name, empty_count, times_s.size()));
     // What is shorter than a row of the recording is no gap in it.
@@ -180,10 +279,10 @@ class Import {
     const std::string both = fmt::format("{}: its clock runs from {:.6g} to {:.6g} s, the first table's from {:.6g} to {:.6g} s",
                                          column.written, times_s.front(), times_s.back(), from_s, until_s);
     const std::string hint = clockHint(until_s - from_s, times_s.back() - times_s.front());
-    if (times_s.front() > until_s || times_s.back() < from_s) throw BadFile(series.file, both + ": they do not overlap" + hint);
+    if (times_s.front() > until_s || times_s.back() < from_s) throw BadFile(series.table->file(), both + ": they do not overlap" + hint);
     if (isCommand(column) || times_s.size() < 2 || until_s == from_s) return;
     if (countWithin(times_s, from_s, until_s) < 2 || countWithin(clock_, times_s.front(), times_s.back()) < 2)
-      throw BadFile(series.file, both + ": fewer than two rows of one lie within the other" + hint);
+      throw BadFile(series.table->file(), both + ": fewer than two rows of one lie within the other" + hint);
   }
 
   double clockFront() const {
@@ -212,7 +311,7 @@ class Import {
   std::vector<RowTime> evenRows() {
     std::vector<RowTime> rows;
     const double start_s = mapping_.from_s.value_or(clock_.front()), span_s = clock_.back() - start_s;
-    if (!(span_s / *mapping_.step_s < static_cast<double>(most_rows))) throw BadFile(mapping_.file, "rows.step_s: too small");
+    if (!(span_s / *mapping_.step_s < static_cast<double>(most_rows))) mapping_.refuse("rows.step_s", "too small");
     const auto count = static_cast<long>(std::floor(span_s / *mapping_.step_s + 1e-9)) + 1;
     for (long i = 0; i < count; ++i) {
       const double time_s = start_s + static_cast<double>(i) * *mapping_.step_s;
@@ -239,8 +338,8 @@ class Import {
   void requireBeginning() const {
     const double first_s = mapping_.settle_s ? 0 : clock_.front();
     if (!mapping_.from_s || *mapping_.from_s >= first_s || *mapping_.from_s > first_s - usualStep(clock_)) return;
-    throw BadFile(mapping_.file, fmt::format("rows.from_s = {:g}: the table begins at {:g} s; for a rest before it give rows.before_s",
-                                             *mapping_.from_s, first_s));
+    mapping_.refuse("rows.from_s",
+                    fmt::format("{:g}: the table begins at {:g} s; for a rest before it give rows.before_s", *mapping_.from_s, first_s));
   }
 
   void cut(std::vector<RowTime>& rows) const {
@@ -248,14 +347,12 @@ class Import {
     std::erase_if(rows, [&](const RowTime& row) { return row.time_s < from_s || (mapping_.until_s && row.time_s > *mapping_.until_s); });
     constexpr double per_s = 1e9;  // rounded to nanoseconds, since differences of large times have digits of no meaning
     for (RowTime& row : rows) row.time_s = std::round((row.time_s - from_s) * per_s) / per_s;
-    if (rows.empty()) throw BadFile(mapping_.file, "rows: from_s and until_s leave no rows");
+    if (rows.empty()) mapping_.refuse("rows", "from_s and until_s leave no rows");
   }
 
   /// The value of a series at a time: a reading, a straight line between two, or the last command. NaN where nothing was read.
   double valueAt(Series& series, double time_s, const ImportColumn& column) const {
     const bool is_command = isCommand(column);
-    // Clocks that agree differ by rounding: 0.3 + 0.01 k is not the same number as a cell "0.57".
-    constexpr double same_time_s = 1e-6;
     const auto next = std::upper_bound(series.time_s.begin(), series.time_s.end(), time_s + same_time_s);
     const auto k = static_cast<std::size_t>(next - series.time_s.begin());
     if (k > 0 && (series.time_s[k - 1] >= time_s - same_time_s || std::isinf(series.time_s[k - 1]))) return series.values[k - 1];
@@ -285,6 +382,7 @@ class Import {
         values.push_back(row.has_readings || isCommand(column) ? valueAt(series_[i], row.clock_s, column) : nan);
       }
       time_s_.push_back(row.time_s);
+      clock_of_row_.push_back(row.clock_s);
       rows_.push_back(std::move(values));
     }
   }
@@ -295,10 +393,10 @@ class Import {
       const ImportColumn& column = mapping_.columns[i];
       if (!isCommand(column) || !std::isnan(rows_.front()[i])) continue;
       const auto before = mapping_.before.find(column.written);
-      if (series_[i].time_s.empty()) throw BadFile(series_[i].file, column.written + ": no cell holds a command");
+      if (series_[i].time_s.empty()) throw BadFile(series_[i].table->file(), column.written + ": no cell holds a command");
       if (before == mapping_.before.end())
         throw BadFile(
-            series_[i].file,
+            series_[i].table->file(),
             fmt::format("{}: the first command comes at {:.6g} s, after the first row; give the command before it, rows.before = {{ {} = "
                         "... }}, or begin at rows.from_s = {:.6g}",
                         column.written, series_[i].time_s.front(), column.written, series_[i].time_s.front()));
@@ -313,11 +411,10 @@ class Import {
   void addRest() {
     for (const auto& given : mapping_.before) {
       const auto is_it = [&](const ImportColumn& column) { return isCommand(column) && column.written == given.first; };
-      if (std::ranges::none_of(mapping_.columns, is_it))
-        throw BadFile(mapping_.file, fmt::format("rows.before.{}: is not one of the command columns", given.first));
+      if (std::ranges::none_of(mapping_.columns, is_it)) mapping_.refuse("rows.before." + given.first, "is not one of the command columns");
     }
     if (!mapping_.before.empty() && !mapping_.before_s && !used_before_)
-      throw BadFile(mapping_.file, "rows.before: needs rows.before_s, the time the plant rested");
+      mapping_.refuse("rows.before", "needs rows.before_s, the time the plant rested");
     if (!mapping_.before_s) return;
     std::vector<double> rest;
     for (std::size_t i = 0; i < series_.size(); ++i) {
@@ -327,6 +424,7 @@ class Import {
     }
     for (double& time_s : time_s_) time_s += *mapping_.before_s;
     time_s_.insert(time_s_.begin(), 0);
+    clock_of_row_.insert(clock_of_row_.begin(), nan);
     rows_.insert(rows_.begin(), std::move(rest));
   }
 
@@ -340,7 +438,7 @@ class Import {
     const double before = values[values.size() - 2], step = std::abs(values.back() - before);
     if (step > jump_ratio * std::abs(before) && step > earlier_steps * largest_step && largest_step > 0)
       notes_.push_back(fmt::format("{} jumps from {:.6g} to {:.6g} in the last row of {}: is the file cut there?", column.name, before,
-                                   values.back(), series.file));
+                                   values.back(), series.table->file()));
   }
 
   void noteMissing() {
@@ -352,13 +450,14 @@ class Import {
       if (series.outside_count > 0)
         notes_.push_back(fmt::format("{}: {} {} lie outside of its own times, {:.6g} .. {:.6g} s in {}, and are not measured", name,
                                      series.outside_count, of, series.time_s.empty() ? 0 : series.time_s.front(),
-                                     series.time_s.empty() ? 0 : series.time_s.back(), series.file));
+                                     series.time_s.empty() ? 0 : series.time_s.back(), series.table->file()));
       if (series.gap_count > 0)
         notes_.push_back(
             fmt::format("{}: {} {} lie in gaps longer than {:.4g} s and are not measured (rows.longest_gap_s sets that length)", name,
                         series.gap_count, of, series.longest_gap_s));
       if (series.held_count > 0)
-        notes_.push_back(fmt::format("{}: {} {} come after the last command in {} and hold it", name, series.held_count, of, series.file));
+        notes_.push_back(
+            fmt::format("{}: {} {} come after the last command in {} and hold it", name, series.held_count, of, series.table->file()));
     }
   }
 
@@ -379,6 +478,7 @@ class Import {
   double zero_s_ = 0;                                    ///< what the clocks read at time 0
   std::vector<Series> series_;                           ///< per column of the mapping
   std::vector<double> time_s_;
+  std::vector<double> clock_of_row_;  ///< where a row's values come from, in the clock of the first table; NaN: the rest before it
   std::vector<std::vector<double>> rows_;
   std::vector<std::string> notes_;
   bool used_before_ = false;

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <ctime>
 #include <limits>
-#include <optional>
 
 #include "musclesim/base/error.h"
 #include "musclesim/base/text.h"
@@ -77,7 +76,7 @@ std::vector<double> readings(const DataTable& table, const TableClock& clock) {
     std::string text(table.text(row, column));
     if (!clock.date.empty() && !text.empty()) text = std::string(table.text(row, table.indexOf(clock.date))) + " " + text;
     const auto seconds = format.seconds(text);
-    if (!seconds && !text.empty())
+    if (!seconds && !table.isMissing(row, column))
       table.refuse(row, column, fmt::format("{} is no date and time of the format {}", inQuotes(text), inQuotes(clock.format)));
     values[row] = seconds.value_or(std::nan(""));
   }
@@ -85,6 +84,10 @@ std::vector<double> readings(const DataTable& table, const TableClock& clock) {
 }
 
 }  // namespace
+
+std::optional<double> secondsSince1970(const std::string& text, const std::string& format) {
+  return DateFormat(format).seconds(text);
+}
 
 std::vector<double> rowTimes(const DataTable& table, const TableClock& clock, std::vector<std::string>& notes) {
   std::vector<double> times_s = readings(table, clock);
@@ -99,9 +102,9 @@ std::vector<double> rowTimes(const DataTable& table, const TableClock& clock, st
       ++turn_count;
     }
     if (time_s < last_s)
-      throw BadFile(table.file(),
-                    fmt::format("time runs backwards in data row {} (line {}): {} after {}{}", row + 1, table.line(row), time_s, last_s,
-                                clock.wraps_at_s > 0 ? "" : "; a counter that begins again needs wraps_at_s"));
+      table.refuse(row, table.indexOf(clock.from),
+                   fmt::format("time runs backwards in data row {} (line {}): {} after {}{}", row + 1, table.line(row), time_s, last_s,
+                               clock.wraps_at_s > 0 ? "" : "; a counter that begins again needs wraps_at_s"));
     times_s[row] = last_s = time_s;
   }
   if (turn_count > 0)

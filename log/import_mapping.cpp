@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "../base/toml_document.h"
 #include "musclesim/base/error.h"
 #include "musclesim/log/import.h"
 #include "reading_units.h"
+#include "sidecar.h"
 
 namespace musclesim {
 
@@ -278,13 +280,60 @@ void readRows(const toml::table& table, ImportMapping& mapping) {
     }
 }
 
-/// All members except the mapping's own belong to the sidecar.
-std::string sidecarJson(toml::table table) {
-  for (const std::string_view section : own_sections) table.erase(section);
-  table.insert_or_assign("format", "musclesim-recording-1");
+bool isOwnSection(const std::string& name) {
+  return std::ranges::find(own_sections, name) != own_sections.end();
+}
+
+/// One member of the sidecar as JSON in one line.
+std::string jsonMember(const std::string& name, const toml::node& value) {
   std::ostringstream text;
-  text << toml::json_formatter(table);
-  return text.str();
+  text << toml::json_formatter(value);
+  return nlohmann::json(name).dump() + ":" + nlohmann::json::parse(text.str()).dump() + ",";
+}
+
+/// All members except the mapping's own belong to the sidecar. Each stands there in the line and column that it has in the mapping, so that
+/// messages about the sidecar name the right place.
+std::string sidecarJson(const toml::table& table) {
+  std::vector<std::pair<toml::source_position, std::string>> members;
+  for (const auto& [key, value] : table) {
+    const std::string name(key.str());
+    if (!isOwnSection(name) && name != "format") members.emplace_back(key.source().begin, jsonMember(name, value));
+  }
+  std::ranges::sort(members, [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::string text = "{";
+  std::size_t line = 1, column = 2;
+  for (const auto& [place, member] : members) {
+    for (; line < place.line; ++line, column = 1) text += '\n';
+    for (; column < place.column; ++column) text += ' ';
+    text += member;
+    column += member.size();
+  }
+  return text + fmt::format("\"format\":\"{}\"}}", recording_format);
+}
+
+void addPlaces(const toml::table& table, const std::string& prefix, std::map<std::string, ImportMapping::Place>& places) {
+  for (const auto& [key, value] : table) {
+    const std::string name = prefix + std::string(key.str());
+    const auto& begin = key.source().begin;
+    places[name] = {static_cast<int>(begin.line), static_cast<int>(begin.column)};
+    if (const toml::table* inner = value.as_table()) addPlaces(*inner, name + ".", places);
+  }
+}
+
+/// Refuses sections that nearly have the name of one of a mapping's own: as parts of the sidecar they would change nothing.
+void requireSections(const toml::table& table, const ImportMapping& mapping) {
+  const std::vector<std::string> own(own_sections.begin(), own_sections.end());
+  for (const auto& [key, value] : table) {
+    const std::string name(key.str());
+    const bool is_own = isOwnSection(name);
+    if (is_own && !value.is_table()) mapping.refuse(name, fmt::format("must be a table, [{}]", name));
+    if (is_own || !value.is_table() || isSidecarMember(name)) continue;
+    if (const std::string nearest = nearestName(name, own); !nearest.empty())
+      mapping.refuse(name, fmt::format("a mapping has no such section; did you mean [{}]?", nearest));
+  }
+  if (!table.contains("columns"))
+    throw BadFile(mapping.file,
+                  "has no section [columns], which must say which column of the table each column of the recording comes from");
 }
 
 }  // namespace
@@ -303,18 +352,19 @@ ImportColumn importColumn(const std::string& written, const ColumnName& from) {
   return column;
 }
 
+void ImportMapping::refuse(const std::string& member, const std::string& what) const {
+  const auto found = places.find(member);
+  const Place place = found == places.end() ? Place{} : found->second;
+  throw BadFile(file, place.line, place.column, member + ": " + what);
+}
+
 ImportMapping readImportMapping(const std::string& toml_file) {
   const toml::table table = readToml(toml_file);
   ImportMapping mapping;
   mapping.file = toml_file;
-  const toml::table* columns = table["columns"].as_table();
-  if (!columns)
-    throw BadFile(toml_file, "has no section [columns], which must say which column of the table each column of the recording comes from");
-  for (const std::string_view section : own_sections)
-    if (const toml::node* node = table.get(section); node && !node->is_table())
-      throw BadFile(toml_file, static_cast<int>(node->source().begin.line), static_cast<int>(node->source().begin.column),
-                    fmt::format("{}: must be a table, [{}]", section, section));
-  readColumns(*columns, readTables(table, mapping), mapping);
+  addPlaces(table, "", mapping.places);
+  requireSections(table, mapping);
+  readColumns(*table["columns"].as_table(), readTables(table, mapping), mapping);
   if (const toml::table* rows = table["rows"].as_table()) readRows(*rows, mapping);
   mapping.sidecar_json = sidecarJson(table);
   return mapping;

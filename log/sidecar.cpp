@@ -240,13 +240,18 @@ void SidecarReader::keepFurtherMembers(RecordingInfo& info, std::vector<std::str
     if (isKnown(member)) continue;
     further[member] = value;
     if (isOfARun(member)) continue;
-    names += (names.empty() ? "" : ", ") + inQuotes(member);
+    const std::string nearest = nearestName(member, knownMembers());
+    names += (names.empty() ? "" : ", ") + inQuotes(member) + (nearest.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", nearest));
   }
   info.extra_json = further.dump();
   if (!names.empty()) notes.push_back("unknown members of the sidecar, kept unchanged: " + names);
 }
 
 }  // namespace
+
+bool isSidecarMember(const std::string& name) {
+  return isKnown(name) || isOfARun(name);
+}
 
 RecordingInfo parseSidecar(const std::string& text, const std::string& file, const std::vector<std::string>& ignore_columns,
                            std::vector<std::string>& notes) {

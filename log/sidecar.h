@@ -11,6 +11,9 @@ namespace musclesim {
 /// The only value that the member "format" may have.
 inline constexpr const char* recording_format = "musclesim-recording-1";
 
+/// Whether the format knows this member.
+bool isSidecarMember(const std::string& name);
+
 /// Reads a sidecar's text; `file` is used in messages only. Adds remarks for the user to `notes`.
 /// Entries of noise_std that belong to a column in `ignore_columns` are skipped.
 /// Throws BadFile with line and column (of the member, where a member is wrong) and what is allowed.

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
-#include <regex>
 #include <set>
 
 #include "data_table.h"
@@ -33,9 +31,15 @@ const std::map<std::string, std::string>& unitWords() {
   return words;
 }
 
+std::string lowerCase(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return lower;
+}
+
 std::string unitOfWord(std::string word) {
-  std::transform(word.begin(), word.end(), word.begin(),
-                 [](unsigned char c) { return c < 0x80 ? static_cast<char>(std::tolower(c)) : static_cast<char>(c); });
+  word = lowerCase(word);
   if (word.size() > 2 && (word.front() == '(' || word.front() == '[')) word = word.substr(1, word.size() - 2);
   const auto found = unitWords().find(word);
   return found == unitWords().end() ? "" : found->second;
@@ -56,6 +60,24 @@ bool isNumber(std::string_view text, char decimal) {
   double value = 0;
   bool is_out_of_range = false;
   return readNumber(text, decimal, value, is_out_of_range);
+}
+
+/// What a cell of a column of numbers may hold: a finite number, a mark of NaN, or something else.
+enum class CellKind { number, missing, word };
+
+CellKind kindOf(const DataTable& table, std::size_t row, std::size_t column, char decimal, double& value) {
+  bool is_out_of_range = false;
+  if (table.isMissing(row, column)) return CellKind::missing;
+  if (!readNumber(table.text(row, column), decimal, value, is_out_of_range) || is_out_of_range) return CellKind::word;
+  return std::isnan(value) ? CellKind::missing : std::isfinite(value) ? CellKind::number : CellKind::word;
+}
+
+/// Words that programs write where there is no reading, or none within the range of the instrument.
+bool isMark(std::string_view word) {
+  static const std::set<std::string> marks = {"-",      "--",   "---",   "?",        "*",   "na",   "n/a",  "#n/a",
+                                              "n.a.",   "null", "none",  "missing",  "inf", "-inf", "+inf", "no data",
+                                              "nodata", "err",  "error", "overflow", "ol",  "over"};
+  return marks.contains(lowerCase(word));
 }
 
 /// The cells of one line; none if it cannot be split like this.
@@ -121,7 +143,7 @@ class FormatLook {
       const auto cells = cellsOf(lines_[i], format_);
       balance.resize(std::max(balance.size(), cells.size()));
       for (std::size_t c = 0; c < cells.size(); ++c)
-        if (!cells[c].empty()) balance[c] += isNumber(cells[c], format_.decimal) ? 1 : -1;
+        if (!cells[c].empty() && !isMark(cells[c])) balance[c] += isNumber(cells[c], format_.decimal) ? 1 : -1;
     }
     for (const int value : balance) is_number_.push_back(value > 0);
   }
@@ -131,7 +153,7 @@ class FormatLook {
     const auto cells = cellsOf(line, format_);
     int numbers = 0, others = 0;
     for (std::size_t c = 0; c < std::min(cells.size(), is_number_.size()); ++c)
-      if (is_number_[c] && !cells[c].empty()) ++(isNumber(cells[c], format_.decimal) ? numbers : others);
+      if (is_number_[c] && !cells[c].empty() && !isMark(cells[c])) ++(isNumber(cells[c], format_.decimal) ? numbers : others);
     return numbers > others;
   }
 
@@ -185,38 +207,39 @@ class FormatLook {
   TableFormat format_;
 };
 
-/// Cells of a column that are no numbers, up to a few.
+/// The words of a column of numbers that stand for no reading: a few in less than half of the cells with something, or known marks.
 std::set<std::string> wordsIn(const DataTable& table, std::size_t column, char decimal) {
   constexpr std::size_t most = 4;
   std::set<std::string> words;
-  std::size_t count = 0;
+  std::size_t word_count = 0, number_count = 0;
+  double value = 0;
   for (std::size_t row = 0; row < table.rowCount(); ++row) {
-    const auto text = table.text(row, column);
-    if (text.empty() || isNumber(text, decimal)) continue;
-    ++count;
-    if (words.size() <= most) words.emplace(text);
+    const CellKind kind = kindOf(table, row, column, decimal, value);
+    number_count += kind == CellKind::number;
+    word_count += kind == CellKind::word;
+    if (kind == CellKind::word && words.size() <= most) words.emplace(table.text(row, column));
   }
-  return words.size() <= most && count * 2 < table.rowCount() ? words : std::set<std::string>();
+  const bool are_few = words.size() <= most && word_count < number_count;
+  const bool are_marks = number_count > 0 && words.size() <= most && std::ranges::all_of(words, isMark);
+  return are_few || are_marks ? words : std::set<std::string>();
 }
 
 LookedColumn lookAtColumn(const DataTable& table, std::size_t index, const TableFormat& format) {
   LookedColumn column;
   column.name = table.names()[index];
-  column.is_named = format.has_header && !column.name.empty() && isUtf8(column.name) && std::ranges::count(table.names(), column.name) == 1;
+  column.is_repeated = format.has_header && std::ranges::count(table.names(), column.name) > 1;
+  column.is_named = format.has_header && !column.name.empty() && isUtf8(column.name) && !column.is_repeated;
   column.unit = unitInName(column.name);
   column.lowest = std::numeric_limits<double>::infinity();
   column.highest = -column.lowest;
   std::size_t number_count = 0, word_count = 0;
   for (std::size_t row = 0; row < table.rowCount(); ++row) {
-    const auto text = table.text(row, index);
-    if (column.example.empty()) column.example = text;
     double value = 0;
-    bool is_out_of_range = false;
-    const bool is_missing = text.empty() || std::ranges::find(format.missing, text) != format.missing.end();
-    if (is_missing || !readNumber(text, format.decimal, value, is_out_of_range) || !std::isfinite(value)) {
-      ++(is_missing ? column.missing_count : word_count);
-      continue;
-    }
+    const CellKind kind = kindOf(table, row, index, format.decimal, value);
+    if (column.example.empty() && kind != CellKind::missing) column.example = table.text(row, index);
+    column.missing_count += kind == CellKind::missing;
+    word_count += kind == CellKind::word;
+    if (kind != CellKind::number) continue;
     ++number_count;
     column.lowest = std::min(column.lowest, value);
     column.highest = std::max(column.highest, value);
@@ -225,36 +248,33 @@ LookedColumn lookAtColumn(const DataTable& table, std::size_t index, const Table
   return column;
 }
 
-/// The format of a date and time, or of a time; empty if the text is neither.
-std::string dateFormat(const std::string& text) {
-  static const std::array<std::pair<std::regex, std::string>, 6> formats = {{
-      {std::regex(R"(\d{4}-\d\d?-\d\d? \d\d?:\d\d:\d\d.*)"), "%Y-%m-%d %H:%M:%S"},
-      {std::regex(R"(\d{4}-\d\d?-\d\d?T\d\d?:\d\d:\d\d(\.\d*)?)"), "%Y-%m-%dT%H:%M:%S"},
-      {std::regex(R"(\d{4}-\d\d?-\d\d?T\d\d?:\d\d:\d\d(\.\d*)?(Z|[+-]\d\d:?\d\d))"), "%Y-%m-%dT%H:%M:%S%z"},
-      {std::regex(R"(\d\d?\.\d\d?\.\d{4} \d\d?:\d\d:\d\d.*)"), "%d.%m.%Y %H:%M:%S"},
-      {std::regex(R"(\d\d?/\d\d?/\d{4} \d\d?:\d\d:\d\d.*)"), "%m/%d/%Y %H:%M:%S"},
-      {std::regex(R"(\d\d?:\d\d:\d\d.*)"), "%H:%M:%S"},
-  }};
-  for (const auto& [pattern, format] : formats)
-    if (std::regex_match(text, pattern)) return format;
+/// The first of these formats in which the text can be read; empty if there is none.
+std::string firstFormat(const std::string& text, std::initializer_list<const char*> formats) {
+  for (const char* format : formats)
+    if (secondsSince1970(text, format)) return format;
   return "";
 }
 
-std::string dayFormat(const std::string& text) {
-  if (std::regex_match(text, std::regex(R"(\d{4}-\d\d?-\d\d?)"))) return "%Y-%m-%d";
-  if (std::regex_match(text, std::regex(R"(\d\d?\.\d\d?\.\d{4})"))) return "%d.%m.%Y";
-  return std::regex_match(text, std::regex(R"(\d\d?/\d\d?/\d{4})")) ? "%m/%d/%Y" : "";
+/// The format of a date and time, or of a time; empty if the text is neither.
+std::string dateFormat(const std::string& text) {
+  return firstFormat(text, {"%Y-%m-%d %H:%M:%S", "%Y-%m-%dT%H:%M:%S", "%Y-%m-%dT%H:%M:%S%z", "%d.%m.%Y %H:%M:%S", "%m/%d/%Y %H:%M:%S",
+                            "%d/%m/%Y %H:%M:%S", "%H:%M:%S"});
 }
 
-/// Whether the numbers of a column grow from row to row, but for a few turns of a counter.
-bool grows(const std::vector<double>& values) {
+std::string dayFormat(const std::string& text) {
+  return firstFormat(text, {"%Y-%m-%d", "%d.%m.%Y", "%m/%d/%Y", "%d/%m/%Y"});
+}
+
+/// Whether the numbers of a column grow from row to row, but for a few turns of a counter. The clock of a column that is called so may be
+/// coarse and stand still in most rows.
+bool grows(const std::vector<double>& values, bool may_stand) {
   constexpr std::size_t rows_per_turn = 2, fewest_rows_per_turn = 50;
   std::size_t up = 0, down = 0;
   for (std::size_t i = 1; i < values.size(); ++i) {
     up += values[i] > values[i - 1];
     down += values[i] < values[i - 1];
   }
-  return up > 0 && up >= rows_per_turn * down && up * 2 >= values.size() - 1 &&
+  return up > 0 && up >= rows_per_turn * down && (may_stand || up * 2 >= values.size() - 1) &&
          down <= std::max<std::size_t>(1, values.size() / fewest_rows_per_turn);
 }
 
@@ -307,11 +327,13 @@ class ClockLook {
     std::optional<std::size_t> found;
     for (std::size_t i = 0; i < look_.columns.size(); ++i) {
       const LookedColumn& column = look_.columns[i];
-      if (!column.is_number || !grows(present(i))) continue;
       const bool is_called_time = column.name == "t" || column.name.find("ime") != std::string::npos;
       const bool has_unit = column.unit == "s" || column.unit == "ms" || column.unit == "us" || column.unit == "min";
-      if (is_called_time || has_unit || !found) found = i;
-      if (is_called_time || has_unit) break;
+      const bool is_likely = is_called_time || has_unit;
+      if (!is_likely && !column.unit.empty()) continue;  // degrees that grow are no time
+      if (!column.is_number || !grows(present(i), is_likely)) continue;
+      if (is_likely || !found) found = i;
+      if (is_likely) break;
     }
     if (!found) return false;
     clock_.column = *found;
@@ -342,9 +364,7 @@ class ClockLook {
     std::vector<double> values;
     for (std::size_t row = 0; row < table_.rowCount(); ++row) {
       double value = 0;
-      bool is_out_of_range = false;
-      const auto text = table_.text(row, column);
-      if (readNumber(text, look_.format.decimal, value, is_out_of_range) && std::isfinite(value)) values.push_back(value);
+      if (kindOf(table_, row, column, look_.format.decimal, value) == CellKind::number) values.push_back(value);
     }
     return values;
   }
@@ -357,7 +377,9 @@ class ClockLook {
       std::vector<std::string> notes;
       times_s = rowTimes(table_, clock, notes);
     } catch (const BadFile& error) {
-      clock_.turn_count = 1;
+      clock_.fault = fmt::format("line {}: {}", error.line(), withoutPlace(error));
+      for (char& c : clock_.fault)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = '?';
       return;
     }
     std::erase_if(times_s, [](double time_s) { return std::isnan(time_s); });
@@ -391,6 +413,12 @@ TableLook lookAtTable(const std::string& file) {
     look.format.encoding = encoding;
     units = format.units();
   }
+  std::set<std::string> words;
+  {
+    const DataTable first(file, look.format);
+    for (std::size_t i = 0; i < first.names().size(); ++i) words.merge(wordsIn(first, i, look.format.decimal));
+  }
+  look.format.missing.assign(words.begin(), words.end());
   const DataTable table(file, look.format);
   look.notes = table.notes();
   look.header_line = table.headerLine();
@@ -398,9 +426,6 @@ TableLook lookAtTable(const std::string& file) {
   if (look.row_count == 0) throw BadFile(file, "no row of numbers can be recognised");
   look.first_line = table.line(0);
   look.last_line = table.line(look.row_count - 1);
-  std::set<std::string> words;
-  for (std::size_t i = 0; i < table.names().size(); ++i) words.merge(wordsIn(table, i, look.format.decimal));
-  look.format.missing.assign(words.begin(), words.end());
   for (std::size_t i = 0; i < table.names().size(); ++i) {
     look.columns.push_back(lookAtColumn(table, i, look.format));
     if (i < units.size() && !unitOfWord(units[i]).empty()) look.columns.back().unit = unitOfWord(units[i]);

@@ -11,12 +11,13 @@ namespace musclesim {
 
 struct LookedColumn {
   std::string name;
-  bool is_named = false;  ///< the name tells it from all others
-  std::string unit;       ///< as it is written; empty: none is
-  bool is_number = false;
+  bool is_named = false;     ///< the name tells it from all others
+  bool is_repeated = false;  ///< another column has the name, too
+  std::string unit;          ///< as it is written; empty: none is
+  bool is_number = false;    ///< the cells with a reading are numbers
   double lowest = 0, highest = 0;
   std::size_t missing_count = 0;
-  std::string example;  ///< the first cell
+  std::string example;  ///< the first cell with a reading
 };
 
 struct LookedClock {
@@ -25,7 +26,8 @@ struct LookedClock {
   std::string unit = "s";  ///< a unit of time in which the numbers may be; "" for the number of the row
   bool unit_is_guessed = false;
   double step_s = 0, duration_s = 0, longest_gap_s = 0;
-  std::size_t gap_count = 0, repeat_count = 0, turn_count = 0;
+  std::size_t gap_count = 0, repeat_count = 0;
+  std::string fault;        ///< why the rows get no times by this clock, with the place; empty: they do
   std::string date_column;  ///< name of the date's column, where date and time stand apart
 };
 

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <ctime>
 #include <filesystem>
 
 #include "matlab.h"
@@ -52,24 +54,54 @@ bool looksAbsolute(const LookedColumn& column) {
   return column.is_number && may_be_pressure && column.lowest * in_hPa > lowest_hPa && column.lowest * in_hPa < highest_hPa;
 }
 
+/// The range with as many digits as tell its ends apart, and without exponents where it need not have them.
+std::string rangeText(double lowest, double highest) {
+  constexpr int fewest = 6, most = 15, of_the_span = 4, of_a_constant = 12;
+  const double largest = std::max(std::abs(lowest), std::abs(highest)), span = highest - lowest;
+  const int whole = largest >= 1 ? static_cast<int>(std::log10(largest)) + 1 : 0;
+  const int telling = span > 0 ? static_cast<int>(std::ceil(std::log10(largest / span))) + of_the_span : of_a_constant;
+  const int digits = std::clamp(std::max(whole, telling), fewest, most);
+  return fmt::format("{:.{}g} .. {:.{}g}", lowest, digits, highest, digits);
+}
+
+/// The range of a clock that counts from 1970, as dates.
+std::string dateText(const LookedColumn& column, const LookedClock& clock) {
+  constexpr double epoch_s = 1e8, latest_s = 1e10;
+  const double from_s = column.lowest * clock.clock.factor, until_s = column.highest * clock.clock.factor;
+  if (!column.is_number || from_s < epoch_s || until_s > latest_s) return "";
+  const auto shown = [](double time_s) {
+    const auto seconds = static_cast<std::time_t>(time_s);
+    std::tm time{};
+    gmtime_r(&seconds, &time);
+    char text[32];
+    std::strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S", &time);
+    return std::string(text);
+  };
+  return fmt::format(" ({} .. {} UTC)", shown(from_s), shown(until_s));
+}
+
 std::string describe(const LookedColumn& column) {
+  if (column.example.empty()) return "empty";
   if (!column.is_number) return fmt::format("text, first {}", inQuotes(column.example));
-  std::string text = fmt::format("{:.6g} .. {:.6g}", column.lowest, column.highest);
+  std::string text = rangeText(column.lowest, column.highest);
   if (!column.unit.empty()) text += " " + column.unit;
   if (looksAbsolute(column)) text += column.unit.empty() ? ", hPa or mbar, absolute?" : ", absolute?";
   if (column.missing_count > 0) text += fmt::format(", {} missing", column.missing_count);
+  if (column.is_repeated) text += ", another column has the same name: refer to it by its number";
   return text;
 }
 
 std::string describe(const LookedClock& clock) {
-  if (clock.turn_count > 0) return "clock: runs backwards, a counter that begins again?";
+  if (!clock.fault.empty()) return "clock, but " + clock.fault;
   std::string text =
       fmt::format("clock{}: every {:.4g} s over {:.6g} s", clock.unit_is_guessed && !clock.unit.empty() ? " in " + clock.unit + "?" : "",
                   clock.step_s, clock.duration_s);
   if (clock.unit.empty()) text = "clock: the row's number; give rate_Hz";
   if (clock.clock.wraps_at_s > 0) text += fmt::format(", begins again at {:.12g} s", clock.clock.wraps_at_s);
   if (clock.gap_count > 0) text += fmt::format(", {} gaps, the longest {:.4g} s", clock.gap_count, clock.longest_gap_s);
-  if (clock.repeat_count > 0) text += fmt::format(", {} repeated times", clock.repeat_count);
+  if (clock.repeat_count > 0)
+    text += fmt::format(", {} the time of the row before",
+                        clock.repeat_count == 1 ? "1 row has" : fmt::format("{} rows have", clock.repeat_count));
   return text;
 }
 
@@ -102,17 +134,23 @@ std::string clockLine(const TableLook& look) {
   return fmt::format("time_{} = {}   # {}", clock.unit, is_plain ? from : "{ from = " + from + members + " }", describe(clock));
 }
 
-/// A column of recordings that has this unit.
-std::string suggestion(const LookedColumn& column) {
-  const std::string& unit = column.unit;
-  const auto is_one_of = [&](std::initializer_list<const char*> units) { return std::ranges::find(units, unit) != units.end(); };
-  if (is_one_of({"kPa", "bar", "MPa", "Pa", "hPa", "mbar", "psi"})) return "pressure_0_" + unit;
-  if (unit == "V") return "command_0_V";
-  if (is_one_of({"mm", "cm", "m", "um", "inch"})) return "length_0_" + unit;
-  if (is_one_of({"N", "mN", "kN", "kgf", "lbf"})) return "force_0_" + unit;
-  if (is_one_of({"deg", "rad"})) return "angle_elbow_" + unit;
-  return "...";
-}
+/// Columns of recordings for units, every name once.
+class Suggestions {
+ public:
+  std::string next(const LookedColumn& column) {
+    const std::string& unit = column.unit;
+    const auto is_one_of = [&](std::initializer_list<const char*> units) { return std::ranges::find(units, unit) != units.end(); };
+    if (is_one_of({"kPa", "bar", "MPa", "Pa", "hPa", "mbar", "psi"})) return fmt::format("pressure_{}_{}", pressures_++, unit);
+    if (unit == "V") return fmt::format("command_{}_V", commands_++);
+    if (is_one_of({"mm", "cm", "m", "um", "inch"})) return fmt::format("length_{}_{}", lengths_++, unit);
+    if (is_one_of({"N", "mN", "kN", "kgf", "lbf"})) return fmt::format("force_{}_{}", forces_++, unit);
+    if (!is_one_of({"deg", "rad"})) return "...";
+    return fmt::format("angle_{}_{}", angles_++ == 0 ? "elbow" : fmt::format("joint{}", angles_), unit);
+  }
+
+ private:
+  int pressures_ = 0, commands_ = 0, lengths_ = 0, forces_ = 0, angles_ = 0;
+};
 
 }  // namespace
 
@@ -135,7 +173,7 @@ std::string lookText(const TableLook& look) {
   for (std::size_t i = 0; i < look.columns.size(); ++i) {
     const bool is_clock = look.clock && look.clock->column == i;
     text += fmt::format("column {:>3} {:<{}}  {}{}\n", i + 1, format.has_header ? look.columns[i].name : "", width,
-                        describe(look.columns[i]), is_clock ? "; " + describe(*look.clock) : "");
+                        describe(look.columns[i]), is_clock ? dateText(look.columns[i], *look.clock) + "; " + describe(*look.clock) : "");
   }
   if (!look.clock) text += "clock      none recognised\n";
   return text;
@@ -151,14 +189,15 @@ std::string mappingText(const TableLook& look) {
   if (!isMatlabFile(look.file)) text += formatMembers(look.format);
   text += "\n[columns]                            # column of the recording = column of the table\n" + clockLine(look) + "\n";
   text += "# command_0_bar = \"...\"              # needed: one command for each muscle; { value = 3 } for a constant one\n";
+  Suggestions suggestions;
   for (std::size_t i = 0; i < look.columns.size(); ++i) {
     if (look.clock && look.clock->column == i) continue;
     const LookedColumn& column = look.columns[i];
     const std::string from = reference(look, i);
     const std::string absolute = looksAbsolute(column) ? ", ambient_kPa = 101.325" : "";
     const bool is_plain = column.is_named && absolute.empty();
-    text += fmt::format("# {} = {}   # column {}: {}\n", suggestion(column), is_plain ? from : "{ from = " + from + absolute + " }", i + 1,
-                        describe(column));
+    text += fmt::format("# {} = {}   # column {}: {}\n", suggestions.next(column), is_plain ? from : "{ from = " + from + absolute + " }",
+                        i + 1, describe(column));
   }
   text +=
       "\n# [rows]\n# step_s = 0.01                      # even rows: straight lines between readings, commands held\n"

@@ -55,16 +55,34 @@ class ControllerOfPython : public Controller {
       } catch (const py::cast_error&) {
         throw BadParameter("signals", py::repr(signals).cast<std::string>(), "be a dict of numbers by column");
       }
+    requireSameNames(values);
     return values;
   }
   bool targetIsHeight() const override { PYBIND11_OVERRIDE_NAME(bool, Controller, "target_is_height", targetIsHeight, ); }
 
+  /// Columns must not change or be exchanged in the middle of a recording.
+  void requireSameNames(const std::vector<std::pair<std::string, double>>& signals) const {
+    std::vector<std::string> names;
+    for (const auto& [name, value] : signals) names.push_back(name);
+    if (!signal_names_) signal_names_ = names;
+    if (names != *signal_names_)
+      throw BadParameter("signals", fmt::format("{}", fmt::join(names, ", ")),
+                         fmt::format("have the same names in the same order at all times: {}", fmt::join(*signal_names_, ", ")));
+  }
+
   /// Python may keep the state that it gets, so it gets one of its own.
   static Action pressuresOf(const py::function& function, const State& state) {
     Action action(state.command.size());
-    readPressures(function(State(state)), "the controller's output", action);
+    const py::object pressures = function(State(state));
+    if (pressures.is_none())
+      throw BadParameter(
+          fmt::format("the controller returned None: return an array of {} pressures (fractions of full scale, 0 .. 1)", action.size()));
+    readPressures(pressures, "the controller's output", action);
     return action;
   }
+
+ private:
+  mutable std::optional<std::vector<std::string>> signal_names_;  ///< of the first call
 };
 
 /// Passes on to the C++ part of a Python object, and keeps that object.

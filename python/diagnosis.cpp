@@ -1,5 +1,3 @@
-#include "musclesim/diagnosis/diagnosis.h"
-
 #include <pybind11/stl.h>
 
 #include <mutex>
@@ -8,6 +6,7 @@
 #include "bindings.h"
 #include "conversions.h"
 #include "interruption.h"
+#include "musclesim/diagnosis/proposed_recording.h"
 #include "musclesim/effect/effects_file.h"
 #include "replay_options.h"
 
@@ -32,8 +31,21 @@ class ProgressBox {
   std::optional<DiagnosisProgress> newest_;
 };
 
-py::dict answerOf(const Diagnosis& diagnosis) {
+/// Further files of the answer by name, as the program writes them.
+py::dict filesOf(const Diagnosis& diagnosis, const RecordingInfo& plant) {
+  py::dict files;
+  if (!diagnosis.attempt.effects.empty()) files["attempt.json"] = effectsText(diagnosis.attempt.active_effects);
+  if (!diagnosis.tuned.empty()) files["nominal.toml"] = tunedToml(diagnosis.tuned);
+  if (const ProposedRecording next = proposedRecording(diagnosis, plant); !next.csv.empty()) {
+    files["next.csv"] = next.csv;
+    files["next.json"] = next.json;
+  }
+  return files;
+}
+
+py::dict answerOf(const Diagnosis& diagnosis, const RecordingInfo& plant) {
   py::dict answer;
+  answer["files"] = filesOf(diagnosis, plant);
   answer["data"] = fromJson(diagnosisJson(diagnosis));
   answer["report"] = diagnosisReport(diagnosis);
   answer["summary"] = diagnosisSummary(diagnosis);
@@ -42,15 +54,18 @@ py::dict answerOf(const Diagnosis& diagnosis) {
 }
 
 /// Recordings that were made in memory get names: the answer speaks of them.
-std::vector<Recording> named(std::vector<Recording> recordings) {
-  for (std::size_t i = 0; i < recordings.size(); ++i)
+std::vector<Recording> named(std::vector<Recording> recordings, bool without_active_effects) {
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
     if (recordings[i].file.empty()) recordings[i].file = "recording " + std::to_string(i + 1);
+    if (without_active_effects) recordings[i].info.active_effects.clear();
+  }
   return recordings;
 }
 
-py::dict diagnoseRecordings(const std::vector<Recording>& recordings, const py::dict& model, const std::vector<std::string>& candidates,
+py::dict diagnoseRecordings(const std::vector<Recording>& given, const py::dict& model, const std::vector<std::string>& candidates,
                             const std::vector<std::string>& exclude, const std::vector<std::string>& tune, int max_effects, int threads,
-                            std::uint64_t seed, const py::object& earlier, const py::object& progress) {
+                            std::uint64_t seed, const py::object& earlier, bool without_active_effects, const py::object& progress) {
+  const std::vector<Recording> recordings = named(given, without_active_effects);
   DiagnosisOptions options;
   options.model = replayOptionsFrom(model);
   options.candidates = candidates;
@@ -66,19 +81,20 @@ py::dict diagnoseRecordings(const std::vector<Recording>& recordings, const py::
   watched(
       [&](const std::function<bool()>& interrupted) {
         options.interrupted = interrupted;
-        diagnosis = diagnose(named(recordings), options);
+        diagnosis = diagnose(recordings, options);
       },
       [&] {
         if (const auto now = box.take(); now && !progress.is_none()) progress(now->phase, now->done, now->expected);
       });
-  return answerOf(diagnosis);
+  return answerOf(diagnosis, diagnosedModel(recordings.front(), options.model));
 }
 
 }  // namespace
 
 void bindDiagnosis(py::module_& module) {
   module.def("_diagnose", &diagnoseRecordings, py::arg("recordings"), py::arg("model"), py::arg("candidates"), py::arg("exclude"),
-             py::arg("tune"), py::arg("max_effects"), py::arg("threads"), py::arg("seed"), py::arg("earlier"), py::arg("progress"));
+             py::arg("tune"), py::arg("max_effects"), py::arg("threads"), py::arg("seed"), py::arg("earlier"),
+             py::arg("without_active_effects"), py::arg("progress"));
 }
 
 }  // namespace musclesim::python

@@ -69,17 +69,20 @@ Recording recordingFrom(const py::dict& arrays, const std::string& robot, const 
   return recording;
 }
 
-py::array_t<double> columnOf(const py::object& self, const std::string& name) {
-  const auto& recording = self.cast<const Recording&>();
-  if (name == "time_s") return viewOf(recording.time_s, self);
-  if (const Signal* signal = recording.find(name)) return viewOf(signal->values, self);
-  throw py::key_error(name);
-}
-
 std::vector<std::string> namesOf(const Recording& recording) {
   std::vector<std::string> names = {"time_s"};
   for (const Signal& signal : recording.signals) names.push_back(signal.name);
   return names;
+}
+
+py::array_t<double> columnOf(const py::object& self, const std::string& name) {
+  const auto& recording = self.cast<const Recording&>();
+  if (name == "time_s") return viewOf(recording.time_s, self);
+  if (const Signal* signal = recording.find(name)) return viewOf(signal->values, self);
+  const std::vector<std::string> names = namesOf(recording);
+  const std::string nearest = nearestName(name, names);
+  throw py::key_error(fmt::format("there is no column {}{}; the columns are {}", name,
+                                  nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest), fmt::join(names, ", ")));
 }
 
 py::dict toDict(const py::object& self) {

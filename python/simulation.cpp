@@ -190,6 +190,9 @@ void PythonSimulation::runInto(Recording& recording, Recorder* recorder, Control
   loop.row = [&](const State& state, bool is_due) {
     if (!is_due) return;
     const std::vector<double> values = runRow(simulation_->robot(), controller, state);
+    if (values.size() != recording.signals.size())
+      throw BadParameter("what the controller reports", fmt::format("{} columns with those of the robot", values.size()),
+                         fmt::format("be {} at all times, as at the beginning", recording.signals.size()));
     if (recorder) recorder->append(state.time_s, values);
     recording.time_s.push_back(state.time_s);
     for (std::size_t i = 0; i < values.size(); ++i) recording.signals[i].values.push_back(values[i]);

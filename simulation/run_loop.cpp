@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "../log/row_text.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/units.h"
 
@@ -53,6 +54,7 @@ std::vector<std::string> runColumns(const Robot& robot, const Controller& contro
       if (!controller.targetIsHeight() || *axis == 'y') names.push_back(fmt::format("target_{}_mm", axis));
   if (controller.activity()) names.push_back("activity");
   for (const auto& [name, value] : controller.signals()) names.push_back(name);
+  static_cast<void>(RowText(names));  // refuses names that no recording can have
   return names;
 }
 

@@ -10,7 +10,7 @@
 #include "interrupt.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
-#include "musclesim/diagnosis/diagnosis.h"
+#include "musclesim/diagnosis/proposed_recording.h"
 #include "musclesim/effect/effects_file.h"
 #include "output_folder.h"
 #include "progress.h"
@@ -35,48 +35,10 @@ std::filesystem::path folderFor(const DiagnoseArguments& arguments) {
   return stem.replace_extension().string() + "-diagnosis";
 }
 
-std::string scheduleText(const Experiment& experiment) {
-  std::string text = "time_s";
-  for (std::size_t i = 0; i < experiment.commands.front().size(); ++i) text += fmt::format(",command_{}", i);
-  text += "\n";
-  for (std::size_t row = 0; row < experiment.time_s.size(); ++row) {
-    text += fmt::format("{:.3f}", experiment.time_s[row]);
-    for (const double value : experiment.commands[row]) text += fmt::format(",{:.4f}", value);
-    text += "\n";
-  }
-  return text;
-}
-
 /// Includes the fixed effects, so that the file describes the whole machine.
 void writeWith(const std::vector<ActiveEffect>& found, std::vector<ActiveEffect> effects, const std::filesystem::path& file) {
   effects.insert(effects.end(), found.begin(), found.end());
   writeEffects(effects, file.string());
-}
-
-/// The sidecar members that describe the diagnosed model, without the fixed effects, which are not part of the recording.
-RecordingInfo modelOf(const Recording& recording, const ReplayOptions& options) {
-  RecordingInfo given = recording.info;
-  replaceRobot(given, options.robot);
-  Simulation simulation(simulationOptionsFor(given, sidecarPath(recording.file), options));
-  const Robot& robot = simulation.build(given.robot);
-  RecordingInfo model = describeModel(simulation, options.initial_state.value_or(given.initial_state.value_or(robot.initialState())));
-  model.active_effects = given.active_effects;
-  return model;
-}
-
-/// The proposed commands as a recording of the plant, without readings.
-void writeSchedule(const Diagnosis& diagnosis, const RecordingInfo& model, const std::filesystem::path& folder) {
-  RecordingInfo info;
-  info.robot = model.robot;
-  info.robot_hash = model.robot_hash;
-  info.physics = model.physics;
-  info.initial_state = model.initial_state;
-  info.robot_parameters = model.robot_parameters;
-  info.active_effects = model.active_effects;
-  info.description = "commands proposed by a diagnosis";
-  replaceFile((folder / "next.csv").string(), scheduleText(diagnosis.next_experiment));
-  const std::string sidecar = (folder / "next.json").string();
-  replaceFile(sidecar, sidecarText(info, sidecar));
 }
 
 /// "2026-11-26 21:05".
@@ -93,7 +55,10 @@ void writeAll(const Diagnosis& diagnosis, const std::filesystem::path& folder, c
   writeWith(diagnosis.chosen_effects, effects_of_user, folder / "effects.json");
   if (!diagnosis.attempt.effects.empty()) writeWith(diagnosis.attempt.active_effects, effects_of_user, folder / "attempt.json");
   if (!diagnosis.tuned.empty()) replaceFile((folder / "nominal.toml").string(), tunedToml(diagnosis.tuned));
-  if (!diagnosis.next_experiment.commands.empty()) writeSchedule(diagnosis, plant, folder);
+  if (const ProposedRecording next = proposedRecording(diagnosis, plant); !next.csv.empty()) {
+    replaceFile((folder / "next.csv").string(), next.csv);
+    replaceFile((folder / "next.json").string(), next.json);
+  }
   if (arguments.json) replaceFile(*arguments.json, json);
 }
 
@@ -144,7 +109,7 @@ int diagnoseCommand(const ModelOptions& model, const DiagnoseArguments& argument
   options.interrupted = [] { return interruptSignal() != 0; };
   PhaseProgress progress(model.quiet);
   options.progress = [&](const DiagnosisProgress& now) { progress.show(now.phase, now.done, now.expected); };
-  const RecordingInfo plant = modelOf(recordings.front(), options.model);
+  const RecordingInfo plant = diagnosedModel(recordings.front(), options.model);
   const Diagnosis diagnosis = diagnose(std::move(recordings), options);
   writeAll(diagnosis, folder, arguments, options.model.effects, plant, model.command_line);
   fmt::print("{}report    {}\n", diagnosisSummary(diagnosis), (folder / "report.html").string());

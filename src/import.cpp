@@ -23,8 +23,14 @@ namespace {
 struct ImportArguments {
   std::string table, mapping, out;
   std::optional<std::string> look, mapping_out;
-  bool quiet = false;
+  bool quiet = false, overwrite = false;
 };
+
+/// A recording of a machine may be the only one.
+void requireNew(const std::string& csv) {
+  for (const std::string& file : {csv, sidecarPath(csv)})
+    if (std::filesystem::exists(file)) throw BadParameter(fmt::format("{} exists: choose another name, or --overwrite it", file));
+}
 
 /// Shows how a table is written, and begins a mapping.
 int lookCommand(const ImportArguments& arguments) {
@@ -51,6 +57,7 @@ int importCommand(const ImportArguments& arguments) {
     if (!column.table.empty()) inputs.push_back(tableFile(arguments.table, column));
   requireOther(arguments.out, inputs);
   requireOther(sidecarPath(arguments.out), inputs);
+  if (!arguments.overwrite) requireNew(arguments.out);
   const Recording recording = importTable(arguments.table, mapping);
   if (!arguments.quiet)
     for (const auto& note : recording.notes) std::fprintf(stderr, "musclesim: %s\n", note.c_str());
@@ -84,6 +91,7 @@ Action addImport(CLI::App& command) {
   command.add_option("-o", arguments->mapping_out, "With --look: a mapping to begin from, with comments")
       ->option_text("MAPPING.toml")
       ->needs(look);
+  command.add_flag("--overwrite", arguments->overwrite, "Replace OUT.csv and OUT.json if they exist");
   command.add_flag("--quiet", arguments->quiet, "No messages on standard error except errors");
   return [arguments] { return importCommand(*arguments); };
 }

@@ -107,7 +107,7 @@ class Run {
     if (options_.out && !options_.overwrite) requireUnfinished(csv);
     if (options_.against) requireOther(csv, {*options_.against});
     if (options_.commands) requireOther(csv, {*options_.commands});
-    signals_.emplace(robot(), *controller_, options_.record_signals, simulation_.stepS());
+    signals_.emplace(robot(), *controller_, options_.record_signals, options_.summarise, simulation_.stepS());
     summary_.emplace(options_.summarise, signals_->names());
     tracking_.emplace(signals_->names());
     requireFigureSignals();
@@ -120,6 +120,8 @@ class Run {
     if (!simulation_.stepper().message().empty()) say(model_, simulation_.stepper().message());
     if (!options_.target_mm.empty() && !controller_->targetMm())
       say(model_, fmt::format("warning: controller {} has no target; --target changes nothing", *options_.controller));
+    if (!options_.record_signals.empty() && !signals_->added().empty())
+      say(model_, fmt::format("also recorded, because the verdict needs them: {}", fmt::join(signals_->added(), ", ")));
     for (const std::string& note : controller_->notes()) say(model_, fmt::format("controller {}: {}", *options_.controller, note));
     std::optional<Diverged> divergence;
     Progress progress(duration_s_, model_.quiet || hands_);
@@ -303,6 +305,7 @@ class Run {
       say(model_, fmt::format("target reached (within {:g} mm) at {:.2f} s, held for {:.0f} % of the time since",
                               verdict["reached_within_mm"].get<double>(), verdict["reached_at_s"].get<double>(),
                               100 * verdict["held_share"].get<double>()));
+    if (verdict.contains("signals")) fmt::print("{}", summaryText(verdict["signals"]));
     fmt::print("log     {}\n", csv.string());
     if (!svg.empty()) fmt::print("figure  {}\n", svg.string());
     if (model_.json) {
@@ -343,63 +346,75 @@ int run(const ModelOptions& model, const RunOptions& options) {
   return run.execute();
 }
 
-void addOptions(CLI::App& command, RunOptions& options) {
-  const std::string group = "Run";
-  command.add_flag("--simple", options.simple, "Batch run without window or interaction (default: a window opens)")->group(group);
-  command.add_flag("--verbose", options.verbose, "List all primitives and actuators on standard output")->group(group);
+constexpr const char* run_group = "Run";
+
+/// What is commanded.
+void addControlOptions(CLI::App& command, RunOptions& options) {
   command
       .add_option("--controller", options.controller,
                   fmt::format("Controller: {} (default: asm for the arm or with a task, else triangle; schedule with --commands)",
                               fmt::join(registeredControllers(), ", ")))
-      ->group(group);
+      ->group(run_group);
   command
       .add_option("--commands", options.commands, "Commands for --controller schedule: a recording, or a table with time_s and command_<i>")
-      ->group(group);
+      ->group(run_group);
   command
       .add_option("--interpolate", options.interpolate,
                   "Commands between two rows; hold: those of the earlier row (default); linear: on the straight line")
-      ->group(group)
+      ->group(run_group)
       ->check(CLI::IsMember({"hold", "linear"}));
   command
       .add_option("--channels", options.channels,
                   "What a test signal or the position controller moves: muscles 0,1, antagonists 0:1, groups elbow=0+2:1+3 (default: the "
                   "robot's antagonists, else all muscles)")
-      ->group(group)
+      ->group(run_group)
       ->option_text("CHANNEL,...");
   command
       .add_option("--targets", options.targets, "Targets for --controller position: a table with time_s and angles or the hand's height")
-      ->group(group);
-  command.add_option("--task", options.task, "height: bring the hand to a height (default); reach: bring it to a point")->group(group);
+      ->group(run_group);
+  command.add_option("--task", options.task, "height: bring the hand to a height (default); reach: bring it to a point")->group(run_group);
   command.add_option("--target", options.target_mm, "X,Y,Z of the target in mm (for the height task only Y counts)")
-      ->group(group)
+      ->group(run_group)
       ->delimiter(',')
       ->expected(3);
   command
       .add_option("--decision-interval", options.decision_interval_s,
                   "Time between decisions in s (default: 6 in original physics, 3 in si)")
-      ->group(group);
+      ->group(run_group);
+}
+
+/// What is written, and what the verdict says of it.
+void addRecordOptions(CLI::App& command, RunOptions& options) {
+  command.add_option("--record", options.record, "Recording to write, FILE.csv (default: run.csv in the run's folder)")->group(run_group);
+  command
+      .add_option("--record-interval", options.record_interval_s,
+                  "Time between recorded rows in s, rounded to whole steps (default: every step)")
+      ->group(run_group);
+  addList(command, "--record-signals", options.record_signals,
+          "Signals to record beside the commands (default: all); NAME_per_s and NAME_per_s2 are velocity and acceleration")
+      ->group(run_group);
+  addList(command, "--figure-signals", options.figure_signals, "Signals in the figure; NAME* stands for all that begin so")
+      ->group(run_group);
+  addList(command, "--summarise", options.summarise,
+          "Signals whose last value, mean, peak, trough, settling time and overshoot are printed and stand in the verdict")
+      ->group(run_group);
+  command.add_option("--against", options.against, "Recording from which the summarised signals' RMSE is computed")->group(run_group);
+  command.add_option("--out", options.out, "Folder of the run (default: log/runs/<date-time>-<task>-<seed>)")->group(run_group);
+  command.add_flag("--overwrite", options.overwrite, "Replace a finished run in the folder of --out")->group(run_group);
+}
+
+void addOptions(CLI::App& command, RunOptions& options) {
+  command.add_flag("--simple", options.simple, "Batch run without window or interaction (default: a window opens)")->group(run_group);
+  command.add_flag("--verbose", options.verbose, "List all primitives and actuators on standard output")->group(run_group);
+  addControlOptions(command, options);
   command
       .add_option(
           "--duration", options.duration_s,
           "Simulated time in s (default: until the window is closed; without one to the end of the commands, else 300 with --simple "
           "and 20 with --screenshot or --video)")
-      ->group(group);
-  command.add_option("--record", options.record, "Recording to write, FILE.csv (default: run.csv in the run's folder)")->group(group);
-  command
-      .add_option("--record-interval", options.record_interval_s,
-                  "Time between recorded rows in s, rounded to whole steps (default: every step)")
-      ->group(group);
-  addList(command, "--record-signals", options.record_signals,
-          "Signals to record beside the commands (default: all); NAME_per_s and NAME_per_s2 are velocity and acceleration")
-      ->group(group);
-  addList(command, "--figure-signals", options.figure_signals, "Signals in the figure; NAME* stands for all that begin so")->group(group);
-  addList(command, "--summarise", options.summarise,
-          "Signals whose last value, mean, peak, trough, settling time and overshoot the verdict holds")
-      ->group(group);
-  command.add_option("--against", options.against, "Recording from which the summarised signals' RMSE is computed")->group(group);
-  command.add_option("--out", options.out, "Folder of the run (default: log/runs/<date-time>-<task>-<seed>)")->group(group);
-  command.add_flag("--overwrite", options.overwrite, "Replace a finished run in the folder of --out")->group(group);
-  command.add_flag("--print-config", options.print_config, "Print all parameters as TOML and exit")->group(group);
+      ->group(run_group);
+  addRecordOptions(command, options);
+  command.add_flag("--print-config", options.print_config, "Print all parameters as TOML and exit")->group(run_group);
   command
       .add_option("--window-log", options.window_log,
                   "Log the user's actions in the window to FILE: one line of JSON per key or click, with the state after it")

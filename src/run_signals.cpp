@@ -15,6 +15,13 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
+/// The angle for which this column is the target; empty for other columns.
+std::string angleOfTarget(const std::string& name) {
+  const std::string prefix = "target_", suffix = "_deg";
+  if (!name.starts_with(prefix) || !name.ends_with(suffix)) return "";
+  return "angle_" + name.substr(prefix.size());
+}
+
 [[noreturn]] void refuse(const char* option, const std::string& name, const std::vector<std::string>& known) {
   const std::string nearest = nearestName(name, known);
   throw BadParameter(option, name, "be a signal of this run" + (nearest.empty() ? std::string() : "; did you mean \"" + nearest + "\"?"));
@@ -36,7 +43,8 @@ nlohmann::json finiteOrNull(double value) {
 
 }  // namespace
 
-RunSignals::RunSignals(const Robot& robot, const Controller& controller, const std::vector<std::string>& chosen, double step_s)
+RunSignals::RunSignals(const Robot& robot, const Controller& controller, const std::vector<std::string>& chosen,
+                       const std::vector<std::string>& summarised, double step_s)
     : robot_(robot), controller_(controller), step_s_(step_s) {
   const std::vector<std::string> all = runColumns(robot, controller);
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -45,15 +53,26 @@ RunSignals::RunSignals(const Robot& robot, const Controller& controller, const s
     names_.push_back(all[i]);
     sources_.push_back({i, 0});
   }
-  for (const std::string& name : chosen) {
-    if (std::ranges::find(names_, name) != names_.end()) continue;
-    int derivative = 0;
-    const std::string source = integralOf(name, derivative);
-    const auto found = std::ranges::find(all, source);
-    if (found == all.end() || (derivative > 0 && !isMotion(name))) refuse("record-signals", name, all);
-    names_.push_back(name);
-    sources_.push_back({static_cast<std::size_t>(found - all.begin()), derivative});
+  for (const std::string& name : chosen) add(name, all, "record-signals");
+  const std::size_t chosen_count = names_.size();
+  for (const std::string& name : summarised) add(name, all, "summarise");
+  for (const std::string& name : all) {
+    const std::string angle = angleOfTarget(name);
+    if (std::ranges::find(all, angle) == all.end()) continue;
+    add(name, all, "record-signals");
+    add(angle, all, "record-signals");
   }
+  added_.assign(names_.begin() + static_cast<std::ptrdiff_t>(chosen_count), names_.end());
+}
+
+void RunSignals::add(const std::string& name, const std::vector<std::string>& all, const char* option) {
+  if (std::ranges::find(names_, name) != names_.end()) return;
+  int derivative = 0;
+  const std::string source = integralOf(name, derivative);
+  const auto found = std::ranges::find(all, source);
+  if (found == all.end() || (derivative > 0 && !isMotion(name))) refuse(option, name, all);
+  names_.push_back(name);
+  sources_.push_back({static_cast<std::size_t>(found - all.begin()), derivative});
 }
 
 double RunSignals::value(const Source& source) const {
@@ -107,13 +126,56 @@ nlohmann::json SignalSummary::summaryOf(const std::vector<double>& values) const
                          {"peak", finiteOrNull(peak)}, {"trough", finiteOrNull(trough)},
                          {"settling_time_s", nullptr}, {"overshoot", nullptr}};
   const double change = last - first;
-  if (!(std::abs(change) > 0)) return json;
-  double settled_s = time_s_.front();
+  if (!(std::abs(change) > smallestChange(values))) return json;
+  std::size_t settled = 0;
   for (std::size_t i = 0; i < values.size(); ++i)
-    if (std::abs(values[i] - last) > band_share * std::abs(change)) settled_s = time_s_[std::min(i + 1, values.size() - 1)];
-  json["settling_time_s"] = settled_s;
+    if (std::abs(values[i] - last) > band_share * std::abs(change)) settled = i + 1;
+  if (settled + 1 >= values.size()) return json;  // it still moves at the end
+  json["settling_time_s"] = time_s_[settled];
   json["overshoot"] = (change > 0 ? peak - last : last - trough) / std::abs(change);
   return json;
+}
+
+double smallestChange(const std::vector<double>& values) {
+  constexpr double deviations = 4, rounding_share = 1e-9;
+  constexpr double median_per_deviation = 0.6745;  ///< of |x|, x normally distributed
+  std::vector<double> finite, bends;
+  double largest = 0;
+  for (const double y : values) {
+    if (!std::isfinite(y)) continue;
+    finite.push_back(y);
+    largest = std::max(largest, std::abs(y));
+  }
+  for (std::size_t k = 2; k < finite.size(); ++k) bends.push_back(std::abs(finite[k] - 2 * finite[k - 1] + finite[k - 2]));
+  double deviation = 0;
+  if (!bends.empty()) {
+    const auto middle = bends.begin() + static_cast<std::ptrdiff_t>(bends.size() / 2);
+    std::nth_element(bends.begin(), middle, bends.end());
+    deviation = *middle / (median_per_deviation * std::sqrt(6.0));
+  }
+  return std::max(deviations * deviation, rounding_share * largest);
+}
+
+std::string summaryText(const nlohmann::json& signals) {
+  std::size_t width = std::string("signal").size();
+  bool has_rmse = false;
+  for (const auto& [name, figures] : signals.items()) {
+    width = std::max(width, name.size());
+    has_rmse = has_rmse || figures.contains("rmse");
+  }
+  std::vector<std::string> members = {"last", "mean", "peak", "trough", "settling_time_s", "overshoot"};
+  if (has_rmse) members.emplace_back("rmse");
+  std::string text = fmt::format("{:<{}}", "signal", width);
+  for (const std::string& member : members) text += fmt::format("  {:>{}}", member, std::max<std::size_t>(member.size(), 10));
+  for (const auto& [name, figures] : signals.items()) {
+    text += fmt::format("\n{:<{}}", name, width);
+    for (const std::string& member : members) {
+      const auto& value = figures[member];
+      text += fmt::format("  {:>{}}", value.is_null() ? "-" : fmt::format("{:.5g}", value.get<double>()),
+                          std::max<std::size_t>(member.size(), 10));
+    }
+  }
+  return text + "\n";
 }
 
 nlohmann::json SignalSummary::rmse(const std::vector<double>& values, const Recording& against, const Signal* measured) const {
@@ -146,12 +208,12 @@ nlohmann::json SignalSummary::json(const Recording* against) const {
 }
 
 Tracking::Tracking(const std::vector<std::string>& columns) {
-  const std::string prefix = "target_", suffix = "_deg";
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    if (!columns[i].starts_with(prefix) || !columns[i].ends_with(suffix)) continue;
-    const std::string joint = columns[i].substr(prefix.size(), columns[i].size() - prefix.size() - suffix.size());
-    const auto angle = std::ranges::find(columns, "angle_" + joint + "_deg");
-    if (angle != columns.end()) joints_.push_back({joint, static_cast<std::size_t>(angle - columns.begin()), i, {}});
+    const auto angle = std::ranges::find(columns, angleOfTarget(columns[i]));
+    if (angle == columns.end()) continue;
+    const std::string joint = angle->substr(std::string("angle_").size());
+    joints_.push_back(
+        {joint.substr(0, joint.size() - std::string("_deg").size()), static_cast<std::size_t>(angle - columns.begin()), i, {}});
   }
 }
 

@@ -19,11 +19,15 @@ namespace musclesim::command_line {
 class RunSignals {
  public:
   /// `chosen`: names of signals, with _per_s or _per_s2 for velocities and accelerations of lengths, angles and the hand; empty: all
-  /// signals, without velocities. Commands are always recorded, since no recording can do without them.
+  /// signals, without velocities. Commands are always recorded, since no recording can do without them. So is what the verdict needs: the
+  /// `summarised` signals, and targets of joints with the joints' angles.
   /// Throws BadParameter for a name that the run does not have; the message gives the nearest.
-  RunSignals(const Robot& robot, const Controller& controller, const std::vector<std::string>& chosen, double step_s);
+  RunSignals(const Robot& robot, const Controller& controller, const std::vector<std::string>& chosen,
+             const std::vector<std::string>& summarised, double step_s);
 
   const std::vector<std::string>& names() const { return names_; }
+  /// Signals that were not chosen and are recorded for the verdict.
+  const std::vector<std::string>& added() const { return added_; }
   /// The row of a state; to be called once per control step.
   std::vector<double> row(const State& state);
 
@@ -32,22 +36,24 @@ class RunSignals {
     std::size_t signal;
     int derivative;
   };
+  void add(const std::string& name, const std::vector<std::string>& all, const char* option);
   double value(const Source& source) const;
 
   const Robot& robot_;
   const Controller& controller_;
   double step_s_;
-  std::vector<std::string> names_;
+  std::vector<std::string> names_, added_;
   std::vector<Source> sources_;
   std::deque<std::vector<double>> past_;  ///< all signals, the newest first, at most four
 };
 
 /// What chosen signals come to over a run: per signal an object with
 ///     last, mean, peak (largest), trough (smallest),
-///     settling_time_s  time of the last reading that is farther from `last` than 2 % of the whole change, last - first; null without
-///     change overshoot        how far the signal goes beyond `last`, in the direction of the change and as a share of it; null without
-///     change rmse             against a recording, over the times of its readings within the run; straight lines between the run's
-///     readings
+///     settling_time_s  time of the last reading that is farther from `last` than 2 % of the whole change, last - first
+///     overshoot        how far the signal goes beyond `last`, in the direction of the change and as a share of it
+///     rmse             against a recording, over the times of its readings within the run; straight lines between the run's readings
+/// Settling time and overshoot are null if the change does not stand out from the signal's noise (smallestChange), and if the signal still
+/// leaves the band with the last reading but one.
 class SignalSummary {
  public:
   /// `columns`: the names of a run's columns. Throws BadParameter for a chosen name that is not among them.
@@ -65,6 +71,15 @@ class SignalSummary {
   std::vector<double> time_s_;
   std::vector<std::vector<double>> values_;  ///< per chosen signal
 };
+
+/// The same as a table for people.
+std::string summaryText(const nlohmann::json& signals);
+
+/// A change below this is noise or rounding: the largest of
+///     4 s,  s = median |y_k - 2 y_(k-1) + y_(k-2)| / (0.6745 sqrt(6))   deviation of white noise on a smooth signal
+///     1e-9 max |y|                                                      rounding
+/// in the unit of the readings y; readings that are not finite are left out.
+double smallestChange(const std::vector<double>& values);
 
 /// How far the joints of a run were from their targets (columns angle_<joint>_deg and target_<joint>_deg), in the second half of the run,
 /// when the beginning is over: per joint an object with rmse_deg, largest_deg and from_s.

@@ -25,6 +25,7 @@
 #include "musclesim/controller/task.h"
 #include "musclesim/controller/test_signal.h"
 #include "musclesim/diagnosis/diagnosis.h"
+#include "musclesim/diagnosis/proposed_recording.h"
 #include "musclesim/effect/catalogue.h"
 #include "musclesim/effect/effect.h"
 #include "musclesim/effect/effect_chain.h"

@@ -23,6 +23,7 @@ class Diagnosis:
         self.report: str = answer["report"]
         self.summary: str = answer["summary"]
         self.effects: list[dict[str, Any]] = answer["effects"]
+        self._files: dict[str, str] = answer["files"]
 
     @property
     def verdict(self) -> str:
@@ -40,11 +41,18 @@ class Diagnosis:
         return {f"{e['id']}@{e['component']}": e["probability"] for e in self.data.get("effects", [])}
 
     def save(self, folder: str | os.PathLike[str]) -> None:
-        """Writes diagnosis.json, report.html and effects.json into a folder, which is made if it is missing."""
+        """Writes the files of `musclesim diagnose` into a folder, which is made if it is missing.
+
+        diagnosis.json, report.html, effects.json; where there is something to write, next.csv with next.json (the proposed commands, a
+        recording without readings), attempt.json and nominal.toml. Those of an earlier diagnosis in the folder are removed.
+        """
         os.makedirs(folder, exist_ok=True)
+        for name in ("attempt.json", "nominal.toml", "next.csv", "next.json"):
+            if name not in self._files and os.path.exists(os.path.join(folder, name)):
+                os.remove(os.path.join(folder, name))
         found = {"format": "musclesim-effects-1", "effects": self.effects}
         for name, text in (("diagnosis.json", json.dumps(self.data, indent=2)), ("report.html", self.report),
-                           ("effects.json", json.dumps(found, indent=2))):
+                           ("effects.json", json.dumps(found, indent=2)), *self._files.items()):
             with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
                 file.write(text)
 
@@ -57,16 +65,17 @@ class Diagnosis:
 
 def diagnose(recordings: Recording | str | os.PathLike[str] | Iterable[Recording | str | os.PathLike[str]], *,
              candidates: Sequence[str] = (), exclude: Sequence[str] = (), tune: Sequence[str] = (), max_effects: int = 4, threads: int = 0,
-             seed: int = 1, earlier: Any = None, progress: Callable[[str, int, int], Any] | None = None, **model: Any) -> Diagnosis:
+             seed: int = 1, earlier: Any = None, without_active_effects: bool = False, progress: Callable[[str, int, int], Any] | None = None, **model: Any) -> Diagnosis:
     """Finds from recordings of one plant where they differ from the model and which effects explain it.
 
     recordings: Recordings or their files.  candidates, exclude: ids of effects to consider (default: the whole catalogue) or not to.
     tune: parameters of the model that nobody measured.  max_effects: largest number of effects in an explanation, 1..6.  threads: 0: one
-    per core; the answer does not depend on it.  earlier: effects of an earlier finding, to begin with.  progress(phase, done, expected):
+    per core; the answer does not depend on it.  earlier: effects of an earlier finding, to begin with.  without_active_effects: compare with
+    the model without the effects that the recordings' sidecars say are active, and look for them.  progress(phase, done, expected):
     called a few times a second by the calling thread; an exception that it raises ends the diagnosis.  **model: as for replay.
     Raises BadParameter, BadFile, Diverged, KeyboardInterrupt.
     """
     if isinstance(recordings, (Recording, str, os.PathLike)):
         recordings = [recordings]
     return Diagnosis(_musclesim._diagnose([_as_recording(one) for one in recordings], _checked(model), list(candidates), list(exclude),
-                                          list(tune), max_effects, threads, seed, earlier, progress))
+                                          list(tune), max_effects, threads, seed, earlier, without_active_effects, progress))

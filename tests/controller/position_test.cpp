@@ -91,6 +91,33 @@ TEST(PositionController, DoesNotWindUp) {
   EXPECT_LT(tracking.largest(5.5), 1) << "back within a second and a half";
 }
 
+TEST(PositionController, RefusesTargetsBeyondTheStops) {
+  const auto refusal = [](const std::vector<std::string>& parameters) { return messageOf<BadParameter>([&] { track(parameters, 0.1); }); };
+  EXPECT_TRUE(contains(refusal({"position.amplitude_elbow_deg=80"}), "position.amplitude_elbow_deg = 80 deg: must be at most 70 deg"));
+  EXPECT_TRUE(contains(refusal({"position.amplitude_elbow_deg=-31", "position.target_elbow_deg=40"}),
+                       "at most 30 deg about the middle of 40 deg: the stops of the joint are at -70 and 70 deg"));
+  EXPECT_TRUE(contains(refusal({"position.target_elbow_deg=71"}), "position.target_elbow_deg = 71 deg: must lie in -70 .. 70 deg"));
+  EXPECT_EQ(track({"position.amplitude_elbow_deg=70"}, 0.02).commands.size(), 2U) << "the stops themselves are allowed";
+}
+
+TEST(PositionController, SaysThatTargetsOfAFileAreBeyondTheStops) {
+  const std::string file = testing::TempDir() + "far.csv";
+  const auto notes = [&](const std::string& targets) {
+    std::ofstream(file) << "time_s,angle_elbow_deg\n0,0\n1," << targets << "\n";
+    Simulation simulation;
+    Robot& robot = simulation.build("elbow");
+    ControllerRequest request{simulation.parameters()};
+    request.muscle_count = robot.actuatorCount();
+    request.robot = &robot;
+    request.targets_file = file;
+    std::string all;
+    for (const std::string& note : makeController("position", request)->notes()) all += note + "\n";
+    return all;
+  };
+  EXPECT_TRUE(contains(notes("-85"), "the targets of joint elbow run from -85 to 0 degrees, but its stops allow -70 .. 70"));
+  EXPECT_FALSE(contains(notes("69"), "stops"));
+}
+
 TEST(PositionController, IsRefusedWithoutAntagonists) {
   Simulation simulation;
   Robot& rig = simulation.build("rig");

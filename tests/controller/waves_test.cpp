@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -81,6 +82,36 @@ TEST(Waves, BinarySequencesHaveMaximalLength) {
   }
   EXPECT_EQ(BinarySequence(6, 10).at(3), sequence.at(13));
   EXPECT_TRUE(contains(messageOf<BadParameter>([] { BinarySequence(13); }), "13"));
+}
+
+TEST(Waves, ThePeakOfAMultisineIsThatOfAllItsPoints) {
+  for (const auto& [first, last] : {std::pair{1, 1}, {3, 8}, {1, 40}, {97, 101}, {211, 211}, {5, 127}}) {
+    std::vector<int> harmonics;
+    for (int m = first; m <= last; ++m) harmonics.push_back(m);
+    const std::vector<double> phases = Multisine::schroederPhases(harmonics.size());
+    double largest = 0, start = 0;
+    for (int i = 0; i < 64 * last; ++i) {
+      double sum = 0;
+      for (std::size_t k = 0; k < harmonics.size(); ++k) sum += std::cos(2 * pi * harmonics[k] * i / (64.0 * last) + phases[k]);
+      largest = std::max(largest, std::abs(sum));
+      if (i == 0) start = sum;
+    }
+    EXPECT_NEAR(Multisine(harmonics, phases, 10).at(0), start / largest, 1e-9) << first << " .. " << last;
+  }
+}
+
+TEST(Waves, ThePeakOfAThousandFrequenciesIsFoundFast) {
+  using Clock = std::chrono::steady_clock;
+  std::vector<int> harmonics;
+  for (int m = 1; m <= 1009; ++m) harmonics.push_back(m);
+  const auto begin = Clock::now();
+  const Multisine wave(harmonics, Multisine::schroederPhases(harmonics.size()), 100);
+  const auto made = Clock::now();
+  double sum = 0;
+  for (int i = 0; i < 1000; ++i) sum += wave.at(0.1 * i);
+  const auto evaluated = Clock::now();
+  EXPECT_LT(std::abs(sum), 1000);
+  EXPECT_LT((made - begin) / 8, evaluated - made) << "its 64576 points one by one would take as long as 64576 evaluations";
 }
 
 TEST(Waves, MultisineHasItsBandAndNoMore) {

@@ -103,6 +103,10 @@ TEST(StaticPoints, TakesTheMappingOfATable) {
   EXPECT_TRUE(contains(refusal(table(), options), "static points have no time"));
   map("[columns]\npressure_0_kPa = \"p\"\n");
   EXPECT_TRUE(contains(refusal(table(), options), "columns.pressure_0_kPa: static points have pressure"));
+  EXPECT_TRUE(contains(refusal(table(), options), "map.toml:2:1: columns.pressure_0_kPa"));
+  map("[columns]\nforce_N = \"forse_N\"\n");
+  EXPECT_TRUE(
+      contains(refusal(table(), options), "map.toml:2:1: columns.force_N: data.csv:1: there is no column \"forse_N\"; did you mean"));
   std::filesystem::remove_all(folder);
 }
 

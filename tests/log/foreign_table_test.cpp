@@ -250,7 +250,7 @@ TEST_F(ForeignTable, TwoClocksInOneTable) {
 
 TEST_F(ForeignTable, ABeginningBeforeTheTable) {
   EXPECT_TRUE(contains(refusal("t,u,x\n0,1,250\n1,2,249\n", plain + "[rows]\nstep_s = 0.5\nfrom_s = -2\n"),
-                       "rows.from_s = -2: the table begins at 0 s; for a rest before it give rows.before_s"));
+                       "rows.from_s: -2: the table begins at 0 s; for a rest before it give rows.before_s"));
 }
 
 TEST_F(ForeignTable, MergedTopicsHoldCommandsAndKeepReadings) {
@@ -299,6 +299,62 @@ TEST_F(ForeignTable, MappingsThatCannotBe) {
   EXPECT_TRUE(contains(refusal(table, "[columns]\ntime_s = \"t\"\ntime_ms = \"t\"\ncommand_0 = \"u\"\n"), "the time is given twice"));
 }
 
+TEST_F(ForeignTable, FaultsOfValuesHaveTheirPlaceInTheTableOrInTheMapping) {
+  const std::string table = "t,u,x\n0,3,250\n0.1,700,249\n";
+  EXPECT_TRUE(contains(refusal(table, plain), "data.csv:3:5: column u: \"700\" becomes command_0_bar = 700 (116.6"));
+  EXPECT_TRUE(contains(refusal(table, plain + "[rows]\nbefore_s = 1\n"), "data.csv:3:5: column u: \"700\" becomes"));
+  EXPECT_TRUE(contains(refusal("t,u,x\n0,700,250\n", plain + "[rows]\nbefore_s = 1\n"), "data.csv:2:3: column u: \"700\" becomes"));
+  EXPECT_TRUE(
+      contains(refusal("t,u,x\n0,3,250\n1,700,250\n2,3,250\n", plain + "[rows]\nfrom_s = 1\nbefore_s = 1\n"), "data.csv:3:3: column u"))
+      << "the rest before the first row that is used";
+  write("other.csv", "when,w\n0,3\n0.1,8\n");
+  EXPECT_TRUE(contains(
+      refusal("t,x\n0,250\n0.1,249\n",
+              "[columns]\ntime_s = \"t\"\nlength_0_mm = \"x\"\ncommand_0_bar = { from = \"w\", table = \"other.csv\", time = \"when\" }\n"),
+      "other.csv:3:5: column w: \"8\" becomes command_0_bar = 8"));
+  EXPECT_TRUE(contains(refusal(table, "[columns]\ntime_s = \"t\"\ncommand_0_bar = { value = 7 }\nlength_0_mm = \"x\"\n"),
+                       "map.toml:5:1: columns.command_0_bar: command_0_bar = 7"));
+  EXPECT_TRUE(contains(refusal("t,u,x\n0,3,250\n", plain + "[rows]\nbefore_s = 1\nbefore = { command_0_bar = 9 }\n"),
+                       "map.toml:9:12: rows.before.command_0_bar: command_0_bar = 9"));
+}
+
+TEST_F(ForeignTable, FaultsOfTheMappingHaveTheirPlaceInIt) {
+  const std::string table = "t,valve,x\n0,3,250\n0.1,3,249\n", data = (folder_ / "data.csv").string();
+  const auto columns = [](const std::string& time, const std::string& command) {
+    return "[columns]\ntime_s = " + time + "\n" + command + "\nlength_0_mm = \"x\"\n";
+  };
+  for (const auto& [mapping, message] : std::vector<std::pair<std::string, std::string>>{
+           {columns("\"t\"", "comand_0_bar = \"valve\""), "map.toml:5:1: columns.comand_0_bar: column \"comand_0_bar\": unknown quantity"},
+           {columns("\"t\"", "comand_0_bar = \"valve\""), "did you mean \"command_0_bar\"?"},
+           {columns("\"t\"", "command_0_bar = \"vlave\""), "map.toml:5:1: columns.command_0_bar: " + data +
+                                                               ":1: there is no column \"vlave\"; "
+                                                               "did you mean \"valve\"?"},
+           {columns("\"t\"", "command_0_bar = { from = \"u\", table = \"othr.csv\" }"), "map.toml:5:31: columns.command_0_bar.table: "},
+           {columns("{ from = 7 }", "command_0_bar = \"valve\""), "map.toml:4:1: columns.time_s: " + data + ":1: there is no column 7"},
+           {columns("\"t\"", "command_0_V = \"valve\""), "map.toml:5:1: columns.command_0_V: command_0_V: V can be converted"},
+           {columns("\"t\"", "command_1_bar = \"valve\""), "map.toml:3:2: columns: there is no column command_0"},
+           {columns("\"t\"", "command_0 = \"valve\"\ncommand_0_bar = \"valve\""), "columns.command_0_bar: is the same column as command_0"},
+           {"physics = \"moon\"\n" + columns("\"t\"", "command_0 = { value = 0 }"), "map.toml:3:1: physics = \"moon\": must be"},
+           {"noise_std = { lenth_0_mm = 1 }\n" + columns("\"t\"", "command_0 = { value = 0 }"), "map.toml:3:1: noise_std: column"},
+           {columns("\"t\"", "command_0 = { value = 0 }") + "[noise_std]\nlength_0_mm = -1\n", "map.toml:7:2: noise_std.length_0_mm = -1"},
+           {"[tabel]\nseparator = \";\"\n" + columns("\"t\"", "command_0 = { value = 0 }"),
+            "map.toml:3:2: tabel: a mapping has no such section; did you mean [table]?"},
+           {columns("\"t\"", "command_0 = { value = 0 }") + "[rows]\nfrom_s = -3\n", "map.toml:8:1: rows.from_s: -3: the table begins"}})
+    EXPECT_TRUE(contains(refusal(table, mapping), message)) << mapping;
+  const Recording r = import(table, "presure_full_scale_kPa = 600\n" + columns("\"t\"", "command_0 = { value = 0 }"));
+  EXPECT_TRUE(hasNote(r, "\"presure_full_scale_kPa\" (did you mean \"pressure_full_scale_kPa\"?)"));
+}
+
+TEST_F(ForeignTable, SaysHowOtherSeparatorsAndDecimalsAreRead) {
+  const std::string table = "t;u;x\n0;0,6;250,5\n";
+  EXPECT_TRUE(contains(refusal(table, plain), "data.csv:1:2: cells must be separated by commas"));
+  EXPECT_TRUE(contains(refusal(table, plain), "needs separator = \";\""));
+  EXPECT_TRUE(contains(refusal(table, "[table]\nseparator = \";\"\n" + plain), "data.csv:2:3: column u: \"0,6\" is not a number"));
+  EXPECT_TRUE(contains(refusal(table, "[table]\nseparator = \";\"\n" + plain), "needs decimal = \",\""));
+  EXPECT_TRUE(contains(refusal("t,u,x\n0,0,0,6,250,5\n", plain), "save it with semicolons between the cells"));
+  EXPECT_TRUE(contains(refusal("t;u;x\n0;0.6;250\n", "[table]\nseparator = \";\"\ndecimal = \",\"\n" + plain), "needs decimal = \".\""));
+}
+
 TEST_F(ForeignTable, LookingShowsFormatColumnsAndClock) {
   const TableLook look = lookAtTable(
       write("look.csv", "Logger 3\nt [ms];p [hPa];name;F (N)\n0;1013,25;a;--\n10;1014,5;b;1,5\n20;1015;c;2\n500;1016;d;3\n510;1016;e;3\n"));
@@ -337,6 +393,17 @@ TEST_F(ForeignTable, LookingRecognisesOtherWritings) {
   EXPECT_EQ(dates.clock->clock.format, "%Y-%m-%d %H:%M:%S");
   EXPECT_EQ(dates.clock->date_column, "d");
   EXPECT_NEAR(dates.clock->duration_s, 0.01, 1e-6);
+  for (const auto& [first, format] : {std::pair<std::string, std::string>{"2026-01-31T10:00:00.5", "%Y-%m-%dT%H:%M:%S"},
+                                      {"2026-01-31T10:00:00Z", "%Y-%m-%dT%H:%M:%S%z"},
+                                      {"2026-01-31T10:00:00.25+01:00", "%Y-%m-%dT%H:%M:%S%z"},
+                                      {"31.01.2026 10:00:00", "%d.%m.%Y %H:%M:%S"},
+                                      {"01/31/2026 10:00:00", "%m/%d/%Y %H:%M:%S"},
+                                      {"31/01/2026 10:00:00", "%d/%m/%Y %H:%M:%S"},
+                                      {"10:00:00.125", "%H:%M:%S"}}) {
+    const TableLook look = lookAtTable(write("z.csv", "t,u\n" + first + ",1\n" + first + ",2\n"));
+    ASSERT_TRUE(look.clock) << first;
+    EXPECT_EQ(look.clock->clock.format, format) << first;
+  }
   const TableLook counter = lookAtTable(write("d.csv", "t,u\n4294.940,1\n4294.950,1\n0.0027,2\n0.0127,2\n"));
   EXPECT_EQ(counter.clock->clock.wraps_at_s, 4294.967296);
   const TableLook numpy = lookAtTable(write("e.txt", "# t u x\n0 1 250\n0.1 1 248\n0.2 2 247\n"));
@@ -344,21 +411,55 @@ TEST_F(ForeignTable, LookingRecognisesOtherWritings) {
   EXPECT_THROW(lookAtTable(write("f.txt", "no table\nat all\n")), BadFile);
 }
 
-TEST_F(ForeignTable, FilesOfRealLoggersImportAsTheyWereWritten) {
-  const fs::path real = sharedFolder() / "data" / "real";
-  if (!fs::exists(real / "bellows")) GTEST_SKIP() << "no reference data at " << real;
-  const std::string examples = std::string(MUSCLESIM_IMPORT_EXAMPLES) + "/";
-  const Recording bellows = importTable((real / "bellows" / "16067V.txt").string(), readImportMapping(examples + "bellows.toml"));
-  const Recording as_imported = readRecording((real / "bellows" / "rec_7.csv").string());
-  ASSERT_EQ(bellows.time_s.size(), as_imported.time_s.size());
-  for (const char* name : {"angle_elbow_deg", "pressure_0", "pressure_1", "command_0", "command_1"})
-    for (std::size_t row = 0; row < bellows.time_s.size(); ++row)
-      ASSERT_NEAR(values(bellows, name)[row], values(as_imported, name)[row], 1e-9) << name << " " << row;
-  const Recording tensile = importTable((real / "quadsegrity" / "Big3.csv").string(), readImportMapping(examples + "tensile_test.toml"));
-  EXPECT_NEAR(tensile.time_s.back(), 78.7, 1e-9);
-  EXPECT_NEAR(values(tensile, "length_0_mm").front(), 660, 1e-9);
-  EXPECT_NEAR(values(tensile, "force_0_N").front(), 0.01866, 1e-9);
-  EXPECT_EQ(values(tensile, "command_0").front(), 0.5);
+TEST_F(ForeignTable, LookingCountsMissingReadingsAsMissing) {
+  const TableLook nan = lookAtTable(write("a.csv", "t,x\n0,NaN\n1,nan\n2,-nan(ind)\n3,1.#QNAN\n4,5\n5,6\n"));
+  EXPECT_TRUE(nan.columns[1].is_number);
+  EXPECT_EQ(nan.columns[1].missing_count, 4U);
+  EXPECT_TRUE(nan.format.missing.empty()) << "the reader knows these words";
+  const TableLook marks = lookAtTable(write("b.csv", "t,x\n0,--\n1,--\n2,--\n3,5\n4,6\n"));
+  EXPECT_EQ(marks.format.missing, (std::vector<std::string>{"--"}));
+  EXPECT_TRUE(contains(lookText(marks), "5 .. 6, 3 missing"));
+  const TableLook beyond = lookAtTable(write("c.csv", "t,x\n0,1\n1,inf\n2,2\n3,5\n4,6\n"));
+  EXPECT_EQ(beyond.format.missing, (std::vector<std::string>{"inf"})) << "the reader refuses infinite readings";
+  const TableLook events = lookAtTable(write("d.csv", "t,x,event\n0,1,start\n1,2,\n2,2,\n3,5,\n4,6,stop\n"));
+  EXPECT_TRUE(events.format.missing.empty()) << "a column of words has no readings to miss";
+}
+
+TEST_F(ForeignTable, LookingSaysWhatIsWrongWithAClock) {
+  const TableLook bad = lookAtTable(write("a.csv", "t,x\n0,1\n0.1,2\nERR,3\n0.3,4\n0.4,5\n"));
+  ASSERT_TRUE(bad.clock);
+  EXPECT_TRUE(bad.clock->fault.empty());
+  EXPECT_NEAR(bad.clock->duration_s, 0.4, 1e-12);
+  EXPECT_EQ(bad.format.missing, (std::vector<std::string>{"ERR"}));
+  EXPECT_FALSE(contains(lookText(bad), "backwards"));
+  const TableLook words = lookAtTable(write("b.csv", "t,x\n0,1\n0.1,2\na1,3\nb2,4\nc3,3\nd4,3\ne5,3\n0.7,5\n0.8,6\n0.9,6\n1,6\n"));
+  EXPECT_TRUE(contains(words.clock->fault, "line 4: column t: \"a1\" is not a number"));
+  const TableLook back = lookAtTable(write("c.csv", "t,x\n0,1\n1,2\n2,3\n0.5,4\n1.5,5\n2.5,5\n"));
+  EXPECT_TRUE(contains(lookText(back), "clock, but line 5: time runs backwards in data row 4 (line 5): 0.5 after 2"));
+}
+
+TEST_F(ForeignTable, AColumnInAnotherUnitIsNoClock) {
+  EXPECT_FALSE(lookAtTable(write("a.csv", "motion,angle_deg\na,1\nb,2\nc,3\n")).clock);
+  EXPECT_TRUE(lookAtTable(write("b.csv", "motion,n\na,1\nb,2\nc,3\n")).clock);
+}
+
+TEST_F(ForeignTable, LookingMentionsWhatIsThereTwice) {
+  const TableLook look = lookAtTable(
+      write("a.csv", "time [s],p [bar],p2 [bar],x [mm],x [mm]\n0,2,2,3,5\n0,2,2,3,5\n0,2,2,3,5\n1,2,2,3,5\n1,2,2,3,5\n1,2,2,3,5\n"));
+  ASSERT_TRUE(look.clock) << "a coarse clock";
+  EXPECT_TRUE(contains(lookText(look), "4 rows have the time of the row before"));
+  EXPECT_TRUE(contains(lookText(look), "another column has the same name: refer to it by its number"));
+  const std::string mapping = mappingText(look);
+  for (const char* line : {"# pressure_0_bar = \"p [bar]\"", "# pressure_1_bar = \"p2 [bar]\"", "# length_0_mm = { from = 4 }",
+                           "# length_1_mm = { from = 5 }"})
+    EXPECT_TRUE(contains(mapping, line));
+}
+
+TEST_F(ForeignTable, LookingShowsRangesThatCanBeRead) {
+  const TableLook epoch = lookAtTable(write("a.csv", "time,x\n1741560950.25,1\n1741560955.25,2\n1741560960.25,3\n"));
+  EXPECT_TRUE(contains(lookText(epoch), "1741560950.25 .. 1741560960.25 (2025-03-09 22:55:50 .. 2025-03-09 22:56:00 UTC)"));
+  const TableLook counter = lookAtTable(write("b.csv", "time_us,x\n10000000,1\n10010000,2\n10020000,3\n"));
+  EXPECT_TRUE(contains(lookText(counter), "10000000 .. 10020000 us"));
 }
 
 TEST_F(ForeignTable, CommandsOfAClockThatIsRoundedAreThoseOfTheirRows) {

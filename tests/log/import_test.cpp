@@ -92,7 +92,7 @@ TEST_F(ImportTest, NamesTheTableWhoseClockRunsBackwards) {
   const std::string mapping = std::string(head) +
                               "[columns]\ntime_s = \"t\"\nlength_0_mm = \"l\"\n[columns.command_0]\nfrom = \"u\"\n"
                               "table = \"commands.csv\"\ntime = \"when\"\n";
-  EXPECT_TRUE(contains(messageOf<BadFile>([&] { import("t,l\n0,200\n1,190\n", mapping); }), "commands.csv: time runs backwards"));
+  EXPECT_TRUE(contains(messageOf<BadFile>([&] { import("t,l\n0,200\n1,190\n", mapping); }), "commands.csv:3:1: time runs backwards"));
 }
 
 TEST_F(ImportTest, RowsWithTheTimeOfTheRowBeforeAreLeftOutAndSaid) {

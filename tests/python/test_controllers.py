@@ -116,7 +116,7 @@ class Controllers(unittest.TestCase):
     def test_wrong_outputs(self):
         for number, (result, pattern) in enumerate((([0.5], r"output = shape \(1,\): must be \(2,\)"),
                                                     ([0.5, float("nan")], r"output\[1\] = nan: must lie in 0 \.\. 1"),
-                                                    (None, "output"), ("fast", "an array of numbers, not str"), ([2, 0], r"output\[0\] = 2"))):
+                                                    (None, r"returned None: return an array of 2 pressures"), ("fast", "an array of numbers, not str"), ([2, 0], r"output\[0\] = 2"))):
             self.file = os.path.join(self.folder.name, f"run{number}.csv")
             self.expect(musclesim.BadParameter, pattern, Failing(0.5, lambda result=result: result), 51)
 
@@ -133,6 +133,30 @@ class Controllers(unittest.TestCase):
 
         with self.assertRaisesRegex(musclesim.BadParameter, "dict of numbers"):
             musclesim.run("elbow", Wrong(), 0.1, parameters=line)
+
+    def test_names_of_further_signals(self):
+        class Names(Swing):
+            def __init__(self, *dicts):
+                super().__init__()
+                self.dicts = list(dicts)
+
+            def signals(self):
+                return self.dicts.pop(0) if len(self.dicts) > 1 else self.dicts[0]
+
+        for dicts, pattern in (([{"speed": 1.0}], 'column "speed": unknown quantity'), ([{"length_0_mm": 1.0}], "length_0_mm is given twice"),
+                               ([{"target_elbow_rad": 1.0}], "canonical unit: target_elbow_deg"),
+                               ([{"target_a_deg": 1.0}] * 4 + [{"target_b_deg": 1.0}], "the same names in the same order"),
+                               ([{"target_a_deg": 1.0}] * 4 + [{}], "the same names in the same order")):
+            with self.assertRaisesRegex(musclesim.BadParameter, pattern):
+                musclesim.run("elbow", Names(*dicts), 0.1, parameters=line)
+
+    def test_columns_that_come_and_go(self):
+        class Lively(Swing):
+            def activity(self):
+                return None if len(self.states) < 3 else 0.5
+
+        with self.assertRaisesRegex(musclesim.BadParameter, "at all times"):
+            musclesim.run("elbow", Lively(), 0.1, parameters=line)
 
     def test_options_that_a_controller_does_not_heed(self):
         for controller, named in (("hold", {"commands": "a.csv"}), ("hold", {"targets": "a.csv"}), ("schedule", {"interpolate": "cubic"})):

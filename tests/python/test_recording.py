@@ -78,8 +78,8 @@ class Recordings(unittest.TestCase):
                 musclesim.Recording.from_dict(arrays, robot="rig")
         with self.assertRaisesRegex(musclesim.BadFile, "physics"):
             musclesim.Recording.from_dict(small(), robot="rig", physics="moon")
-        with self.assertRaises(KeyError):
-            musclesim.Recording.from_dict(small(), robot="rig")["force_0_N"]
+        with self.assertRaisesRegex(KeyError, "there is no column lenght_0_mm; did you mean length_0_mm.; the columns are time_s, command_0"):
+            musclesim.Recording.from_dict(small(), robot="rig")["lenght_0_mm"]
 
     def test_replay_refuses(self):
         recording = musclesim.Recording.from_dict(small(), robot="elbow")

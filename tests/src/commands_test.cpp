@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -164,24 +165,42 @@ TEST_F(Commands, RecordsChosenSignalsAndTheirVelocities) {
             0);
   const Recording chosen = recording("a.csv");
   ASSERT_EQ(chosen.signals.size(), 5u) << "two commands and these";
-  const auto& y = chosen.find("angle_elbow_deg")->values;
   const auto& v = chosen.find("angle_elbow_deg_per_s")->values;
   const auto& a = chosen.find("angle_elbow_deg_per_s2")->values;
   EXPECT_TRUE(std::isnan(v[1]) && !std::isnan(v[2]) && std::isnan(a[2]) && !std::isnan(a[3]));
-  for (std::size_t k = 3; k < y.size(); ++k) {
-    EXPECT_NEAR(v[k], (3 * y[k] - 4 * y[k - 1] + y[k - 2]) / 0.02, 1e-9);
-    EXPECT_NEAR(a[k], (2 * y[k] - 5 * y[k - 1] + 4 * y[k - 2] - y[k - 3]) / 1e-4, 1e-7);
-  }
   const ProgramResult wrong = simulate("elbow", {"--record-signals", "angle_elbw_deg", "--duration", "0.1"});
   EXPECT_EQ(wrong.status, 2);
   EXPECT_TRUE(contains(wrong.err, "did you mean \"angle_elbow_deg\"")) << wrong.err;
   EXPECT_EQ(run({"replay", "a.csv", "--quiet"}).status, 0) << "velocities are no signals of the model";
 }
 
+TEST_F(Commands, VelocitiesAndAccelerationsAreThoseOfTheMotion) {
+  ASSERT_EQ(simulate("rig", {"--controller", "sine", "--muscle", "line", "--duration", "3", "--record", "a.csv", "--record-signals",
+                             "length_0_mm,length_0_mm_per_s,length_0_mm_per_s2"})
+                .status,
+            0);
+  const Recording smooth = recording("a.csv");
+  const auto& y = smooth.find("length_0_mm")->values;
+  const auto& v = smooth.find("length_0_mm_per_s")->values;
+  const auto& a = smooth.find("length_0_mm_per_s2")->values;
+  // Against central differences, which know the reading after the row and are not what the program computes.
+  double v_squares = 0, v_errors = 0, a_squares = 0, a_errors = 0;
+  for (std::size_t k = 20; k + 1 < y.size(); ++k) {
+    const double speed = (y[k + 1] - y[k - 1]) / 0.02, acceleration = (y[k + 1] - 2 * y[k] + y[k - 1]) / 1e-4;
+    v_squares += speed * speed, v_errors += std::pow(v[k] - speed, 2);
+    a_squares += acceleration * acceleration, a_errors += std::pow(a[k] - acceleration, 2);
+  }
+  EXPECT_GT(v_squares / static_cast<double>(y.size()), 100) << "the load moves, RMS 10 mm/s";
+  EXPECT_LT(std::sqrt(v_errors / v_squares), 0.01);
+  EXPECT_LT(std::sqrt(a_errors / a_squares), 0.1);
+}
+
 TEST_F(Commands, SummarisesSignals) {
   write("up.csv", "time_s,command_0\n0,0.3\n0.5,0.5\n6,0.5\n");
+  const auto begin = std::chrono::steady_clock::now();
   const ProgramResult result =
       simulate("rig", {"--commands", "up.csv", "--record", "a.csv", "--summarise", "command_0,length_0_mm", "--json"});
+  const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   ASSERT_EQ(result.status, 0) << result.err;
   const auto json = verdict(result);
   const Recording run = recording("a.csv");
@@ -199,7 +218,7 @@ TEST_F(Commands, SummarisesSignals) {
   for (std::size_t row = 0; row < length.size(); ++row)
     if (run.time_s[row] >= settled_s - 1e-9) EXPECT_LE(std::abs(length[row] - length.back()), 0.02 * std::abs(change)) << row;
   EXPECT_EQ(json["signals"]["command_0"]["settling_time_s"], 0.5);
-  EXPECT_GT(json["real_time_factor"].get<double>(), 0.01);
+  EXPECT_GT(json["real_time_factor"].get<double>(), 6 / elapsed_s) << "the run is a part of the program's time";
   EXPECT_NEAR(json["real_time_factor"].get<double>() * json["wall_s"].get<double>(), 6, 1e-6) << "simulated over wall";
   const ProgramResult heavier = simulate("rig", {"--commands", "up.csv", "--record", "b.csv", "--set", "rig.load_kg=2.2", "--summarise",
                                                  "length_0_mm", "--against", "a.csv", "--json"});
@@ -209,6 +228,60 @@ TEST_F(Commands, SummarisesSignals) {
   EXPECT_NEAR(verdict(heavier)["signals"]["length_0_mm"]["rmse"].get<double>(), std::sqrt(squares / static_cast<double>(length.size())),
               1e-9);
   EXPECT_TRUE(contains(simulate("rig", {"--summarise", "length_1_mm", "--duration", "0.1"}).err, "length_0_mm"));
+}
+
+TEST_F(Commands, PrintsTheSummaryForPeople) {
+  write("up.csv", "time_s,command_0\n0,0.3\n0.5,0.5\n6,0.5\n");
+  const ProgramResult result = simulate("rig", {"--commands", "up.csv", "--record", "a.csv", "--summarise", "command_0,length_0_mm"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_TRUE(contains(result.out, "signal             last        mean        peak      trough  settling_time_s   overshoot\n"))
+      << result.out;
+  EXPECT_TRUE(contains(result.out, "command_0           0.5")) << result.out;
+  EXPECT_FALSE(contains(result.out, "rmse"));
+}
+
+TEST_F(Commands, AChangeWithinTheNoiseHasNoOvershoot) {
+  const std::vector<std::string> held = {"--controller",
+                                         "hold",
+                                         "--duration",
+                                         "2",
+                                         "--record",
+                                         "a.csv",
+                                         "--summarise",
+                                         "length_0_mm,force_0_N",
+                                         "--json",
+                                         "--record-signals",
+                                         "pressure_0",
+                                         "--set",
+                                         "sensor.length_noise_mm=0.05"};
+  const ProgramResult result = simulate("rig", held);
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto summary = verdict(result)["signals"]["length_0_mm"];
+  EXPECT_GT(summary["peak"].get<double>() - summary["trough"].get<double>(), 0.1) << "noise";
+  EXPECT_TRUE(summary["overshoot"].is_null()) << summary;
+  EXPECT_TRUE(summary["settling_time_s"].is_null()) << summary;
+  EXPECT_TRUE(contains(result.err, "also recorded, because the verdict needs them: length_0_mm, force_0_N")) << result.err;
+}
+
+TEST_F(Commands, WhatStillMovesHasNotSettled) {
+  const ProgramResult result = simulate("elbow", {"--controller", "sine", "--muscle", "line", "--duration", "4.25", "--record", "a.csv",
+                                                  "--summarise", "command_0", "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto summary = verdict(result)["signals"]["command_0"];
+  EXPECT_NE(summary["peak"], summary["last"]);
+  EXPECT_TRUE(summary["settling_time_s"].is_null() && summary["overshoot"].is_null()) << summary;
+}
+
+TEST_F(Commands, WhatTheVerdictNeedsIsRecordedWithChosenSignals) {
+  const ProgramResult result = simulate("elbow", {"--controller", "position", "--duration", "0.2", "--record", "a.csv", "--record-signals",
+                                                  "pressure_0", "--summarise", "angle_elbow_deg_per_s", "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_TRUE(verdict(result)["tracking"].contains("elbow"));
+  EXPECT_TRUE(verdict(result)["signals"].contains("angle_elbow_deg_per_s"));
+  const Recording run = recording("a.csv");
+  for (const char* name : {"target_elbow_deg", "angle_elbow_deg", "angle_elbow_deg_per_s", "pressure_0"})
+    EXPECT_TRUE(run.find(name)) << name;
+  EXPECT_FALSE(run.find("length_0_mm"));
 }
 
 TEST_F(Commands, DrawsChosenSignals) {

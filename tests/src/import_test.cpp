@@ -43,6 +43,19 @@ TEST_F(ImportCommand, MakesTheFolderAndWantsATable) {
   EXPECT_FALSE(fs::exists(folder_ / "out.txt"));
 }
 
+TEST_F(ImportCommand, ReplacesARecordingOnlyWhenItIsTold) {
+  ASSERT_EQ(runProgram({"import", "table.csv", "map.toml", "out.csv"}, folder_).status, 0);
+  std::ofstream(folder_ / "table.csv") << "t,u,l\n0,0.3,240\n0.5,0.3,240\n";
+  const ProgramResult again = runProgram({"import", "table.csv", "map.toml", "out.csv"}, folder_);
+  EXPECT_EQ(again.status, 2);
+  EXPECT_TRUE(contains(again.err, "out.csv exists: choose another name, or --overwrite it")) << again.err;
+  EXPECT_EQ(readRecording((folder_ / "out.csv").string()).time_s.size(), 3U);
+  EXPECT_EQ(runProgram({"import", "table.csv", "map.toml", "out.csv", "--overwrite"}, folder_).status, 0);
+  EXPECT_EQ(readRecording((folder_ / "out.csv").string()).time_s.size(), 2U);
+  std::ofstream(folder_ / "half.json") << "{}";
+  EXPECT_EQ(runProgram({"import", "table.csv", "map.toml", "half.csv"}, folder_).status, 2) << "a sidecar alone is not replaced either";
+}
+
 TEST_F(ImportCommand, DoesNotWriteOverATableOfTheMapping) {
   std::ofstream(folder_ / "other.csv") << "when,x\n0,0.2\n1,0.6\n";
   std::ofstream(folder_ / "map.toml") << "robot = \"rig\"\n[columns]\ntime_s = \"t\"\nlength_0_mm = \"l\"\n[columns.command_0]\nfrom = "

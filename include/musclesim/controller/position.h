@@ -41,8 +41,8 @@ struct Antagonism;
 /// or target_y_mm, with straight lines in between. Channels are the request's or the robot's antagonists (antagonistsOf).
 class PositionController final : public Controller {
  public:
-  /// Throws BadParameter without a robot, without antagonists, for a channel whose joint is not known, and as Target::make. Throws BadFile
-  /// for a targets file that lacks a target.
+  /// Throws BadParameter without a robot, without antagonists, for a channel whose joint is not known, for a target beyond the stops of
+  /// its joint (from a file: a note), and as Target::make. Throws BadFile for a targets file that lacks a target.
   explicit PositionController(const ControllerRequest& request);
   ~PositionController() override;
   Action output(const State& state) override;
@@ -68,6 +68,7 @@ class PositionController final : public Controller {
   };
   void addLoops(const ControllerRequest& request, const std::vector<Channel>& channels);
   void setTargets(const ControllerRequest& request);
+  void noteTargetsBeyondStops(const Loop& loop, const std::vector<double>& targets_deg, const Robot& robot);
   void setGains(Parameters& parameters);
   Gains usualGains(const Loop& loop) const;
   Antagonism antagonism(const Loop& loop) const;
@@ -85,6 +86,7 @@ class PositionController final : public Controller {
   bool is_height_ = false, feeds_forward_ = false, has_begun_ = false, has_error_ = false;
   std::optional<double> end_s_;
   std::string feed_forward_note_;
+  std::vector<std::string> target_notes_;
 };
 
 }  // namespace musclesim

@@ -47,6 +47,8 @@ class CsvReader {
   /// The line that readRow read last (1 = first line of the file).
   int line() const { return line_; }
 
+  /// Whether a cell's text stands for no reading.
+  bool isMissing(std::string_view text) const;
   /// The cell's number; NaN for an empty cell, "nan" or a missing reading. Throws BadFile for text, infinities and numbers that no double
   /// can hold.
   double number(const CsvCell& cell, std::string_view column_name) const;
@@ -58,7 +60,6 @@ class CsvReader {
   /// nextLine without comments and, in foreign tables, empty lines.
   bool nextContent(std::string_view& line);
   bool isComment(std::string_view line) const;
-  bool isMissing(std::string_view text) const;
   void split(std::string_view line, std::vector<CsvCell>& cells) const;
   void addCell(std::string_view line, std::size_t begin, std::size_t end, std::vector<CsvCell>& cells) const;
   std::size_t endOfQuotes(std::string_view line, std::size_t begin) const;
@@ -66,6 +67,8 @@ class CsvReader {
   void skipLines(int count);
   void fitWidth(std::vector<CsvCell>& cells);
   void requireNames() const;
+  void requireSeparators(std::string_view line) const;
+  std::string helpFor(const CsvCell& cell) const;
   void requirePlainText() const;
   /// As refuse; for a foreign table says what helps.
   [[noreturn]] void refuseShape(const CsvCell& place, const std::string& what) const;

@@ -52,7 +52,11 @@ ImportColumn importColumn(const std::string& written, const ColumnName& from);
 ///     before_s = 1.0                   # before the first row the plant rested that long ...
 ///     before = { command_0_MPa = 0 }   # ... under these commands, the others as in the first row
 struct ImportMapping {
+  struct Place {
+    int line = 0, column = 0;
+  };
   std::string file;
+  std::map<std::string, Place> places;  ///< of all members in the file: "columns.command_0_bar", "rows.before.command_0"
   std::string sidecar_json;
   std::optional<TableClock> clock;  ///< of the first table
   std::vector<ImportColumn> columns;
@@ -62,6 +66,9 @@ struct ImportMapping {
   std::map<std::string, double> before;
   bool has_rows = false;  ///< there is a section [rows]
   int every = 1;
+
+  /// Throws BadFile at a member of the file.
+  [[noreturn]] void refuse(const std::string& member, const std::string& what) const;
 };
 
 /// Reads a mapping file. Throws BadFile with line and column if it is not a valid mapping; IoError if it cannot be read.
@@ -72,8 +79,8 @@ std::string tableFile(const std::string& csv_file, const ImportColumn& column);
 
 /// Turns the table into a recording. Nothing is invented: a reading is missing outside of its table's times and in gaps, and notes count
 /// such rows; rows that repeat the time of the row before (a coarse clock) are left out with a note.
-/// Throws BadFile if the table lacks a column that the mapping names, or if the clocks of two tables do not overlap; throws as
-/// readRecording if the result is not a valid recording.
+/// Throws BadFile if the table lacks a column that the mapping names, if the clocks of two tables do not overlap, or if the result is not a
+/// valid recording. Every message has the place in the table, or in the mapping, where the fault stands.
 Recording importTable(const std::string& csv_file, const ImportMapping& mapping);
 
 }  // namespace musclesim

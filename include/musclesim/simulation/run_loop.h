@@ -27,7 +27,7 @@ double defaultDurationS(const Controller& controller);
 ControllerRequest controllerRequest(Simulation& simulation, const std::string& task, const std::optional<double>& decision_interval_s);
 
 /// Columns of the recording of a run, without time: the robot's signals, then target, activity and further signals if the controller
-/// reports them.
+/// reports them. Throws BadParameter if the controller's further signals have names that a recording cannot have.
 std::vector<std::string> runColumns(const Robot& robot, const Controller& controller);
 /// The values of one row, in the order of runColumns.
 std::vector<double> runRow(const Robot& robot, const Controller& controller, const State& state);
