@@ -74,11 +74,20 @@ std::vector<Search::Proposal> Search::nearestOfStages(const std::vector<Proposal
   return result;
 }
 
+/// The nearest, some of each stage, and the nearest of each kind of effect: a linear estimate about no effect is rough, and what resembles
+/// the best of all would fill the list alone.
 std::vector<Search::Proposal> Search::singleEffects(const Surroundings& around) const {
+  const auto idOf = [this](const Proposal& proposal) { return causes_.hypotheses[proposal.start.members.back()].info().id; };
   std::vector<Proposal> all;
   for (std::size_t i = 0; i < around.of_hypothesis.size(); ++i)
     if (!around.of_hypothesis[i].empty()) all.push_back(proposed(around, {}, {i}));
-  return nearestOfStages(all, single_count, per_stage_count, 2);
+  std::vector<Proposal> result = nearestOfStages(all, single_count, per_stage_count, 2);
+  std::ranges::stable_sort(all, {}, &Proposal::cost);
+  std::set<std::string> ids;
+  for (const Proposal& proposal : result) ids.insert(idOf(proposal));
+  for (Proposal& proposal : all)
+    if (ids.insert(idOf(proposal)).second) result.push_back(std::move(proposal));
+  return result;
 }
 
 /// The best sets of two and more effects of the linear model, by a beam search.
@@ -148,23 +157,55 @@ std::vector<Search::Proposal> Search::drops(const Surroundings& around) const {
   return result;
 }
 
-/// Fits proposals to the screening segments. Where the start costs more than no effect at all, its last effect is weakened first.
-void Search::fitOnScreening(std::vector<Proposal> proposals) {
+/// One effect on a single component put on all of them, in place of all members of its kind: faults of muscles of one build often are
+/// alike, and two of them on single muscles cost more than one on all.
+std::vector<Search::Proposal> Search::widened(const Explanation& base) const {
+  std::vector<Proposal> result;
+  const Model model = causes_.modelOf(base);
+  for (std::size_t m = 0; m < base.members.size(); ++m)
+    for (std::size_t i = 0; i < causes_.hypotheses.size(); ++i) {
+      const Hypothesis &one = causes_.hypotheses[base.members[m]], &on_all = causes_.hypotheses[i];
+      if (on_all.component() != "all" || one.component() == "all" || on_all.info().id != one.info().id || !catalogue_.allowed[i]) continue;
+      Explanation wide = base;
+      for (std::size_t k = wide.members.size(); k-- > 0;)
+        if (causes_.clash(i, wide.members[k])) wide = causes_.without(wide, k);
+      const Eigen::VectorXd own = on_all.coordinatesOf(model.effects[m].parameters), kept = wide.z;
+      wide.members.push_back(i);
+      wide.z.resize(kept.size() + own.size());
+      wide.z << kept, own;
+      result.push_back({std::move(wide), 0});
+    }
+  return result;
+}
+
+/// Moves a start that diverges, or costs more than no effect at all, towards its origin.
+void Search::nearToOrigin(Proposal& proposal) const {
+  constexpr double share = 0.3;
+  constexpr int most_moves = 3;
   const double without = screening_.misfit(screening_residual_);
+  Explanation &start = proposal.start, &origin = proposal.origin;
+  start.z = causes_.clamped(start.members, start.z);
+  if (origin.members.empty()) {
+    origin = start;
+    const Hypothesis& last = causes_.hypotheses[start.members.back()];
+    for (const int strength : last.strengths()) origin.z.tail(last.coordinateCount())[strength] = 0;
+  }
+  for (int k = 0; k < most_moves; ++k) {
+    const Eigen::VectorXd predicted = screening_.predicted(causes_.modelOf(start));
+    on_simulation_();
+    if (predicted.size() == screening_.size() && screening_.misfit(screening_.measured() - predicted) < without) break;
+    start.z = causes_.clamped(start.members, origin.z + share * (start.z - origin.z));
+    start.numbers = origin.numbers + share * (start.numbers - origin.numbers);
+  }
+}
+
+/// Fits proposals to the screening segments.
+void Search::fitOnScreening(std::vector<Proposal> proposals) {
   parallelFor(static_cast<int>(proposals.size()), options_.job_count, [&](int i) {
-    constexpr double share = 0.3;
-    constexpr int weakenings = 3;
     Proposal& proposal = proposals[static_cast<std::size_t>(i)];
     Explanation& start = proposal.start;
     if (plant_.interrupted()) return;
-    const Hypothesis& last = causes_.hypotheses[start.members.back()];
-    start.z = causes_.clamped(start.members, start.z);
-    for (int k = 0; k < weakenings; ++k) {
-      const Eigen::VectorXd predicted = screening_.predicted(causes_.modelOf(start));
-      on_simulation_();
-      if (predicted.size() == screening_.size() && screening_.misfit(screening_.measured() - predicted) < without) break;
-      for (const int strength : last.strengths()) start.z.tail(last.coordinateCount())[strength] *= share;
-    }
+    nearToOrigin(proposal);
     causes_.refit(start, screening_, screening_rounds, Fidelity::coarse, Accuracy::ranking, std::move(proposal.known));
     if (start.residual.size() == screening_.size()) start.score = screeningEvidence().score(start);
   });
@@ -201,6 +242,23 @@ std::vector<std::size_t> Search::bestOnScreening(std::size_t member_count, std::
   return order;
 }
 
+/// Some of the best explanations of one size, none of which leaves nearly the same as a better one: what resembles each other would be
+/// extended by the same effects.
+std::vector<std::size_t> Search::unlikeOnScreening(std::size_t member_count, std::size_t count) const {
+  constexpr double alike = 0.9;  // correlation of two residuals
+  std::vector<std::size_t> chosen;
+  for (const std::size_t index : bestOnScreening(member_count, pool_.size())) {
+    if (chosen.size() == count) break;
+    const bool is_new = std::ranges::none_of(chosen, [&](std::size_t better) {
+      const Eigen::VectorXd weights = screening_.weights(pool_[better].residual);
+      const Eigen::VectorXd one = weights.cwiseProduct(pool_[index].residual), other = weights.cwiseProduct(pool_[better].residual);
+      return one.dot(other) > alike * one.norm() * other.norm();
+    });
+    if (is_new) chosen.push_back(index);
+  }
+  return chosen;
+}
+
 std::vector<Explanation> Search::singles() const {
   std::vector<Explanation> result;
   for (const std::size_t index : bestOnScreening(1, pool_.size())) result.push_back(pool_[index]);
@@ -226,11 +284,15 @@ Explanation Search::earlierFinding() const {
   return result;
 }
 
-/// Expands the best explanations of each size, from one effect on, and in the end the best of all.
+/// Widens and expands the best explanations of each size, from one effect on, and in the end expands the best of all.
 void Search::extendBySize() {
   for (int size = 1; size <= options_.max_effects && !plant_.interrupted(); ++size) {
     const auto of_size = static_cast<std::size_t>(size);
-    const std::vector<std::size_t> best = bestOnScreening(0, 1), bases = bestOnScreening(of_size, base_counts[of_size - 1]);
+    std::vector<Proposal> wide;
+    for (const std::size_t index : bestOnScreening(of_size, swap_count))
+      std::ranges::move(nearest(widened(pool_[index]), swap_count, 2), std::back_inserter(wide));
+    fitOnScreening(std::move(wide));
+    const std::vector<std::size_t> best = bestOnScreening(0, 1), bases = unlikeOnScreening(of_size, base_counts[of_size - 1]);
     for (const std::size_t index : bases)
       if (size == 1 || pool_[index].score > pool_[best.front()].score - hopeless) expand(pool_[index]);
   }

@@ -61,6 +61,7 @@ class Search {
     Explanation start;
     double cost;                              ///< in nats, price included
     std::vector<Eigen::VectorXd> known = {};  ///< FitProblem::known_derivatives
+    Explanation origin = {};                  ///< where the linear estimate was made: of the same members, those added without strength
   };
   /// A linear model about one explanation, and the meaning of its columns.
   struct Surroundings {
@@ -101,9 +102,12 @@ class Search {
   std::vector<Proposal> additions(const Surroundings& around) const;
   std::vector<Proposal> swaps(const Surroundings& around) const;
   std::vector<Proposal> drops(const Surroundings& around) const;
+  std::vector<Proposal> widened(const Explanation& base) const;
   void fitOnScreening(std::vector<Proposal> proposals);
+  void nearToOrigin(Proposal& proposal) const;
   void expand(const Explanation& base);
   std::vector<std::size_t> bestOnScreening(std::size_t member_count, std::size_t count) const;
+  std::vector<std::size_t> unlikeOnScreening(std::size_t member_count, std::size_t count) const;
   void extendBySize();
   bool changesFocus(std::size_t hypothesis) const;
   std::vector<Explanation> explainPressures();

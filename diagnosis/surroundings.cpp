@@ -128,12 +128,13 @@ Search::Proposal Search::proposed(const Surroundings& around, const std::vector<
   std::map<std::size_t, double> amounts;
   for (std::size_t i = 0; i < columns.size(); ++i) amounts[columns[i]] = solution.amounts[static_cast<Eigen::Index>(i)];
   Proposal proposal;
-  std::vector<double> z;
+  std::vector<double> z, origin;
   for (const std::size_t m : kept) {
     proposal.start.members.push_back(base.members[m]);
     for (std::size_t k = 0; k < around.of_member[m].size(); ++k) {
       const Eigen::Index coordinate = causes_.firstCoordinate(base, m) + static_cast<Eigen::Index>(k);
       z.push_back(base.z[coordinate] + amounts[around.of_member[m][k]]);
+      origin.push_back(base.z[coordinate]);
       proposal.known.push_back(around.derivatives[static_cast<std::size_t>(coordinate)]);
     }
   }
@@ -143,10 +144,15 @@ Search::Proposal Search::proposed(const Surroundings& around, const std::vector<
     for (const std::size_t column : around.of_hypothesis[index]) found.push_back(amounts[column]);
     const Eigen::VectorXd own = startOf(causes_.hypotheses[index], around.sensitivities[index], found);
     z.insert(z.end(), own.begin(), own.end());
+    Eigen::VectorXd without_strength = own;
+    for (const int strength : causes_.hypotheses[index].strengths()) without_strength[strength] = 0;
+    origin.insert(origin.end(), without_strength.begin(), without_strength.end());
     proposal.known.resize(proposal.known.size() + static_cast<std::size_t>(own.size()));
   }
   proposal.start.z = Eigen::Map<const Eigen::VectorXd>(z.data(), static_cast<Eigen::Index>(z.size()));
   proposal.start.numbers = base.numbers;
+  proposal.origin = proposal.start;
+  proposal.origin.z = Eigen::Map<const Eigen::VectorXd>(origin.data(), static_cast<Eigen::Index>(origin.size()));
   for (std::size_t k = 0; k < around.of_numbers.size(); ++k) {
     proposal.start.numbers[static_cast<Eigen::Index>(k)] += amounts[around.of_numbers[k]];
     proposal.known.push_back(around.derivatives[static_cast<std::size_t>(base.z.size()) + k]);
