@@ -80,7 +80,8 @@ compare() {
   cmp undisturbed/collected.csv RUNS/collected.csv && cmp undisturbed/collected.json RUNS/collected.json || fail "the tables differ"
   local repeated
   repeated=$(grep -l '"attempts": [2-9]' RUNS/results/*.json | wc -l)
-  ((repeated >= 2)) || fail "only $repeated rows were repeated: the disturbance was none"
+  # Two, or one if the worker was killed between two of its rows.
+  ((repeated >= 1)) || fail "no row was repeated: the disturbance was none"
   say "passed $tool: same tables, $repeated rows repeated, $((SECONDS - start)) s"
 }
 
