@@ -17,7 +17,7 @@ struct Looked {
   Looked(const ActiveEffect& effect, Strengths strengths, const std::string& for_effect = "")
       : options(planted::few({for_effect.empty() ? effect.id : for_effect})),
         plant(planted::plant({effect}), options),
-        hypothesis(hypotheses(plant, options).front()) {
+        hypothesis(hypotheses(plant, options).back()) {  // the law without further shares
     std::vector<Hypothesis> all = {hypothesis};
     if (strengths == Strengths::adapted) {
       sensitivity = sensitivitiesOf(comparison, all, nominal, Model{}, 2, [] {}).front();

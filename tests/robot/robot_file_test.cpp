@@ -290,7 +290,7 @@ TEST(RobotFile, TheArmsFileBuildsTheSameArm) {
 }
 
 TEST(RobotFile, ShippedRobotsCanBeReadFromTheirTexts) {
-  EXPECT_EQ(shippedRobots().size(), 4U);
+  EXPECT_EQ(shippedRobots().size(), 5U);
   for (const ShippedRobot& robot : shippedRobots()) {
     EXPECT_FALSE(robot.description.empty()) << robot.name;
     const auto fromText = [&](Simulation& s) -> Robot& {

@@ -67,7 +67,7 @@ TEST(RobotRegistry, AnUnknownRobotSuggestsTheNearest) {
   Simulation simulation;
   const auto message = messageOf<BadParameter>([&] { simulation.build("elbo"); });
   EXPECT_TRUE(contains(message, "there is no robot \"elbo\", did you mean \"elbow\"?"));
-  EXPECT_TRUE(contains(message, "registered: arm, elbow, rig"));
+  EXPECT_TRUE(contains(message, "registered: arm, elbow, pulley_arm, rig"));
   EXPECT_THROW(simulation.build(""), BadParameter);
   EXPECT_NO_THROW(simulation.build("elbow")) << "the simulation can still take a robot";
 }
