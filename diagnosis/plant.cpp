@@ -382,8 +382,10 @@ std::optional<ReplayResult> Plant::simulated(const Recording& recording, const M
     return replayRecording(recording, options);
   } catch (const BadParameter&) {
     if (unchanged) throw;
-    return std::nullopt;
+  } catch (const BadFile&) {  // a robot file that cannot be built with this effect: a muscle that would end within its pulley
+    if (unchanged) throw;
   }
+  return std::nullopt;
 }
 
 Prediction Plant::replay(Recording recording, const Model& model, int end_row, Fidelity fidelity) const {

@@ -59,8 +59,9 @@ double gapOf(const ActiveEffect& law, const Truth& truth) {
   try {
     return truth.gapOverNoise(truth.rmse(truth.clean(), truth.motion({law})));
   } catch (const BadParameter&) {
-    return std::numeric_limits<double>::quiet_NaN();
+  } catch (const BadFile&) {  // a robot file that cannot be built with it: a muscle that would end within its pulley
   }
+  return std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace

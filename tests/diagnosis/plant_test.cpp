@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "musclesim/base/error.h"
+#include "musclesim/simulation/replay.h"
 #include "planted.h"
 #include "support/support.h"
 
@@ -68,6 +69,29 @@ TEST(DeadSensor, InOneRecordingIsLeftOutThere) {
   EXPECT_TRUE(std::isnan(plant.measured(1, 0).front()));
   ASSERT_FALSE(plant.notes().empty());
   EXPECT_TRUE(contains(plant.notes().front(), "b.csv: length_0_mm has the same value in every row"));
+}
+
+/// The muscles of this arm end one millimetre outside their drums: an end that is off by three lies within, and no such robot can be built.
+TEST(Plant, AnEffectWithWhichARobotFileCannotBeBuiltDiverges) {
+  std::vector<Recording> recordings;
+  for (const double phase : {0.0, 1.0}) {
+    Recording plan;
+    plan.info.robot = "pulley_arm";
+    for (int row = 0; row <= 200; ++row) plan.time_s.push_back(0.01 * row);
+    for (int muscle = 0; muscle < 6; ++muscle) {
+      plan.signals.push_back({"command_" + std::to_string(muscle), {}});
+      for (const double t : plan.time_s) plan.signals.back().values.push_back(0.4 + 0.1 * std::sin(4 * t + phase + muscle));
+    }
+    recordings.push_back(replayRecording(plan).simulated);
+    recordings.back().file = "run" + std::to_string(recordings.size()) + ".csv";
+  }
+  const DiagnosisOptions options;
+  const Plant plant(std::move(recordings), options);
+  const auto with = [&](double rise_mm) {
+    return plant.predict(0, Model{{{"attachment_offset", "muscle_3", {{"attachment", "end"}, {"rise_mm", rise_mm}}}}, {}}).diverged;
+  };
+  EXPECT_FALSE(with(-3));
+  EXPECT_TRUE(with(3));
 }
 
 TEST(Plant, KnowsTheStagesOfWhatTheModelHoldsBeforehand) {
