@@ -33,11 +33,11 @@ struct Range {
 /// A frame at ImGui's cursor with axes of time and value.
 class Diagram2d {
  public:
-  Diagram2d(const Player& player, const Range& range, float plot_px)
+  Diagram2d(const Player& player, const Range& range, float height_px)
       : player_(player),
         range_(range),
         corner_(ImGui::GetCursorScreenPos()),
-        size_(ImGui::GetContentRegionAvail().x, plot_px),
+        size_(ImGui::GetContentRegionAvail().x, height_px),
         list_(ImGui::GetWindowDrawList()) {
     list_->AddRectFilled(corner_, farCorner(), IM_COL32(255, 255, 255, 255), 3);
   }
@@ -105,7 +105,7 @@ void coloredWords(const char* name, const std::vector<double>& values, std::size
 
 }  // namespace
 
-void drawGapPlots(const Player& player, float plot_px) {
+void drawGapPlots(const Player& player, float height_px) {
   const ReplayGap* gap = player.gap();
   if (!gap) return ImGui::TextWrapped("The recording measures nothing that the model reports.");
   const auto after = std::ranges::upper_bound(gap->time_s, player.timeS());
@@ -120,7 +120,7 @@ void drawGapPlots(const Player& player, float plot_px) {
   coloredWords("measured", gap->measured, row, measured_ink);
   ImGui::SameLine();
   coloredWords("simulated", gap->simulated, row, simulated_ink);
-  Diagram2d above(player, values.widened(), plot_px);
+  Diagram2d above(player, values.widened(), height_px);
   above.curve(gap->time_s, gap->measured, measured_ink, 2.4F);
   above.curve(gap->time_s, gap->simulated, simulated_ink, 1.3F);
   above.finish();
@@ -128,7 +128,7 @@ void drawGapPlots(const Player& player, float plot_px) {
   coloredWords("residual", residuals, row, residual_ink);
   ImGui::SameLine();
   ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(number_ink), "noise band +-%.3g", gap->band());
-  Diagram2d below(player, differences.widened(), plot_px);
+  Diagram2d below(player, differences.widened(), height_px);
   below.band(gap->band());
   below.curve(gap->time_s, residuals, residual_ink, 1.4F);
   below.finish();
