@@ -160,6 +160,14 @@ TEST(Diagnose, SaysNoGapWhereTolerancesExplainIt) {
   EXPECT_GE(load->fitted.high, load->fitted.value);
 }
 
+/// A load 4.5 % heavier than the model's is little more than twice the tolerance of 2 %: it may be a payload, or the number itself.
+TEST(Diagnose, ClaimsNoCauseThatTheNumbersExplainNearlyAsWell) {
+  const Diagnosis near = diagnose(plant({{"payload", "hand", {{"mass_kg", 0.09}}}}), few({"payload"}));
+  EXPECT_NE(near.verdict, Verdict::effects_found) << diagnosisSummary(near);
+  const Diagnosis far = diagnose(plant({{"payload", "hand", {{"mass_kg", 0.2}}}}), few({"payload"}));
+  EXPECT_EQ(far.verdict, Verdict::effects_found) << diagnosisSummary(far);
+}
+
 TEST(Diagnose, OptionsOfTheModelHoldTheGroundPlane) {
   auto recordings = plant({});
   for (Recording& recording : recordings) recording.info.robot_parameters["world.plane_height_mm"] = -450.0;
