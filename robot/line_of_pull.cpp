@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <span>
 
 #include "musclesim/base/error.h"
 #include "musclesim/base/units.h"
@@ -44,11 +45,13 @@ void LineOfPull::connect(End end, Primitive* primitive, const std::string& muscl
   if (point.connected)
     throw BadParameter(std::string("the ") + (end == End::start ? "start" : "end") + " of " + muscle_name + " is already connected");
   point = pointOn(primitive, point.place);
+  forgetPoses();
 }
 
 void LineOfPull::addViaPoint(Primitive* primitive, const Vector& point_mm) {
   points_.insert(points_.end() - 1, pointOn(primitive, point_mm));
   pulleys_.emplace_back();
+  forgetPoses();
 }
 
 void LineOfPull::addPulley(Primitive* primitive, Pulley pulley, const std::string& muscle_name) {
@@ -73,12 +76,14 @@ void LineOfPull::addPulley(Primitive* primitive, Pulley pulley, const std::strin
     if (pulley.side_mm) pulley.side_mm = pointOn(primitive, *pulley.side_mm).place;
   }
   pulleys_.back() = MountedPulley{center.body, pulley};
+  forgetPoses();
 }
 
 void LineOfPull::setTendonMm(double tendon_mm, const std::string& muscle_name) {
   if (!(tendon_mm >= 0 && std::isfinite(tendon_mm)))
     throw BadParameter("tendon of " + muscle_name, fmt::format("{} mm", tendon_mm), "be finite and at least 0 mm");
   tendon_mm_ = tendon_mm;
+  forgetPoses();
 }
 
 void LineOfPull::moveCenter(dBodyID body, const Vector& shift_mm) {
@@ -89,6 +94,7 @@ void LineOfPull::moveCenter(dBodyID body, const Vector& shift_mm) {
     mounted->pulley.center_mm -= shift_mm;
     if (mounted->pulley.side_mm) *mounted->pulley.side_mm -= shift_mm;
   }
+  forgetPoses();
 }
 
 Vector LineOfPull::worldPosition(const Point& point) {
@@ -128,8 +134,34 @@ void LineOfPull::requirePointsOutside(const std::string& muscle_name) const {
   }
 }
 
+void LineOfPull::forgetPoses() {
+  poses_.clear();
+  is_located_ = false;
+  const auto add = [this](dBodyID body) {
+    if (body && std::ranges::find(poses_, body, &Pose::body) == poses_.end()) poses_.push_back({body, {}, {}});
+  };
+  for (const Point& point : points_) add(point.body);
+  for (const auto& mounted : pulleys_)
+    if (mounted) add(mounted->body);
+}
+
+bool LineOfPull::haveBodiesMoved() const {
+  bool moved = !is_located_;
+  is_located_ = true;
+  for (Pose& pose : poses_) {
+    const dReal *position = dBodyGetPosition(pose.body), *quaternion = dBodyGetQuaternion(pose.body);
+    if (std::ranges::equal(pose.position_mm, std::span(position, 3)) && std::ranges::equal(pose.quaternion, std::span(quaternion, 4)))
+      continue;
+    std::copy_n(position, 3, pose.position_mm.begin());
+    std::copy_n(quaternion, 4, pose.quaternion.begin());
+    moved = true;
+  }
+  return moved;
+}
+
 /// dl/dx of the points; that of a pulley is the opposite of those of its two points.
 void LineOfPull::locate() const {
+  if (!haveBodiesMoved()) return;
   pushes_.clear();
   length_mm_ = -tendon_mm_;
   Vector here = worldPosition(points_.front()), gradient = Vector::Zero();

@@ -3,6 +3,7 @@
 
 #include <ode/ode.h>
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -87,11 +88,21 @@ class LineOfPull {
     dBodyID body;
     Pulley pulley;
   };
+  /// Where a body was when the thread was located last; a pose that is not a number is unlike any other.
+  struct Pose {
+    dBodyID body;
+    std::array<dReal, 3> position_mm;
+    std::array<dReal, 4> quaternion;
+  };
   static Point pointOn(Primitive* primitive, const Vector& point_mm);
   static Vector worldPosition(const Point& point);
   static Pulley inWorld(const MountedPulley& mounted);
-  /// Updates pushes_ and length_mm_ from the bodies' present poses; speed() and pull() use them.
+  /// Updates pushes_ and length_mm_ from the bodies' present poses; speed() and pull() use them. If no body has moved they stay.
   void locate() const;
+  /// Whether a body has moved since this was asked last.
+  bool haveBodiesMoved() const;
+  /// To be called after a change of the points or pulleys.
+  void forgetPoses();
   void addPush(dBodyID body, const Vector& position, const Vector& gradient) const;
   /// dl/dt in world units; positive while the thread gets longer.
   double speed() const;
@@ -100,6 +111,8 @@ class LineOfPull {
   std::vector<Point> points_;
   std::vector<std::optional<MountedPulley>> pulleys_;  ///< between each point and the next
   double tendon_mm_ = 0;
+  mutable std::vector<Pose> poses_;  ///< of all bodies of the points and pulleys
+  mutable bool is_located_ = false;
   mutable std::vector<Push> pushes_;
   mutable double length_mm_ = 0;
 };
