@@ -155,7 +155,7 @@ class SignalEvidence {
     const bool moves_otherwise = test.misfit_increase >= 2 * small_misfit;
     if (test.share > most && test.share > uncertainty && !moves_otherwise)
       say(fmt::format("the measured pressures in place of the simulated ones make {:.0f} % of the motion's gap, give or take {:.0f}",
-                      100 * test.share, 100 * uncertainty),
+                      100 * test.share, std::max(1.0, std::ceil(100 * uncertainty))),
           {Stage::force, Stage::body, Stage::sensor});
     else if (test.share + uncertainty < most)
       say("pressures differ from the predicted ones, but most of the motion's gap stays when they are put in their place: there is more "

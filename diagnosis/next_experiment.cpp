@@ -283,9 +283,8 @@ Experiment experimentOf(const TriedSchedule& trial, const std::vector<Rival>& ri
   const Difference& difference = worth.from_likeliest[nearest];
   result.difference = difference.overall;
   result.why =
-      fmt::format("{}; {} and {}, the most alike of these, fitted anew, differ by {:.1f} times the noise there, most in {} ({:.1f})",
-                  scheduleWords(trial.choice), rivals.front().label, rivals[nearest].label, difference.overall, difference.signal,
-                  difference.in_signal);
+      fmt::format("{}; the two of these that are most alike, fitted anew, differ by {:.1f} times the noise there, most in {} ({:.1f})",
+                  scheduleWords(trial.choice), difference.overall, difference.signal, difference.in_signal);
   result.time_s = trial.commands.time_s;
   result.commands.resize(result.time_s.size());
   for (const Signal& signal : trial.commands.signals)
