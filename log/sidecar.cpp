@@ -45,7 +45,7 @@ const std::vector<std::string>& knownMembers() {
 /// Further members that runs of this program write. The reader accepts them without a note.
 bool isOfARun(const std::string& member) {
   static const std::vector<std::string> names = {"controller",      "task",       "stepper", "substeps", "substeps_automatic",
-                                                 "internal_step_s", "parameters", "verdict", "by_hand_s"};
+                                                 "internal_step_s", "parameters", "verdict", "by_hand_s", "run"};
   return std::find(names.begin(), names.end(), member) != names.end();
 }
 

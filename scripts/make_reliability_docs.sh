@@ -22,6 +22,7 @@ rows=(
   "signals|SIGINT and SIGTERM: ends within a step + 0.5 s, files complete, 130/143|tests/faults/signal_check.sh $build/musclesim"
   "determinism|100 repeats, on one thread and beside another: the same state hashes every 100 steps|env MUSCLESIM_LONG_TESTS=1 $build/tests/reliability/reliability_tests --gtest_filter=*Determinism*"
   "physics|momentum, energy, periods and static pulls against closed forms|$build/tests/analytic/analytic_tests"
+  "rerun|a run is repeated from its folder alone, moved and without its input files: the same bytes, or the names of what differs; also after divergence, SIGINT and SIGKILL, and for sessions by hand; reads no file but the copies|$build/tests/src/program_tests --gtest_filter=RerunCommand.*"
   "soak|1e6 steps: memory grows by less than 1 MB, open files not at all|$build/tests/bench/soak_study"
   "security|no network, no shell: what the program imports; the reader's limits|scripts/security_check.sh $build/musclesim"
   "sweep|500 runs on two workers, a tenth of the runs and one worker killed: the table of the undisturbed sweep|$build/tests/bench/sweep_study $build/musclesim 500"
@@ -30,7 +31,7 @@ rows=(
 )
 
 [[ -e $build/build.ninja ]] || { echo "make_reliability_docs: there is no build in $build; cmake --preset release makes one" >&2; exit 2; }
-cmake --build "$build" --target musclesim fuzz_tests reliability_tests robot_tests log_tests analytic_tests soak_study sweep_study >&2
+cmake --build "$build" --target musclesim fuzz_tests reliability_tests robot_tests log_tests analytic_tests soak_study sweep_study program_tests >&2
 mkdir -p docs/research/reliability
 # passed_some: whether a test program's output (standard input) tells of at least one test that passed; a filter may match none.
 passed_some() {

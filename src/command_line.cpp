@@ -43,6 +43,7 @@ CommandLine::CommandLine()
       [&](CLI::App& command) { return addSchedule(command, model_); });
   add("replay", "Simulates a recording's commands and compares the result with its measurements",
       [&](CLI::App& command) { return addReplay(command, model_); });
+  add("rerun", "Repeats a run from its folder alone and says whether the bytes are the same", addRerun);
   add("figure", "Draws signals of a recording over time", [&](CLI::App& command) { return addFigure(command, model_); });
   add("robot", "Checks, shows, begins, exports or imports a robot file", [&](CLI::App& command) { return addRobot(command, model_); });
   add("import", "Turns a table of measurements into a recording", addImport);
@@ -110,6 +111,8 @@ std::optional<int> CommandLine::parse(int argument_count, const char* const* arg
   for (int i = 1; i < argument_count; ++i) model_.command_line += " " + shellWord(arguments[i]);
   try {
     std::vector<std::string> words = ordered({arguments + std::min(argument_count, 1), arguments + argument_count});
+    const bool has_command = !words.empty() && std::ranges::count(commandNames(), words.front()) > 0;
+    model_.arguments.assign(words.begin() + (has_command ? 1 : 0), words.end());
     std::reverse(words.begin(), words.end());  // as CLI11 takes them
     app_.parse(std::move(words));
   } catch (const CLI::ParseError& error) {

@@ -28,6 +28,8 @@ Action addRun(CLI::App& app, ModelOptions& model);
 /// `schedule`: writes a test signal as a table of commands.
 Action addSchedule(CLI::App& command, ModelOptions& model);
 Action addReplay(CLI::App& command, ModelOptions& model);
+/// `rerun`: repeats a run from its folder.
+Action addRerun(CLI::App& command);
 /// `figure`: draws signals of a recording.
 Action addFigure(CLI::App& command, ModelOptions& model);
 Action addDiagnose(CLI::App& command, ModelOptions& model);

@@ -30,7 +30,11 @@ void addModelOptions(CLI::App& command, ModelOptions& options) {
       ->group(model);
   command
       .add_option_function<std::vector<std::string>>(
-          "--plugin", [](const std::vector<std::string>& files) { std::ranges::for_each(files, loadPlugin); },
+          plugin_option,
+          [&options](const std::vector<std::string>& files) {
+            std::ranges::for_each(files, loadPlugin);
+            options.plugins.insert(options.plugins.end(), files.begin(), files.end());
+          },
           "Shared library with robots, controllers or effects in C++: LIBRARY.so; may be repeated")
       ->group(model)
       ->take_all()

@@ -12,6 +12,8 @@
 
 namespace musclesim::command_line {
 
+inline constexpr const char* plugin_option = "--plugin";
+
 /// As given on the command line; empty optionals mean "not given".
 struct ModelOptions {
   std::optional<std::string> robot, physics, initial_state;
@@ -23,8 +25,10 @@ struct ModelOptions {
   std::optional<std::string> muscle, joint_friction;
   std::vector<std::string> set;
   std::optional<std::string> config, effects;
+  std::vector<std::string> plugins;  ///< those that have been loaded
   bool quiet = false, json = false;
-  std::string command_line;  ///< all arguments, as one would type them
+  std::string command_line;            ///< all arguments, as one would type them
+  std::vector<std::string> arguments;  ///< without the sub-command
 };
 
 /// Adds the model options to a command; all commands write into the same ModelOptions, so their place among the arguments is free.

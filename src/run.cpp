@@ -1,4 +1,6 @@
 /// `musclesim run`: the paper's program. A robot, a controller, a log and a figure; a window, pictures, or neither.
+#include "run.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,6 +20,7 @@
 #include "musclesim/simulation/run_loop.h"
 #include "output_folder.h"
 #include "progress.h"
+#include "run_origin.h"
 #include "run_output.h"
 #include "run_signals.h"
 #include "window.h"
@@ -40,9 +43,13 @@ ControllerRequest requestFor(Simulation& simulation, const RunOptions& options) 
 
 constexpr double until_closed_s = 1e7;
 
+}  // namespace
+
 bool hasWindow(const RunOptions& options) {
   return !options.simple && !options.pictures.wanted();
 }
+
+namespace {
 
 /// Refuses options that would have no effect in this run.
 void requireUsedOptions(const RunOptions& options) {
@@ -113,7 +120,8 @@ class Run {
     requireFigureSignals();
     if (prepareRecording(csv) && options_.record) say(model_, fmt::format("made the folder {}", csv.parent_path().string()));
     addSpectator(first_state, csv);
-    Recorder recorder(csv.string(), describe(simulation_, options_, initial_state), signals_->names());
+    const nlohmann::json origin = options_.only_record ? nullptr : jsonOf(keepOrigin(model_, options_, csv));
+    Recorder recorder(csv.string(), describe(simulation_, options_, initial_state, origin), signals_->names());
     say(model_, fmt::format("{} physics, stepper {}, {} internal steps of {:.4g} s per step of {:g} s, seed {}",
                             nameOf(simulation_.physics().kind), simulation_.stepper().name(), simulation_.substeps(),
                             simulation_.internalStepS(), simulation_.stepS(), simulation_.seed()));
@@ -139,7 +147,7 @@ class Run {
     if (hands_) noteHands(recorder);
     recorder.close(ending.exit_status == done);
     dismissSpectator(divergence);
-    report(verdict, csv, drawFigure(csv, recorder.rowCount()), ending);
+    if (!options_.only_record) report(verdict, csv, drawFigure(csv, recorder.rowCount()), ending);
     return ending.exit_status;
   }
 
@@ -334,6 +342,8 @@ class Run {
   bool gap_warned_ = false, late_commands_warned_ = false, goes_on_ = true;
 };
 
+}  // namespace
+
 int run(const ModelOptions& model, const RunOptions& options) {
   requireUsedOptions(options);
   Run run(model, options);
@@ -345,6 +355,8 @@ int run(const ModelOptions& model, const RunOptions& options) {
   if (hasWindow(options)) requireWindow();
   return run.execute();
 }
+
+namespace {
 
 constexpr const char* run_group = "Run";
 
@@ -403,7 +415,9 @@ void addRecordOptions(CLI::App& command, RunOptions& options) {
   command.add_flag("--overwrite", options.overwrite, "Replace a finished run in the folder of --out")->group(run_group);
 }
 
-void addOptions(CLI::App& command, RunOptions& options) {
+}  // namespace
+
+void addRunOptions(CLI::App& command, RunOptions& options) {
   command.add_flag("--simple", options.simple, "Batch run without window or interaction (default: a window opens)")->group(run_group);
   command.add_flag("--verbose", options.verbose, "List all primitives and actuators on standard output")->group(run_group);
   addControlOptions(command, options);
@@ -422,13 +436,11 @@ void addOptions(CLI::App& command, RunOptions& options) {
   addPictureOptions(command, options.pictures, "Pictures");
 }
 
-}  // namespace
-
 Action addRun(CLI::App& app, ModelOptions& model) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* named = app.add_subcommand("run", "Runs a robot under a controller and writes a log and a figure (the default)");
   for (CLI::App* command : {&app, named}) {
-    addOptions(*command, *options);
+    addRunOptions(*command, *options);
     addModelOptions(*command, model);
   }
   return [&model, options] { return run(model, *options); };

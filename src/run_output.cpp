@@ -32,7 +32,7 @@ fs::path recordingPath(const RunOptions& options, Simulation& simulation) {
   return (options.out ? fs::path(*options.out) : freshFolder(fmt::format("{}-{}", label, simulation.seed()))) / "run.csv";
 }
 
-RecordingInfo describe(Simulation& simulation, const RunOptions& options, const std::string& initial_state) {
+RecordingInfo describe(Simulation& simulation, const RunOptions& options, const std::string& initial_state, const nlohmann::json& origin) {
   RecordingInfo info = describeModel(simulation, initial_state);
   info.description = fmt::format("{} under {}", info.robot, *options.controller);
   nlohmann::json extra = nlohmann::json::parse(info.extra_json);
@@ -42,6 +42,7 @@ RecordingInfo describe(Simulation& simulation, const RunOptions& options, const 
     info.description += fmt::format(", {} task", taskOf(options));
     extra["task"] = taskOf(options);
   }
+  if (!origin.is_null()) extra["run"] = origin;
   info.extra_json = extra.dump();
   return info;
 }

@@ -25,6 +25,7 @@ struct RunOptions {
   std::optional<double> duration_s;
   std::optional<std::string> record, out, window_log;
   PictureOptions pictures;
+  bool only_record = false;  ///< no figure, nothing on standard output: for `rerun`
 };
 
 /// The controller of a run that names none.
@@ -34,8 +35,8 @@ std::string defaultController(const Robot& robot, const RunOptions& options);
 /// the task if there is one, else robot and controller. Throws BadParameter for a name that does not end in .csv.
 std::filesystem::path recordingPath(const RunOptions& options, Simulation& simulation);
 
-/// The sidecar of a run: robot, physics, seed, every parameter. `options` name the controller.
-RecordingInfo describe(Simulation& simulation, const RunOptions& options, const std::string& initial_state);
+/// The sidecar of a run: robot, physics, seed, every parameter. `options` name the controller; `origin` is for the member "run".
+RecordingInfo describe(Simulation& simulation, const RunOptions& options, const std::string& initial_state, const nlohmann::json& origin);
 
 /// The paper's --verbose: all primitives and actuators, on standard output.
 void list(Simulation& simulation);
