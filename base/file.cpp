@@ -5,8 +5,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 
 #include "musclesim/base/error.h"
@@ -40,7 +42,13 @@ std::string readTextFile(const std::string& file, std::size_t limit_bytes) {
   if (descriptor < 0) failed(file, "opened for reading", errno);
   const auto close_at_end = [](const int* opened) { close(*opened); };
   const std::unique_ptr<const int, decltype(close_at_end)> closer(&descriptor, close_at_end);
+  struct stat status {};
+  if (fstat(descriptor, &status) != 0) failed(file, "read", errno);
+  if (S_ISCHR(status.st_mode) || S_ISBLK(status.st_mode)) throw BadFile(file, "is a device: must be a file or a pipe");
+  const auto refuseSize = [&] { throw BadFile(file, fmt::format("is larger than the {} MiB that are allowed", limit_bytes >> 20)); };
+  if (S_ISREG(status.st_mode) && status.st_size > static_cast<off_t>(limit_bytes)) refuseSize();
   std::string text;
+  if (S_ISREG(status.st_mode)) text.reserve(static_cast<std::size_t>(status.st_size));
   std::string block(std::size_t{1} << 16, '\0');
   while (true) {
     const ssize_t count = read(descriptor, block.data(), block.size());
@@ -48,8 +56,17 @@ std::string readTextFile(const std::string& file, std::size_t limit_bytes) {
     if (count < 0) failed(file, "read", errno);
     if (count == 0) return text;
     text.append(block, 0, static_cast<std::size_t>(count));
-    if (text.size() > limit_bytes) throw BadFile(file, fmt::format("is larger than the {} MiB that are allowed", limit_bytes >> 20));
+    if (text.size() > limit_bytes) refuseSize();
   }
+}
+
+bool isWithin(const std::string& folder, const std::string& path) {
+  namespace fs = std::filesystem;
+  const fs::path normal = fs::path(path).lexically_normal();
+  if (normal.is_absolute() || normal.empty() || *normal.begin() == "..") return false;
+  std::error_code ignored;
+  const fs::path base = fs::weakly_canonical(folder.empty() ? "." : folder, ignored), file = fs::weakly_canonical(base / normal, ignored);
+  return std::ranges::mismatch(base, file).in1 == base.end();
 }
 
 std::size_t writeAll(int descriptor, std::string_view bytes) {

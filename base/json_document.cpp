@@ -46,10 +46,19 @@ JsonDocument::JsonDocument(const std::string& text, std::string file) : file_(st
     return static_cast<std::size_t>(std::max<std::streamoff>(0, stream.rdbuf()->pubseekoff(0, std::ios::cur, std::ios::in)));
   };
   const auto refuseAt = [&](std::size_t offset, const std::string& what) {
-    const auto place = placeInText(text, offset);
-    throw BadFile(file_, place.line, place.column, what);
+    const auto found = placeInText(text, offset);
+    throw BadFile(file_, found.line, found.column, what);
   };
   std::vector<std::set<std::string>> members_by_depth(deepest_nesting + 2);
+  // Members come in order, so that each place is counted from the one before: from the beginning it would take quadratic time.
+  std::size_t counted = 0;
+  TextPlace place;
+  const auto placeOfMember = [&](std::size_t offset) {
+    const TextPlace step = placeInText(std::string_view(text).substr(counted), offset - counted);
+    place = {place.line + step.line - 1, step.line == 1 ? place.column + step.column - 1 : step.column};
+    counted = offset;
+    return place;
+  };
   const auto observe = [&](int depth, json::parse_event_t event, const json& parsed) {
     if (depth > deepest_nesting) refuseAt(consumed(), fmt::format("nested deeper than the {} levels that are allowed", deepest_nesting));
     if (event == json::parse_event_t::object_start) members_by_depth[static_cast<std::size_t>(depth) + 1].clear();
@@ -58,7 +67,7 @@ JsonDocument::JsonDocument(const std::string& text, std::string file) : file_(st
     const std::size_t offset = stringBegin(text, consumed());
     if (!members_by_depth[static_cast<std::size_t>(depth)].insert(member).second)
       refuseAt(offset, fmt::format("member {} is given twice", inQuotes(member)));
-    if (depth == 1) places_[member] = placeInText(text, offset);
+    if (depth == 1) places_[member] = placeOfMember(offset);
     return true;
   };
   try {

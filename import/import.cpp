@@ -33,7 +33,7 @@ std::string_view outermostElement(std::string_view text) {
 }
 
 SourceRobot readSource(const std::string& file) {
-  constexpr std::size_t limit_bytes = 64 << 20;
+  constexpr std::size_t limit_bytes = 8 << 20;
   const std::string text = readTextFile(file, limit_bytes);
   const std::string_view element = outermostElement(text);
   if (element == "robot") return readUrdf(text, file);

@@ -91,7 +91,7 @@ class BodyReader {
     model_.bodies.emplace(body.name, index);
     parents_.resize(index + 1);
     parents_[index] = parent;
-    constexpr std::size_t most_bodies = 10000;
+    constexpr std::size_t most_bodies = 1000;
     if (index > most_bodies) element.refuse(fmt::format("the file has more than {} bodies", most_bodies));
     readContents(xml, index, own_class);
   }

@@ -126,7 +126,11 @@ void MjcfDocument::include(XmlElement& parent, const std::string& folder) {
     const std::string path = (std::filesystem::path(folder) / name).lexically_normal().string();
     for (const auto& earlier : included_)
       if (earlier->file == path) refuse(*child, file_, fmt::format("{} is included twice", path));
-    constexpr std::size_t limit_bytes = 64 << 20;
+    constexpr std::size_t limit_bytes = 8 << 20, most_files = 200;
+    if (!isWithin(std::filesystem::path(file_).parent_path().string(), name))
+      refuse(*child, file_,
+             fmt::format("file = {}: must lie in the folder of {} or below, and be no link that leads elsewhere", inQuotes(name), file_));
+    if (included_.size() >= most_files) refuse(*child, file_, fmt::format("more than {} files are included", most_files));
     auto included = std::make_unique<IncludedFile>();
     included->file = path;
     parseXml(included->xml, readTextFile(path, limit_bytes), path);

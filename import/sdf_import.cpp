@@ -13,8 +13,10 @@
 
 #include "formats.h"
 #include "musclesim/base/error.h"
+#include "musclesim/base/file.h"
 #include "musclesim/base/text.h"
 #include "musclesim/base/units.h"
+#include "xml_values.h"
 
 namespace musclesim {
 
@@ -51,6 +53,66 @@ class QuietStandardError {
   int kept_, nowhere_;
 };
 
+/// Looks through an SDF file and what it includes before libsdformat does. That takes almost a megabyte for a link, follows circles of
+/// includes until the memory ends, and looks for files in other folders.
+class SdfInspection {
+ public:
+  /// Throws BadFile if there is too much, or if something else than files in the folder or below is included.
+  explicit SdfInspection(const std::string& file) : file_(file), folder_(std::filesystem::path(file).parent_path()) { inspect(file); }
+
+  /// The path of an included file or of a model's folder; empty if there is none.
+  static std::string find(const std::filesystem::path& folder, const std::string& uri) {
+    const auto path = folder / nameIn(uri);
+    return std::filesystem::exists(path) ? path.string() : "";
+  }
+
+ private:
+  static std::string nameIn(const std::string& uri) {
+    constexpr std::string_view scheme = "model://";
+    return uri.starts_with(scheme) ? uri.substr(scheme.size()) : uri;
+  }
+
+  void inspect(const std::string& file) {
+    constexpr std::size_t limit_bytes = 8 << 20;
+    tinyxml2::XMLDocument document;
+    parseXml(document, readTextFile(file, limit_bytes), file);
+    inspect(*document.RootElement());
+  }
+
+  void inspect(const XmlElement& element) {
+    constexpr int most_links = 250, most_elements = 20'000;
+    const std::string kind = element.Name();
+    link_count_ += kind == "link";
+    if (++element_count_ > most_elements || link_count_ > most_links)
+      throw BadFile(file_, fmt::format("has, with what it includes, more than {} links or {} elements", most_links, most_elements));
+    for (const XmlElement* child = element.FirstChildElement(); child; child = child->NextSiblingElement()) {
+      const char* text = kind == "include" && std::string(child->Name()) == "uri" ? child->GetText() : nullptr;
+      if (text) include(text);
+      inspect(*child);
+    }
+  }
+
+  void include(const std::string& uri) {
+    constexpr int most_includes = 50;
+    if (!isWithin(folder_.string(), nameIn(uri)))
+      throw BadFile(file_, fmt::format("includes {}: must lie in its folder or below, and be no link that leads elsewhere", inQuotes(uri)));
+    if (++include_count_ > most_includes)
+      throw BadFile(file_, fmt::format("includes more than {} models; does one include itself?", most_includes));
+    const std::string path = find(folder_, uri);
+    if (path.empty()) throw BadFile(file_, fmt::format("includes {}, which is not in its folder", inQuotes(uri)));
+    std::error_code ignored;  // libsdformat looks in the working directory first
+    if (std::filesystem::exists(uri) && !std::filesystem::equivalent(uri, path, ignored))
+      throw BadFile(file_, fmt::format("includes {}, of which the working directory has another", inQuotes(uri)));
+    if (!std::filesystem::is_directory(path)) return inspect(path);
+    for (const auto& entry : std::filesystem::directory_iterator(path))
+      if (entry.path().extension() == ".sdf") inspect(entry.path().string());
+  }
+
+  std::string file_;
+  std::filesystem::path folder_;
+  int include_count_ = 0, link_count_ = 0, element_count_ = 0;
+};
+
 class SdfReader {
  public:
   explicit SdfReader(const std::string& file) {
@@ -59,15 +121,13 @@ class SdfReader {
   }
 
   SourceRobot read() {
+    SdfInspection{robot_.file};
     const QuietStandardError quiet;
     sdf::Console::Instance()->SetQuiet(true);
     sdf::ParserConfig config;
     config.SetWarningsPolicy(sdf::EnforcementPolicy::LOG);
-    config.SetFindCallback([folder = std::filesystem::path(robot_.file).parent_path()](const std::string& uri) {
-      constexpr std::string_view scheme = "model://";
-      const auto path = folder / (uri.starts_with(scheme) ? uri.substr(scheme.size()) : uri);
-      return std::filesystem::exists(path) ? path.string() : std::string();
-    });
+    config.SetFindCallback(
+        [folder = std::filesystem::path(robot_.file).parent_path()](const std::string& uri) { return SdfInspection::find(folder, uri); });
     sdf::Root root;
     check(root.Load(robot_.file, config));
     if (const sdf::Model* model = root.Model()) {

@@ -27,7 +27,7 @@ class UrdfReader {
     for (const XmlElement* material : childrenOf(root_, "material")) readMaterial(*material);
     for (const XmlElement* link : childrenOf(root_, "link")) readLink(*link);
     if (links_.empty()) refuse(root_, robot_.file, "has no link");
-    constexpr std::size_t most_links = 10000;
+    constexpr std::size_t most_links = 1000;
     if (links_.size() > most_links)
       refuse(root_, robot_.file, fmt::format("has {} links; must have {} at most", links_.size(), most_links));
     for (const XmlElement* joint : childrenOf(root_, "joint")) noteParent(*joint);

@@ -64,6 +64,8 @@ std::string shortJson(const json& value) {
 
 std::vector<ActiveEffect> effectsFromJson(const json& list, const std::string& path, const RefuseJson& refuse) {
   if (!list.is_array()) refuse(path, list, "be a list: [{\"id\": ..., \"component\": ..., \"parameters\": {...}}, ...]");
+  constexpr std::size_t most_effects = 1000;
+  if (list.size() > most_effects) refuse(path, list, fmt::format("have {} effects at most", most_effects));
   std::vector<ActiveEffect> effects;
   for (const auto& value : list) effects.push_back(effectFromJson(value, fmt::format("{}[{}]", path, effects.size()), refuse));
   return effects;

@@ -12,6 +12,7 @@
 #include "data_table.h"
 #include "import_clock.h"
 #include "musclesim/base/error.h"
+#include "musclesim/base/file.h"
 #include "musclesim/base/text.h"
 #include "sidecar.h"
 
@@ -183,6 +184,10 @@ class Import {
 
   const DataTable& otherTable(const ImportColumn& column) {
     try {
+      if (!column.table.empty() && !isWithin(std::filesystem::path(csv_file_).parent_path().string(), column.table))
+        mapping_.refuse(memberOf(column) + ".table",
+                        fmt::format("{}: must lie in the folder of the first table or below, and be no link that leads elsewhere",
+                                    inQuotes(column.table)));
       return table(column.table);
     } catch (const IoError& error) {
       mapping_.refuse(memberOf(column) + ".table", error.what());

@@ -11,6 +11,7 @@
 #include <memory>
 #include <tuple>
 
+#include "../base/apart.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
 #include "musclesim/base/text.h"
@@ -61,7 +62,7 @@ double (*elementReader(matio_types type))(const void*, std::size_t) {
 /// Collects the columns of all arrays of numbers of a file.
 class Columns {
  public:
-  explicit Columns(const std::string& file) {
+  explicit Columns(const std::string& file) : file_(file) {
     const std::unique_ptr<mat_t, int (*)(mat_t*)> mat(Mat_Open(file.c_str(), MAT_ACC_RDONLY), Mat_Close);
     if (!mat) throw BadFile(file, "is not a MATLAB file of version 5 to 7.3 (an older one, a damaged one, or another format?)");
     while (const auto variable = next(mat.get())) add(variable->name ? variable->name : "", *variable);
@@ -71,6 +72,7 @@ class Columns {
 
  private:
   using Variable = std::unique_ptr<matvar_t, void (*)(matvar_t*)>;
+  std::string file_;
   static Variable next(mat_t* mat) { return {Mat_VarReadNext(mat), Mat_VarFree}; }
 
   void add(const std::string& name, matvar_t& variable) {
@@ -79,6 +81,9 @@ class Columns {
     std::vector<std::size_t> sides;
     for (int i = 0; i < variable.rank; ++i)
       if (variable.dims[i] != 1) sides.push_back(variable.dims[i]);
+    if (!variable.data && std::ranges::count(sides, 0u) == 0 && read)
+      throw BadFile(file_, fmt::format("the values of {} cannot be read: the file is cut, damaged, or holds more than its size allows",
+                                       inQuotes(name)));
     if (sides.size() > 2 || variable.isComplex || !variable.data || !read || variable.class_type == MAT_C_SPARSE) {
       unreadable.push_back(name);
       return;
@@ -146,8 +151,9 @@ bool isMatlabFile(const std::string& file) {
   return file.ends_with(".mat");
 }
 
-std::string matlabTable(const std::string& file, const std::string& variable, std::vector<std::string>& notes) {
-  readTextFile(file, CsvLimits().file_bytes);  // says why a file cannot be read
+namespace {
+
+std::string tableOf(const std::string& file, const std::string& variable, std::vector<std::string>& notes) {
   const Columns all(file);
   if (all.columns.empty()) throw BadFile(file, "has no array of real numbers");
   const std::size_t length = variable.empty() ? usualLength(all.columns) : lengthOf(variable, all.columns, file);
@@ -166,6 +172,33 @@ std::string matlabTable(const std::string& file, const std::string& variable, st
     notes.push_back(fmt::format("{}: holds no real numbers that can be read: {} (objects such as timeseries must be saved as plain arrays)",
                                 file, fmt::join(all.unreadable, ", ")));
   return tableText(columns, length);
+}
+
+/// A file of a few kilobytes can stand for gigabytes of zeros. Reading takes about 8 times the bytes of a file that is not compressed; the
+/// rest is for compression, up to 5 : 1 in large files and any in small ones.
+ApartLimits limitsFor(std::size_t file_bytes) {
+  constexpr std::size_t least_bytes = std::size_t{128} << 20, per_byte = 40, bytes_per_s = std::size_t{1} << 20;
+  return {least_bytes + per_byte * file_bytes, static_cast<unsigned>(1 + file_bytes / bytes_per_s)};
+}
+
+}  // namespace
+
+std::string matlabTable(const std::string& file, const std::string& variable, std::vector<std::string>& notes) {
+  const std::size_t file_bytes = readTextFile(file, CsvLimits().file_bytes).size();  // says why a file cannot be read
+  // The notes come first, each ended by a zero byte, and one more ends them.
+  const std::string answer = doApart(file, limitsFor(file_bytes), [&] {
+    std::vector<std::string> own_notes;
+    const std::string table = tableOf(file, variable, own_notes);
+    std::string all;
+    for (const std::string& note : own_notes) all += note + '\0';
+    return all + '\0' + table;
+  });
+  std::size_t at = 0;
+  for (std::size_t end = answer.find('\0'); end != at; end = answer.find('\0', at)) {
+    notes.push_back(answer.substr(at, end - at));
+    at = end + 1;
+  }
+  return answer.substr(at + 1);
 }
 
 }  // namespace musclesim

@@ -20,7 +20,7 @@ namespace musclesim {
 
 namespace {
 
-constexpr std::size_t largest_sidecar_bytes = std::size_t{16} << 20;
+constexpr std::size_t largest_sidecar_bytes = std::size_t{4} << 20;
 /// A measured pressure outside these fractions of full scale more likely has a wrong unit than a sensor error.
 constexpr double plausible_pressure_minimum = -0.5, plausible_pressure_maximum = 1.5;
 

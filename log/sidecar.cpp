@@ -42,9 +42,11 @@ const std::vector<std::string>& knownMembers() {
   return names;
 }
 
+constexpr std::size_t most_robot_parameters = 10'000;
+
 /// Further members that runs of this program write. The reader accepts them without a note.
 bool isOfARun(const std::string& member) {
-  static const std::vector<std::string> names = {"controller",      "task",       "stepper", "substeps", "substeps_automatic",
+  static const std::vector<std::string> names = {"controller",      "task",       "stepper", "substeps",  "substeps_automatic",
                                                  "internal_step_s", "parameters", "verdict", "by_hand_s", "run"};
   return std::find(names.begin(), names.end(), member) != names.end();
 }
@@ -186,6 +188,8 @@ void SidecarReader::readRobotParameters(const json& values, const std::string& p
     const Parameter::Value parameter =
         value.is_number() ? Parameter::Value(value.get<double>()) : Parameter::Value(value.get<std::string>());
     if (!parameters.emplace(name, parameter).second) refuse("robot_parameters", path, value, "be given once");
+    if (parameters.size() > most_robot_parameters)
+      refuse("robot_parameters", "robot_parameters", values, fmt::format("have {} numbers at most", most_robot_parameters));
   }
 }
 
@@ -234,16 +238,20 @@ std::vector<ActiveEffect> SidecarReader::effects() const {
 }
 
 void SidecarReader::keepFurtherMembers(RecordingInfo& info, std::vector<std::string>& notes) const {
+  constexpr int most_named = 20;
   json further = json::object();
   std::string names;
+  int unknown_count = 0;
   for (const auto& [member, value] : document_.root().items()) {
     if (isKnown(member)) continue;
     further[member] = value;
     if (isOfARun(member)) continue;
+    if (++unknown_count > most_named) continue;
     const std::string nearest = nearestName(member, knownMembers());
     names += (names.empty() ? "" : ", ") + inQuotes(member) + (nearest.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", nearest));
   }
   info.extra_json = further.dump();
+  if (unknown_count > most_named) names += fmt::format(" and {} more", unknown_count - most_named);
   if (!names.empty()) notes.push_back("unknown members of the sidecar, kept unchanged: " + names);
 }
 

@@ -22,6 +22,7 @@ rows=(
   "signals|SIGINT and SIGTERM: ends within a step + 0.5 s, files complete, 130/143|tests/faults/signal_check.sh $build/musclesim"
   "determinism|100 repeats, on one thread and beside another: the same state hashes every 100 steps|env MUSCLESIM_LONG_TESTS=1 $build/tests/reliability/reliability_tests --gtest_filter=*Determinism*"
   "physics|momentum, energy, periods and static pulls against closed forms|$build/tests/analytic/analytic_tests"
+  "hostile|files made to do harm (nesting, a million bodies, circles of includes, decompression bombs, devices and holes without end, names and links that lead out of a folder), for robot files, URDF, SDF, MJCF, recordings and sidecars, schedules, effects, configurations, mappings, tables, MATLAB files and plugins: a message, the right exit status, and at most a second of processor time and 500 MB of memory each|tests/faults/hostile_check.py $build/musclesim"
   "rerun|a run is repeated from its folder alone, moved and without its input files: the same bytes, or the names of what differs; also after divergence, SIGINT and SIGKILL, and for sessions by hand; reads no file but the copies|$build/tests/src/program_tests --gtest_filter=RerunCommand.*"
   "soak|1e6 steps: memory grows by less than 1 MB, open files not at all|$build/tests/bench/soak_study"
   "security|no network, no shell: what the program imports; the reader's limits|scripts/security_check.sh $build/musclesim"

@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
 #include "musclesim/base/hash.h"
+#include "musclesim/base/text.h"
 #include "musclesim/robot/robot_file.h"
 #include "output_folder.h"
 #include "program_build.h"
@@ -67,15 +66,11 @@ void keep(KeptFile& file, const fs::path& base, const fs::path& folder) {
 
 /// A path in the folder; refuses what leads out of it: the sidecar may come from anywhere.
 fs::path inside(const fs::path& folder, const std::string& path, const std::string& sidecar) {
-  const fs::path normal = fs::path(path).lexically_normal();
-  if (normal.is_absolute() || normal.empty() || *normal.begin() == "..")
-    throw BadFile(sidecar, fmt::format("run: the copy \"{}\" must be a path within the folder", path));
-  const fs::path file = folder / normal;
-  if (!fs::exists(file)) throw BadFile(sidecar, fmt::format("run: the copy {} has gone; without it the run cannot be repeated", path));
-  const fs::path real_folder = fs::canonical(folder), real_file = fs::canonical(file);
-  const bool is_inside = std::ranges::mismatch(real_folder, real_file).in1 == real_folder.end();
-  if (!is_inside || !fs::is_regular_file(file))
-    throw BadFile(sidecar, fmt::format("run: the copy \"{}\" must be a file within the folder, not a link that leads elsewhere", path));
+  if (!isWithin(folder.string(), path))
+    throw BadFile(sidecar, fmt::format("run: the copy {} must lie within the folder, and be no link that leads elsewhere", inQuotes(path)));
+  const fs::path file = folder / fs::path(path).lexically_normal();
+  if (!fs::is_regular_file(file))
+    throw BadFile(sidecar, fmt::format("run: the copy {} has gone; without it the run cannot be repeated", inQuotes(path)));
   return file;
 }
 

@@ -5,6 +5,12 @@
 
 namespace musclesim {
 
+namespace {
+
+constexpr double most_bits = 50;  ///< finer levels than a double has between 0 and 1 would overflow
+
+}  // namespace
+
 EffectInfo CommandQuantisation::info() {
   return {
       .id = "command_quantisation",
@@ -23,7 +29,7 @@ EffectInfo CommandQuantisation::info() {
 }
 
 CommandQuantisation::CommandQuantisation(double bits, double rounding_point, double top_level)
-    : intervals_(std::exp2(bits) - top_level), rounding_point_(rounding_point) {}
+    : intervals_(std::exp2(std::min(bits, most_bits)) - top_level), rounding_point_(rounding_point) {}
 
 double CommandQuantisation::settled(double input) {
   return std::clamp(std::floor(input * intervals_ + 1 - rounding_point_) / intervals_, 0.0, 1.0);

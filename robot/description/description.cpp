@@ -274,6 +274,7 @@ MuscleEntry readActuator(TableReader table, std::size_t number) {
   readEnds(table, actuator, fmt::format("actuator_{}", number));
   table.choice("type", "linear", {"linear"});
   actuator.force_N = table.optionalText("force_N").value_or("");
+  requireShort(actuator.force_N, table.place("force_N"));
   if (!actuator.force_N.empty() && actuator.force_law) table.place("force_N").refuse("give either force_N or force_law, not both");
   actuator.commanded = table.flag("commanded", true);
   table.requireNoOthers();

@@ -27,6 +27,12 @@ std::string shown(const toml::node& node) {
 
 }  // namespace
 
+void requireShort(const std::string& expression, const FilePlace& place) {
+  constexpr std::size_t longest = 1000;  // far above what people write; keeps nesting and messages short
+  if (expression.size() > longest)
+    place.refuse(fmt::format("the expression has {} characters: must have {} at most", expression.size(), longest));
+}
+
 TableReader::TableReader(const toml::table& table, std::string file, std::string what)
     : table_(&table), file_(std::move(file)), what_(std::move(what)) {}
 
@@ -97,6 +103,7 @@ Quantity TableReader::quantityOf(const toml::node& node, const std::string& key)
   if (node.is_string()) {
     result.expression = *node.value<std::string>();
     if (result.expression.empty()) result.place.refuse("\"\" must be a number or an expression over the file's parameters");
+    requireShort(result.expression, result.place);
     return result;
   }
   if (!node.is_number()) result.place.refuse(shown(node) + " must be a number or an expression over the file's parameters, in quotes");

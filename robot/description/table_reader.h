@@ -21,6 +21,9 @@ struct FilePlace {
   [[noreturn]] void refuse(const std::string& problem) const;
 };
 
+/// Throws BadFile for an expression that nobody would write.
+void requireShort(const std::string& expression, const FilePlace& place);
+
 /// A number, or an expression over the file's parameters.
 struct Quantity {
   double number = 0;

@@ -66,7 +66,23 @@ TEST(File, ErrorsNameFileAndReason) {
 }
 
 TEST(File, LargerThanAllowedIsRefused) {
-  EXPECT_TRUE(hasWords(messageOf<BadFile>([] { readTextFile("/dev/zero", 1 << 20); }), {"/dev/zero", "1 MiB"}));
+  const TemporaryFolder folder;
+  replaceFile(folder.file("hole"), "");
+  std::filesystem::resize_file(folder.file("hole"), std::uintmax_t{1} << 40);  // takes no room on the disk
+  EXPECT_TRUE(hasWords(messageOf<BadFile>([&] { readTextFile(folder.file("hole"), 1 << 20); }), {"hole", "1 MiB"}));
+  EXPECT_TRUE(hasWords(messageOf<BadFile>([] { readTextFile("/dev/zero", 1 << 20); }), {"/dev/zero", "is a device"}));
+}
+
+TEST(File, WithinAFolderAreNamesThatDoNotLeadOut) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder.file("in/deeper"));
+  replaceFile(folder.file("out"), "");
+  std::filesystem::create_symlink(folder.file("out"), folder.file("in/link"));
+  std::filesystem::create_symlink(folder.file(""), folder.file("in/up"));
+  for (const char* within : {"a", "./a", "deeper/a", "deeper/../a", "..a"}) EXPECT_TRUE(isWithin(folder.file("in"), within)) << within;
+  for (const std::string& outside : {std::string("../out"), folder.file("in/a"), std::string("deeper/../../out"), std::string("link"),
+                                     std::string("up/out"), std::string(".."), std::string("")})
+    EXPECT_FALSE(isWithin(folder.file("in"), outside)) << outside;
 }
 
 }  // namespace

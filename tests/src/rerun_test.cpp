@@ -157,11 +157,11 @@ TEST_F(RerunCommand, ReadsNoFileButTheCopies) {
     changeSidecar([&](json& sidecar) { sidecar = good, sidecar["run"]["files"][0]["copy"] = copy; });
     expect(program({"rerun", "b"}), 3, {"run.json", words});
   };
-  refused("../outside.toml", "must be a path within the folder");
-  refused((folder_ / "outside.toml").string(), "must be a path within the folder");
+  refused("../outside.toml", "must lie within the folder");
+  refused((folder_ / "outside.toml").string(), "must lie within the folder");
   refused("run_inputs/robot/absent.toml", "has gone");
   fs::create_symlink(folder_ / "outside.toml", folder_ / "b/run_inputs/link.toml");
-  refused("run_inputs/link.toml", "not a link that leads elsewhere");
+  refused("run_inputs/link.toml", "no link that leads elsewhere");
   changeSidecar([&](json& sidecar) { sidecar = good, sidecar["run"]["arguments"] = {"--robot", "outside.toml"}; });
   expect(program({"rerun", "b"}), 3, {"the folder has no copy of --robot outside.toml"});
   changeSidecar([&](json& sidecar) { sidecar = good, sidecar["run"]["arguments"].push_back("--unheard-of"); });

@@ -10,6 +10,10 @@ namespace musclesim {
 /// The contents of a file. Throws IoError if it does not exist or cannot be read, BadFile if it is larger than `limit_bytes`.
 std::string readTextFile(const std::string& file, std::size_t limit_bytes);
 
+/// Whether a path, relative to a folder, is that of something within the folder; a link that leads elsewhere is not. What does not exist is
+/// judged by its name. For names in files that may come from anywhere.
+bool isWithin(const std::string& folder, const std::string& path);
+
 /// A new version of a file, under a temporary name in the same folder. commit() puts it in place; the destructor removes it if it was not
 /// committed. Throws IoError with the file's name and the system's reason.
 class FileReplacement {

@@ -1,0 +1,19 @@
+/// Work that is done in a process of its own, because the library that does it may crash or use up the memory on a hostile file.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+
+namespace musclesim {
+
+struct ApartLimits {
+  std::size_t memory_bytes = std::size_t{256} << 20;  ///< beyond what this process has; not under the address sanitizer
+  unsigned processor_s = 1;
+};
+
+/// Calls `work` in a copy of this process (fork) and returns the text that it returns. Throws BadFile with the message of an error that it
+/// throws, or `file` with what ended the copy. Only the calling thread exists in the copy, so `work` must not wait for another.
+std::string doApart(const std::string& file, const ApartLimits& limits, const std::function<std::string()>& work);
+
+}  // namespace musclesim
