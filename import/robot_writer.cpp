@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "musclesim/base/error.h"
 #include "musclesim/base/units.h"
 
 namespace musclesim {
@@ -107,6 +108,8 @@ class TomlWriter {
   explicit TomlWriter(const SourceRobot& robot) : robot_(robot) {}
 
   std::string text() {
+    if (std::none_of(robot_.bodies.begin() + 1, robot_.bodies.end(), isWritten))
+      throw BadFile(robot_.file, "describes no body beside what is fixed to the world and not drawn");
     writeHead();
     for (std::size_t body = 1; body < robot_.bodies.size(); ++body)
       if (isWritten(robot_.bodies[body])) writeBody(robot_.bodies[body]);

@@ -7,14 +7,22 @@
 #include <cstdlib>
 #include <functional>
 
+#include "controller/targets.h"
+#include "import/import.h"
+#include "laboratory/point_reader.h"
 #include "log/data_table.h"
+#include "log/matlab.h"
 #include "log/table_look.h"
 #include "musclesim/base/error.h"
+#include "musclesim/base/json_document.h"
 #include "musclesim/base/parameters.h"
+#include "musclesim/controller/replay.h"
 #include "musclesim/effect/effects_file.h"
 #include "musclesim/log/recording.h"
 #include "musclesim/robot/robot_file.h"
+#include "musclesim/simulation/simulation.h"
 #include "src/command_line.h"
+#include "src/run_origin.h"
 #include "sweep/plan.h"
 #include "sweep/sweep.h"
 
@@ -108,6 +116,76 @@ void foreignTable(const std::string& bytes) {
   });
 }
 
+/// A table that a mapping can take apart in most ways.
+const std::string logged_table =
+    "t,date,a,b,c,word\n0,2026-03-01T00:00:00,0.1,0.2,20,--\n0.5,2026-03-01T00:00:00.5,0.3,0.4,21,x\n1,2026-03-01T00:00:01,0.5,0.6,,x\n";
+
+void mappingToml(const std::string& bytes) {
+  read([&] { importTable(MemoryFile(logged_table).path(), readImportMapping(MemoryFile(bytes).path())); });
+}
+
+/// A crash of libmatio is an answer: it reads in a process of its own.
+void matlabBinary(const std::string& bytes) {
+  read([&] {
+    std::vector<std::string> notes;
+    matlabTable(MemoryFile(bytes).path(), "", notes);
+  });
+}
+
+void commandsCsv(const std::string& bytes) {
+  read([&] {
+    ReplayController controller(readCommands(MemoryFile(bytes).path()), 2);
+    State state;
+    for (const double time_s : {0.0, 0.015, 1e300}) {
+      state.time_s = time_s;
+      for (const double command : controller.output(state))
+        if (!(command >= 0 && command <= 1)) wrong("a command outside of 0 .. 1");
+    }
+  });
+}
+
+void targetsCsv(const std::string& bytes) {
+  read([&] {
+    const MemoryFile file(bytes);
+    const TargetTable table(file.path());
+    for (const char* joint : {"elbow", ""}) table.at(table.column(joint), table.endS());
+  });
+}
+
+void staticPointsCsv(const std::string& bytes) {
+  read([&] { readStaticPoints(MemoryFile(bytes).path(), {}); });
+}
+
+/// A robot of another program: what comes out is a robot file that can be read. For three targets, whose corpora differ.
+void foreignRobot(const std::string& bytes) {
+  read([&] {
+    const ImportedRobot robot = importRobot(MemoryFile(bytes).path());
+    try {
+      checkRobotText(robot.toml, "made.toml");
+    } catch (const BadFile& error) {
+      wrong(std::string("a robot was made that cannot be read: ") + error.what());
+    }
+  });
+}
+
+/// The robot is built, with all its expressions, and stands for a step.
+void robotBuilt(const std::string& bytes) {
+  read([&] {
+    Simulation simulation;
+    makeRobotFromText(bytes, "robot.toml", simulation.world())->getState();
+  });
+}
+
+void originJson(const std::string& bytes) {
+  read([&] {
+    const auto json = JsonDocument(bytes, "r.json").root();
+    const auto origin = command_line::originFromJson(json, "r.json");
+    command_line::argumentsWithCopies(origin, "/nonexistent", "r.json");
+    requireSame(command_line::jsonOf(origin).dump(),
+                command_line::jsonOf(command_line::originFromJson(command_line::jsonOf(origin), "")).dump());
+  });
+}
+
 void effectsJson(const std::string& bytes) {
   read([&] {
     const auto effects = parseEffects(bytes, "effects.json");
@@ -141,9 +219,13 @@ void commandLine(const std::string& bytes) {
 
 const std::vector<std::pair<std::string, FuzzTarget>>& fuzzTargets() {
   static const std::vector<std::pair<std::string, FuzzTarget>> targets = {
-      {"recording_csv", recordingCsv}, {"sidecar_json", sidecarJson},     {"configuration_toml", configurationToml},
-      {"effects_json", effectsJson},   {"sweep_manifest", sweepManifest}, {"sweep_plan", sweepPlan},
-      {"foreign_table", foreignTable}, {"command_line", commandLine},     {"robot_toml", robotToml},
+      {"recording_csv", recordingCsv}, {"sidecar_json", sidecarJson},      {"configuration_toml", configurationToml},
+      {"effects_json", effectsJson},   {"sweep_manifest", sweepManifest},  {"sweep_plan", sweepPlan},
+      {"foreign_table", foreignTable}, {"command_line", commandLine},      {"robot_toml", robotToml},
+      {"mapping_toml", mappingToml},   {"matlab", matlabBinary},           {"commands_csv", commandsCsv},
+      {"targets_csv", targetsCsv},     {"static_points", staticPointsCsv}, {"robot_urdf", foreignRobot},
+      {"robot_mjcf", foreignRobot},    {"robot_sdf", foreignRobot},        {"robot_built", robotBuilt},
+      {"run_origin", originJson},
   };
   return targets;
 }
