@@ -143,7 +143,7 @@ int bench(const ModelOptions& model, const BenchArguments& arguments) {
   replaceFile((folder / "figures" / "performance.svg").string(), benchFigure(curves));
   fmt::print("{}\ntable   {}\nfigure  {}\n", table, (folder / "performance.md").string(),
              (folder / "figures" / "performance.svg").string());
-  if (model.json) fmt::print("{}\n", benchJson(curves).dump());
+  if (model.json) fmt::print("{}\n", benchJson(curves).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   return done;
 }
 

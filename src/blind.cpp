@@ -140,7 +140,7 @@ int scoreCases(const ScoreArguments& arguments) {
   if (arguments.docs) blind::writePage(score, *arguments.docs);
   const nlohmann::json& all = object["all"];
   if (arguments.json) {
-    fmt::print("{}\n", all.dump());
+    fmt::print("{}\n", all.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
     return done;
   }
   for (const auto& [words, name] : {std::pair("verdict right", "verdict"), std::pair("acceptable first", "acceptable"),

@@ -117,7 +117,7 @@ std::optional<int> CommandLine::parse(int argument_count, const char* const* arg
     app_.parse(std::move(words));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app_.exit(error);  // --help, --version
-    std::fprintf(stderr, "musclesim: error: %s\nmusclesim --help lists the options\n", messageFor(error).c_str());
+    tell(fmt::format("error: {}\nmusclesim --help lists the options", messageFor(error)));
     return bad_usage;
   }
   return std::nullopt;

@@ -10,6 +10,7 @@
 #include "interrupt.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
+#include "musclesim/base/text.h"
 #include "musclesim/diagnosis/proposed_recording.h"
 #include "musclesim/effect/effects_file.h"
 #include "output_folder.h"
@@ -112,7 +113,7 @@ int diagnoseCommand(const ModelOptions& model, const DiagnoseArguments& argument
   const RecordingInfo plant = diagnosedModel(recordings.front(), options.model);
   const Diagnosis diagnosis = diagnose(std::move(recordings), options);
   writeAll(diagnosis, folder, arguments, options.model.effects, plant, model.command_line);
-  fmt::print("{}report    {}\n", diagnosisSummary(diagnosis), (folder / "report.html").string());
+  fmt::print("{}report    {}\n", diagnosisSummary(diagnosis), printable((folder / "report.html").string()));
   return diagnosis.partial ? interrupted_base + interruptSignal() : done;
 }
 

@@ -88,7 +88,7 @@ int experiment(const ModelOptions& model, const ExperimentArguments& arguments) 
           name, *arguments.data, entry["data"]["relative_squared_error"].get<double>(), entry["data"]["points"].get<int>(),
           entry["data"]["outside"].get<int>());
   for (const auto& specimen : specimens) fmt::print("points  {0}.csv\nfigure  {0}.svg\n", (folder / specimen.name).string());
-  if (model.json) fmt::print("{}\n", json.dump());
+  if (model.json) fmt::print("{}\n", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   return done;
 }
 

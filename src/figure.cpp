@@ -7,6 +7,7 @@
 
 #include "commands.h"
 #include "log/figure_file.h"
+#include "musclesim/base/text.h"
 #include "musclesim/log/recording.h"
 #include "output_folder.h"
 
@@ -29,7 +30,7 @@ int figure(const ModelOptions& model, const FigureArguments& arguments) {
   const std::string title = arguments.title.value_or(recording.info.description);
   writeFigure(out.string(),
               arguments.signals.empty() ? runFigureSvg(recording, {}, title) : signalsFigureSvg(recording, arguments.signals, {}, title));
-  fmt::print("figure  {}\n", out.string());
+  fmt::print("figure  {}\n", printable(out.string()));
   return done;
 }
 

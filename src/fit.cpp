@@ -97,7 +97,7 @@ int fit(const FitArguments& arguments) {
   for (const auto& name : names) makeLawModel(name, specimen, lengths);
   markOutliers(points, specimen);
   if (!arguments.quiet)
-    for (const auto& note : points.notes) std::fprintf(stderr, "musclesim: %s\n", note.c_str());
+    for (const auto& note : points.notes) tell(note);
   const auto reports = fitLaws(names, points, specimen, lengths);
   const fs::path folder = outputFolder(arguments.out, "fit-" + fs::path(arguments.data).stem().string());
   const auto files = writeFiles(reports, points, folder);
@@ -105,7 +105,8 @@ int fit(const FitArguments& arguments) {
   for (const auto& report : reports) fmt::print("{}", constantsText(report));
   fmt::print("{}", adviceText(reports));
   for (const auto& [name, file] : files) fmt::print("config  {}\nfigure  {}\n", file, fs::path(file).replace_extension(".svg").string());
-  if (arguments.json) fmt::print("{}\n", verdictOf(arguments, points, reports, files, folder).dump());
+  if (arguments.json)
+    fmt::print("{}\n", verdictOf(arguments, points, reports, files, folder).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   return done;
 }
 

@@ -12,6 +12,7 @@
 #include "log/table_look.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
+#include "musclesim/base/text.h"
 #include "musclesim/robot/robot.h"
 #include "musclesim/robot/robot_registry.h"
 #include "output_folder.h"
@@ -36,14 +37,14 @@ void requireNew(const std::string& csv) {
 int lookCommand(const ImportArguments& arguments) {
   if (!arguments.table.empty()) throw BadParameter("--look", *arguments.look, "be the only file; a mapping to begin is named by -o");
   const TableLook look = lookAtTable(*arguments.look);
-  for (const auto& note : look.notes) std::fprintf(stderr, "musclesim: %s\n", note.c_str());
-  fmt::print("{}", lookText(look));
+  for (const auto& note : look.notes) tell(note);
+  fmt::print("{}", printable(lookText(look)));
   if (!arguments.mapping_out) return done;
   if (std::filesystem::exists(*arguments.mapping_out))
     throw BadParameter("-o", *arguments.mapping_out, "be a new file: a mapping is never overwritten");
   replaceFile(*arguments.mapping_out, mappingText(look));
-  fmt::print("mapping    {}: complete it, then musclesim import {} {} OUT.csv\n", *arguments.mapping_out, *arguments.look,
-             *arguments.mapping_out);
+  fmt::print("mapping    {0}: complete it, then musclesim import {1} {0} OUT.csv\n", printable(*arguments.mapping_out),
+             printable(*arguments.look));
   return done;
 }
 
@@ -60,18 +61,17 @@ int importCommand(const ImportArguments& arguments) {
   if (!arguments.overwrite) requireNew(arguments.out);
   const Recording recording = importTable(arguments.table, mapping);
   if (!arguments.quiet)
-    for (const auto& note : recording.notes) std::fprintf(stderr, "musclesim: %s\n", note.c_str());
+    for (const auto& note : recording.notes) tell(note);
   const auto robots = registeredRobots();
   if (!arguments.quiet &&
       std::none_of(robots.begin(), robots.end(), [&](const auto& robot) { return robot.first == recording.info.robot; }))
-    std::fprintf(stderr, "musclesim: this program has no robot %s: only a program that registers it can replay the recording\n",
-                 recording.info.robot.c_str());
+    tell(fmt::format("this program has no robot {}: only a program that registers it can replay the recording", recording.info.robot));
   prepareRecording(arguments.out);
   writeRecording(recording, arguments.out);
   std::vector<std::string> names;
   for (const Signal& signal : recording.signals) names.push_back(signal.name);
-  fmt::print("{}: {} rows over {:.3g} s, robot {}: {}\n", arguments.out, recording.time_s.size(),
-             recording.time_s.back() - recording.time_s.front(), recording.info.robot, fmt::join(names, ", "));
+  fmt::print("{}: {} rows over {:.3g} s, robot {}: {}\n", printable(arguments.out), recording.time_s.size(),
+             recording.time_s.back() - recording.time_s.front(), printable(recording.info.robot), fmt::join(names, ", "));
   return done;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "musclesim/base/error.h"
+#include "musclesim/base/text.h"
 #include "musclesim/effect/effects_file.h"
 #include "plugin.h"
 
@@ -152,8 +153,12 @@ ReplayOptions replayOptionsFrom(const ModelOptions& model) {
   return options;
 }
 
+void tell(const std::string& message) {
+  std::fprintf(stderr, "musclesim: %s\n", printable(message).c_str());
+}
+
 void say(const ModelOptions& options, const std::string& message) {
-  if (!options.quiet) std::fprintf(stderr, "musclesim: %s\n", message.c_str());
+  if (!options.quiet) tell(message);
 }
 
 }  // namespace musclesim::command_line

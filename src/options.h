@@ -62,7 +62,10 @@ StaticPointsOptions staticPointsOptions(const PointsOptions& options);
 /// All model options together, for the plant of a recording.
 ReplayOptions replayOptionsFrom(const ModelOptions& model);
 
-/// One line to standard error, unless --quiet.
+/// One line to standard error, without control characters.
+void tell(const std::string& message);
+
+/// The same, unless --quiet.
 void say(const ModelOptions& options, const std::string& message);
 
 }  // namespace musclesim::command_line

@@ -17,7 +17,7 @@ namespace {
 using namespace command_line;
 
 int complain(const std::exception& error, ExitStatus status) {
-  std::fprintf(stderr, "musclesim: error: %s\n", error.what());
+  tell(std::string("error: ") + error.what());
   return status;
 }
 

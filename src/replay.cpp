@@ -11,6 +11,7 @@
 #include "interrupt.h"
 #include "log/figure_file.h"
 #include "musclesim/base/error.h"
+#include "musclesim/base/text.h"
 #include "musclesim/log/recorder.h"
 #include "output_folder.h"
 #include "pictures.h"
@@ -161,10 +162,11 @@ int replay(const ModelOptions& model, const ReplayArguments& arguments) {
   if (result.interrupted)
     say(model, fmt::format("interrupted; the results cover {} of {} rows", result.simulated.time_s.size(), recording.time_s.size()));
   printTable(result);
-  if (const auto figure = arguments.figureFile(); figure && !result.simulated.time_s.empty()) fmt::print("figure  {}\n", *figure);
-  if (result.divergence) std::fprintf(stderr, "musclesim: error: %s\n", result.divergence->c_str());
+  if (const auto figure = arguments.figureFile(); figure && !result.simulated.time_s.empty())
+    fmt::print("figure  {}\n", printable(*figure));
+  if (result.divergence) tell("error: " + *result.divergence);
   views.show(result);
-  if (model.json) fmt::print("{}\n", verdictOf(result, arguments).dump());
+  if (model.json) fmt::print("{}\n", verdictOf(result, arguments).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   if (interruptSignal() != 0) return interrupted_base + interruptSignal();
   return result.divergence ? diverged : done;
 }

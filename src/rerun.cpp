@@ -13,6 +13,7 @@
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
 #include "musclesim/base/json_document.h"
+#include "musclesim/base/text.h"
 #include "musclesim/base/unique_name.h"
 #include "musclesim/log/csv.h"
 #include "musclesim/version.h"
@@ -259,8 +260,8 @@ std::string whyOnlyCommands(const json& sidecar, const StoredRun* stored) {
 }
 
 void report(const fs::path& csv, const Comparison& comparison, const RerunArguments& arguments) {
-  fmt::print("{}  {}\n", csv.string(), comparison.finding);
-  for (const std::string& difference : comparison.differences) fmt::print("differs  {}\n", difference);
+  fmt::print("{}  {}\n", printable(csv.string()), comparison.finding);
+  for (const std::string& difference : comparison.differences) fmt::print("differs  {}\n", printable(difference));
   if (!comparison.is_same && comparison.differences.empty())
     fmt::print("differs  nothing that the folder names: the table itself was changed, or the program is at fault\n");
   if (!arguments.json) return;
@@ -288,7 +289,7 @@ int rerun(const RerunArguments& arguments) {
   requireOther(out.csv(), {csv.string()});
   Comparison comparison;
   if (const std::string why = whyOnlyCommands(sidecar, stored.get()); !why.empty()) {
-    if (!arguments.quiet) std::fprintf(stderr, "musclesim: only the commands are repeated: %s\n", why.c_str());
+    if (!arguments.quiet) tell("only the commands are repeated: " + why);
     comparison = replayed(recording, sidecar, out);
   } else {
     const int status = stored->repeat(out.csv(), recording.time_s.back());

@@ -10,6 +10,7 @@
 #include "commands.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
+#include "musclesim/base/text.h"
 #include "musclesim/robot/robot_file.h"
 #include "musclesim/simulation/replay.h"
 #include "pictures.h"
@@ -41,7 +42,7 @@ int check(const ModelOptions& model, const std::string& robot) {
   const auto simulation = built(model, robot);
   const Robot& made = simulation->robot();
   made.requireTolerances();
-  fmt::print("{}: {} bodies, {} joints with a reported angle, {} muscles; starts {}\n", robot, simulation->world().bodies().size(),
+  fmt::print("{}: {} bodies, {} joints with a reported angle, {} muscles; starts {}\n", printable(robot), simulation->world().bodies().size(),
              made.angles().size(), made.actuatorCount(), made.initialState());
   const auto found = oddities(simulation->world(), made);
   if (made.initialState() == "settled") simulation->settle(musclesim::Action(static_cast<std::size_t>(made.actuatorCount()), 0.0));
@@ -74,7 +75,7 @@ int show(const ModelOptions& model, const ShowArguments& arguments) {
   if (arms.empty()) return done;
   const std::string figure = stem.string() + "-moment-arms.svg";
   replaceFile(figure, momentArmFigure(arms, simulation->robot()));
-  fmt::print("moment arms {}\n", figure);
+  fmt::print("moment arms {}\n", printable(figure));
   return done;
 }
 
@@ -86,7 +87,7 @@ void write(const std::optional<std::string>& out, const std::string& text) {
   }
   FileReplacement file(*out, text);
   if (!file.commitIfAbsent()) throw BadParameter("file", *out, "not exist yet: choose another name or remove it");
-  fmt::print("robot file {}\n", *out);
+  fmt::print("robot file {}\n", printable(*out));
 }
 
 int begin(const std::string& name, const std::optional<std::string>& out) {

@@ -13,6 +13,7 @@
 #include "musclesim/base/color.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
+#include "musclesim/base/text.h"
 #include "musclesim/controller/controller_registry.h"
 #include "musclesim/controller/test_signal.h"
 #include "musclesim/log/figure.h"
@@ -295,7 +296,7 @@ class Run {
   }
 
   void sayEnding(const Ending& ending) const {
-    if (!ending.error.empty()) std::fprintf(stderr, "musclesim: error: %s\n", ending.error.c_str());
+    if (!ending.error.empty()) tell("error: " + ending.error);
     if (ending.exit_status > interrupted_base) say(model_, "interrupted; the files hold everything up to then");
     if (ending.exit_status == done && options_.duration_s && hasEndedEarly())
       say(model_, fmt::format("the window was closed: {:.4g} s of {:g} s are recorded", simulation_.time_s(), duration_s_));
@@ -314,13 +315,13 @@ class Run {
                               verdict["reached_within_mm"].get<double>(), verdict["reached_at_s"].get<double>(),
                               100 * verdict["held_share"].get<double>()));
     if (verdict.contains("signals")) fmt::print("{}", summaryText(verdict["signals"]));
-    fmt::print("log     {}\n", csv.string());
-    if (!svg.empty()) fmt::print("figure  {}\n", svg.string());
+    fmt::print("log     {}\n", printable(csv.string()));
+    if (!svg.empty()) fmt::print("figure  {}\n", printable(svg.string()));
     if (model_.json) {
       verdict["command"] = "run";
       verdict["log"] = csv.string();
       verdict["figure"] = svg.string();
-      fmt::print("{}\n", verdict.dump());
+      fmt::print("{}\n", verdict.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
     }
   }
 

@@ -43,7 +43,7 @@ RecordingInfo describe(Simulation& simulation, const RunOptions& options, const 
     extra["task"] = taskOf(options);
   }
   if (!origin.is_null()) extra["run"] = origin;
-  info.extra_json = extra.dump();
+  info.extra_json = extra.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);  // arguments may be no UTF-8
   return info;
 }
 

@@ -66,7 +66,7 @@ int workOnSweep(const WorkArguments& arguments) {
   }
   options.wait = !arguments.no_wait;
   options.interrupt_signal = interruptSignal;
-  if (!arguments.quiet) options.say = [](const std::string& message) { std::fprintf(stderr, "musclesim: %s\n", message.c_str()); };
+  if (!arguments.quiet) options.say = [](const std::string& message) { tell(message); };
   const WorkSummary summary = work(arguments.folder, options);
   const nlohmann::json verdict = verdictOf(summary, arguments.folder);
   options.say(fmt::format("{}: {} rows done, {} diverged, {} failed, {} crashed in {:.1f} s", verdict["status"].get<std::string>(),

@@ -31,5 +31,11 @@ TEST(InQuotes, ShortensLongText) {
   EXPECT_EQ(inQuotes(std::string(41, 'a')), "\"" + std::string(40, 'a') + "...\"");
 }
 
+TEST(Printable, KeepsTextAndShowsControlCharacters) {
+  EXPECT_EQ(printable("a\tb\n\u00e9 \u05d0"), "a\tb\n\u00e9 \u05d0");
+  EXPECT_EQ(printable("\x1b[31m\r\x07\x7f"), "\\x1B[31m\\x0D\\x07\\x7F");
+  EXPECT_EQ(printable("\u009b31m"), "\\x9B31m");
+}
+
 }  // namespace
 }  // namespace musclesim

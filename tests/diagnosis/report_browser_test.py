@@ -25,7 +25,7 @@ if not CHROMIUM or not DRIVER:
     print("skipped: chromium and chromium-driver are not installed")
     sys.exit(77)
 
-PAGES = ("found", "unexplained", "no_gap", "large")
+PAGES = ("found", "unexplained", "no_gap", "large", "hostile")
 PHONE_WIDTH = 360
 # A4 with the browser's margins, in CSS pixels.
 PAPER = {"width": 718, "height": 1047}
@@ -91,6 +91,18 @@ class Report(unittest.TestCase):
             with self.subTest(page):
                 self.open(page)
                 self.assertEqual([entry for entry in self.driver.get_log("browser") if entry["level"] in ("SEVERE", "WARNING")], [])
+
+    def test_hostile_names_are_text(self):
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                                    {"width": PHONE_WIDTH, "height": 740, "deviceScaleFactor": 2, "mobile": True})
+        self.open("hostile")
+        self.run_script("document.querySelectorAll('details').forEach(d => d.open = true)")
+        self.assertEqual(self.run_script("return typeof hostile"), "undefined")
+        self.assertEqual(self.run_script("return document.images.length"), 0)
+        self.assertEqual(self.run_script("return [...document.querySelectorAll('*')].filter(e => [...e.attributes].some(a => "
+                                         "a.name.startsWith('on'))).map(e => e.outerHTML.slice(0, 120))"), [])
+        self.assertIn("<img src=x onerror=hostile=1>", self.run_script("return document.body.textContent"))
+        self.assertLessEqual(self.run_script("return document.documentElement.scrollWidth"), PHONE_WIDTH)
 
     def test_it_is_small_and_opens_fast(self):
         for page in PAGES:

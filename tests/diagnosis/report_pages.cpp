@@ -35,6 +35,22 @@ Diagnosis large() {
   return d;
 }
 
+/// Markup, quotes, right-to-left and control characters, and ten thousand letters, in everything that comes from files and arguments.
+std::string hostileText() {
+  return "<script>hostile = 1</script><img src=x onerror=hostile=1>\"'&amp;]]><!-- \u202egnorw\u202c \x1b[31m\x07 " + std::string(10'000, 'x');
+}
+
+Diagnosis hostile() {
+  Diagnosis d = sampleDiagnosis();
+  d.robot = hostileText();
+  d.recordings = {hostileText() + ".csv", "b" + hostileText() + ".csv"};
+  d.model_options = "--robot " + hostileText();
+  d.held_out = hostileText();
+  d.notes.push_back(hostileText());
+  for (Trace& trace : d.traces) trace.recording = d.recordings.front();
+  return d;
+}
+
 void writePages(const std::filesystem::path& folder) {
   const ReportOrigin origin{"2026-01-02 03:04",
                             "musclesim diagnose slow.csv fast.csv --out a-folder-with-a-name-that-is-too-long-for-a-phone"};
@@ -43,6 +59,7 @@ void writePages(const std::filesystem::path& folder) {
   replaceFile((folder / "unexplained.html").string(), diagnosisReport(unexplained(), origin));
   replaceFile((folder / "no_gap.html").string(), diagnosisReport(noGap(), origin));
   replaceFile((folder / "large.html").string(), diagnosisReport(large(), origin));
+  replaceFile((folder / "hostile.html").string(), diagnosisReport(hostile(), {"2026-01-02 03:04", "musclesim diagnose " + hostileText()}));
 }
 
 }  // namespace

@@ -23,4 +23,8 @@ inline TextPlace placeInText(std::string_view text, std::size_t offset) {
 /// Quotes text from a file for a message: shortens it and writes bytes that are not printable ASCII as \xNN.
 std::string inQuotes(std::string_view text);
 
+/// A text for a terminal: control characters other than line ends and tabs, which could change its colours, its title or what stands
+/// above, become \xNN.
+std::string printable(std::string_view text);
+
 }  // namespace musclesim
