@@ -12,7 +12,8 @@ build=${BUILD:-build/release}
 
 # name|what is promised|command
 rows=(
-  "parsers|the readers of recordings (CSV, sidecar), parameters (TOML), effects, sweep plans and manifests and the command line under libFuzzer with both sanitizers: no crash, no hang, errors name their place|scripts/fuzz.sh 60"
+  "parsers|the readers of recordings (CSV, sidecar), parameters (TOML), effects, sweep plans and manifests, robot files (read and built), URDF, SDF, MJCF, mappings, tables, MATLAB files, commands, targets, static points, origins of runs and the command line under libFuzzer with both sanitizers: no crash, no hang, errors name their place|scripts/fuzz.sh 60"
+  "altered|altered and cut variants of the kept corpus through all targets, 10 s each, without sanitizers and without a view of what is reached|env MUSCLESIM_LONG_TESTS=1 $build/tests/fuzz/fuzz_tests --gtest_filter=*Altered*"
   "corpus|the kept corpus, and altered and cut variants of it, through the same targets|$build/tests/fuzz/fuzz_tests"
   "numbers|NaN, infinities, 1e308, -0 and denormals at every muscle's pressure, in forces, in every parameter of effects and robots, in every column of a recording: refused or Diverged within a step|$build/tests/reliability/reliability_tests --gtest_filter=NonFinite.*"
   "divergence|non-finite, far, fast and torn bodies end the run with time, place and cause; the next simulation is as if nothing had been|$build/tests/robot/robot_tests --gtest_filter=*AFault*"
@@ -66,7 +67,7 @@ for row in "${rows[@]}"; do
     echo "$((SECONDS - start)) s"
     # Of a test program the totals, failures and figures; of a script everything.
     if [[ $command == *_tests* ]]; then
-      grep -aE '^\[ +(PASSED|FAILED)|tests? from .* ran|Failure$|^(valid|places): |^no test was run' <<<"$output"
+      grep -aE '^\[ +(PASSED|FAILED)|tests? from .* ran|Failure$|^(valid|places|altered inputs): |^no test was run' <<<"$output"
     else
       tail -n 25 <<<"$output"
     fi | cut -c1-300 | sed -e "s|$root/||g" || true
