@@ -306,9 +306,54 @@ std::vector<std::pair<std::string, double>> Plant::numbersAt(const Eigen::Vector
   return values;
 }
 
-Eigen::VectorXd Plant::clampedNumbers(const Eigen::VectorXd& eta) const {
+Eigen::VectorXd Plant::clampedNumbers(const Eigen::VectorXd& eta, double margin) const {
   constexpr double farthest = 4;  // tolerances: beyond it the tolerance itself would be wrong
-  return eta.cwiseMax(-farthest).cwiseMin(farthest);
+  constexpr int halving_count = 6;
+  const Eigen::VectorXd whole = eta.cwiseMax(-farthest).cwiseMin(farthest), none = Eigen::VectorXd::Zero(eta.size());
+  if (margin > 0 && !canBeBuilt(none, margin)) margin = 0;
+  if (canBeBuilt(whole, margin)) return whole;
+  Eigen::VectorXd result = none;
+  for (Eigen::Index i = 0; i < eta.size(); ++i) {
+    double fits = 0, too_far = 1;  // shares of this number's coordinate
+    const auto tryShare = [&](double share) {
+      result[i] = share * whole[i];
+      (canBeBuilt(result, margin) ? fits : too_far) = share;
+    };
+    tryShare(1);
+    for (int k = 0; k < halving_count && fits < 1; ++k) tryShare((fits + too_far) / 2);
+    result[i] = fits * whole[i];
+  }
+  return result;
+}
+
+/// Whether the robot can be built with the numbers at these coordinates, and with each of them changed by the margin.
+bool Plant::canBeBuilt(const Eigen::VectorXd& eta, double margin) const {
+  if (margin > 0)
+    for (Eigen::Index i = 0; i < eta.size(); ++i)
+      for (const double side : {margin, -margin}) {
+        Eigen::VectorXd beside = eta;
+        beside[i] += side;
+        if (!canBeBuilt(beside, 0)) return false;
+      }
+  if (eta.isZero(0)) return true;
+  const std::vector<double> key(eta.begin(), eta.end());
+  {
+    const std::lock_guard lock(access_to_built_);
+    if (const auto known = built_.find(key); known != built_.end()) return known->second;
+  }
+  bool possible = true;
+  try {
+    ReplayOptions options = options_.model;
+    for (const auto& [name, value] : numbersAt(eta)) options.parameters.set(name, value, "diagnosis");
+    const RecordingInfo& info = recordings_.front().info;
+    Simulation(simulationOptionsFor(info, sidecarPath(recordings_.front().file), options)).build(info.robot);
+  } catch (const BadParameter&) {
+    possible = false;
+  } catch (const BadFile&) {
+    possible = false;
+  }
+  const std::lock_guard lock(access_to_built_);
+  return built_[key] = possible;
 }
 
 double Plant::tensionN(int muscle, double pressure_ratio, double length_mm) const {

@@ -3,7 +3,9 @@
 
 #include <Eigen/Core>
 #include <atomic>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -95,7 +97,10 @@ class Plant {
   /// The numbers at coordinates eta: value in force * exp(tolerance * eta), within the range; none for an empty eta.
   std::vector<std::pair<std::string, double>> numbersAt(const Eigen::VectorXd& eta) const;
   double numberAt(Eigen::Index index, double eta) const;
-  Eigen::VectorXd clampedNumbers(const Eigen::VectorXd& eta) const;
+  /// The coordinates within four tolerances and such that the robot can be built. Where it cannot, one number after the other goes as far
+  /// as those before it allow, for example a moment of inertia that a mass needs. `margin`: how far each number alone may still change
+  /// from there; 0 if the values in force do not allow that.
+  Eigen::VectorXd clampedNumbers(const Eigen::VectorXd& eta, double margin = 0) const;
   /// Tension of a muscle by the model's force law at a pressure and a length, N.
   double tensionN(int muscle, double pressure_ratio, double length_mm) const;
 
@@ -130,6 +135,7 @@ class Plant {
   Fidelity possible(Fidelity fidelity) const;
   void count(double simulated_s) const;
   enum class HeldSamples { as_measured, drawn };
+  bool canBeBuilt(const Eigen::VectorXd& eta, double margin) const;
   std::optional<ReplayResult> simulated(const Recording& recording, const Model& model, Fidelity fidelity, HeldSamples held) const;
   Prediction replay(Recording recording, const Model& model, int end_row, Fidelity fidelity) const;
   bool takesForEver(const Recording& recording, const ReplayOptions& options) const;
@@ -146,6 +152,8 @@ class Plant {
   std::vector<UncertainNumber> numbers_;
   mutable std::atomic<long> simulation_count_{0}, simulated_ms_{0};
   mutable PredictionStore store_;
+  mutable std::mutex access_to_built_;
+  mutable std::map<std::vector<double>, bool> built_;  ///< canBeBuilt() by coordinates
 };
 
 }  // namespace musclesim

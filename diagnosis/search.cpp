@@ -185,6 +185,7 @@ void Search::nearToOrigin(Proposal& proposal) const {
   const double without = screening_.misfit(screening_residual_);
   Explanation &start = proposal.start, &origin = proposal.origin;
   start.z = causes_.clamped(start.members, start.z);
+  start.numbers = plant_.clampedNumbers(start.numbers);
   if (origin.members.empty()) {
     origin = start;
     const Hypothesis& last = causes_.hypotheses[start.members.back()];
@@ -195,7 +196,7 @@ void Search::nearToOrigin(Proposal& proposal) const {
     on_simulation_();
     if (predicted.size() == screening_.size() && screening_.misfit(screening_.measured() - predicted) < without) break;
     start.z = causes_.clamped(start.members, origin.z + share * (start.z - origin.z));
-    start.numbers = origin.numbers + share * (start.numbers - origin.numbers);
+    start.numbers = plant_.clampedNumbers(origin.numbers + share * (start.numbers - origin.numbers));
   }
 }
 

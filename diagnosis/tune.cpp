@@ -17,6 +17,10 @@ constexpr int tuning_round_count = 20;
 /// Of the half width of a 95 % interval, in tolerances, if the data say something; without data it is 1.96.
 constexpr double determined = 1;
 
+/// How far each tuned number can still be changed alone. Where the robot could not be built beside the tuned values, for example because a
+/// body would have all its mass in one point, the search for causes could not move from there.
+constexpr double kept_free = 0.2;
+
 }  // namespace
 
 Tuning tune(const std::vector<Recording>& recordings, DiagnosisOptions& options) {
@@ -27,7 +31,7 @@ Tuning tune(const std::vector<Recording>& recordings, DiagnosisOptions& options)
   DiagnosisProgress progress{"fitting parameters of the model", 0, tuning_round_count * static_cast<long>(plant.numberCount() + 2)};
   FitProblem problem;
   problem.start = Eigen::VectorXd::Zero(plant.numberCount());
-  problem.clamped = [&plant](const Eigen::VectorXd& eta) { return plant.clampedNumbers(eta); };
+  problem.clamped = [&plant](const Eigen::VectorXd& eta) { return plant.clampedNumbers(eta, kept_free); };
   problem.precision = Eigen::VectorXd::Ones(plant.numberCount());
   problem.predicted = [&](const Eigen::VectorXd& z) {
     {

@@ -202,7 +202,7 @@ What `musclesim diagnose` says about two machines of other laboratories, against
 
 ## Results
 
-Normalised gap: 0 is the noise floor. "Removed" is measured on data that neither fitting nor choosing has seen. All runs: `--max-effects 3`, whole catalogue; the wrist's slow loop without the effects of the command and pressure stages, since its measured pressure stands for the command. Of an `unexplained` record the effects are what comes nearest (`attempt.json`), if anything does.
+Normalised gap: 0 is the noise floor. "Removed" is measured on data that neither fitting nor choosing has seen. All runs: `--max-effects 4`, whole catalogue; the wrist's slow loop without the effects of the command and pressure stages, since its measured pressure stands for the command. Of an `unexplained` record the effects are what comes nearest (`attempt.json`), if anything does.
 ''')
 summary()
 print('''

@@ -171,5 +171,29 @@ TEST_F(NumbersOfAPlant, AreFactorsOfTheValuesInForce) {
   EXPECT_EQ(plant.clampedNumbers(eta)[load], -4);
 }
 
+/// A body of mass m, a distance d from the hinge, needs an inertia about the hinge of more than m d^2.
+TEST(NumbersThatDependOnEachOther, StayWhereTheRobotCanBeBuilt) {
+  Recording recording = stepped(0.01, 0.2, 2, "a.csv");
+  recording.info.robot = "elbow";
+  recording.info.noise_std.clear();
+  recording.signals.push_back({"command_1", recording.signals[0].values});
+  DiagnosisOptions options;
+  options.tune = {"elbow.forearm_kg", "elbow.forearm_inertia_kgm2"};
+  const Plant plant({recording}, options);
+  const auto least_inertia_kgm2 = [&](double eta_of_mass) { return plant.numberAt(0, eta_of_mass) * 0.12 * 0.12; };
+  Eigen::VectorXd eta = Eigen::VectorXd::Zero(plant.numberCount());
+  eta[0] = 0.3;
+  EXPECT_EQ(plant.clampedNumbers(eta), eta) << "such a mass is possible";
+  eta.head(2) << 1, 1;
+  EXPECT_EQ(plant.clampedNumbers(eta), eta) << "with a larger inertia";
+  eta[1] = -0.3;
+  for (const double margin : {0.0, 0.1}) {
+    const Eigen::VectorXd possible = plant.clampedNumbers(eta, margin);
+    EXPECT_GT(plant.numberAt(1, possible[1] - margin), least_inertia_kgm2(possible[0]));
+    EXPECT_GT(plant.numberAt(1, possible[1]), least_inertia_kgm2(possible[0] + margin));
+    EXPECT_LT(plant.numberAt(1, possible[1] - margin - 0.1), least_inertia_kgm2(possible[0])) << "as far as it goes";
+  }
+}
+
 }  // namespace
 }  // namespace musclesim
