@@ -36,7 +36,7 @@ read -r number <"$work/number"
 export DISPLAY=":$number"
 cp -r robots "$work/robots"  # the panel offers its files
 cd "$work"
-export ASAN_OPTIONS=detect_leaks=1:fast_unwind_on_malloc=0 LSAN_OPTIONS="suppressions=$suppressions:print_suppressions=0" UBSAN_OPTIONS=print_stacktrace=1
+export ASAN_OPTIONS=detect_leaks=1 LSAN_OPTIONS="suppressions=$suppressions:print_suppressions=0" UBSAN_OPTIONS=print_stacktrace=1
 "$program" --out run --window-log log.jsonl --quiet --picture-size "${width}x${height}" "$@" >out.txt 2>&1 &
 child=$!
 until [[ -s log.jsonl ]]; do
