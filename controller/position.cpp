@@ -231,6 +231,10 @@ std::optional<Vector> PositionController::targetMm() const {
   return Vector(0, loops_.front().target_now, 0);
 }
 
+void PositionController::moveTarget(const Vector& target_mm) {
+  if (is_height_) loops_.front().target = [y_mm = target_mm.y()](double) { return y_mm; };
+}
+
 std::vector<std::pair<std::string, double>> PositionController::signals() const {
   std::vector<std::pair<std::string, double>> signals;
   for (const Loop& loop : loops_)

@@ -15,6 +15,7 @@
 #include "musclesim/robot/robot_file.h"
 #include "musclesim/robot/robot_registry.h"
 #include "musclesim/version.h"
+#include "recorded_pulls.h"
 
 namespace musclesim {
 
@@ -84,6 +85,24 @@ std::vector<const Signal*> signalsHeldBy(const ActiveEffect& effect, const Recor
       held.push_back(&signal);
   return held;
 }
+
+/// Repeats the pulls of a recording.
+class Pulls {
+ public:
+  /// Another robot has other bodies: it is not pulled at.
+  Pulls(const RecordingInfo& info, const std::string& source, bool same_robot) {
+    if (same_robot) pulls_ = recordedPulls(info, source);
+  }
+
+  /// Applies the pull of a row at this time.
+  void apply(Simulation& simulation, double time_s) {
+    for (; next_ < pulls_.size() && pulls_[next_].time_s < time_s + simulation.stepS() / 2; ++next_) simulation.pull(pulls_[next_].pull);
+  }
+
+ private:
+  std::vector<TimedPull> pulls_;
+  std::size_t next_ = 0;
+};
 
 }  // namespace
 
@@ -172,6 +191,7 @@ ReplayResult replayRecording(const Recording& recording, const ReplayOptions& op
   Robot& robot = simulation.build(info.robot);
   simulation.parameters().requireAllKnown();
   ReplayController commands(recording, robot.actuatorCount());
+  Pulls pulls(recording.info, sidecarPath(recording.file), info.robot == recording.info.robot);
 
   ReplayResult result;
   result.substeps = simulation.substeps();
@@ -190,6 +210,7 @@ ReplayResult replayRecording(const Recording& recording, const ReplayOptions& op
         simulation.start(*result.simulated.info.initial_state, action);
       else
         robot.step(action);
+      pulls.apply(simulation, recording.time_s[row]);
       State reading = robot.getState();
       reading.time_s = recording.time_s[row];
       appendRow(result.simulated, recording.time_s[row], robot.signalValues(reading));

@@ -248,6 +248,12 @@ void Simulation::pushBodies() const {
       dBodyAddForce(body, force.x(), force.y(), force.z());
       dBodyAddTorque(body, torque.x(), torque.y(), torque.z());
     });
+  if (pull_) applyPull(*world_, *pull_);
+}
+
+void Simulation::pull(const std::optional<Pull>& pull) {
+  if (pull) static_cast<void>(pullForce(*world_, *pull));  // throws if there is no such body
+  pull_ = pull;
 }
 
 void Simulation::collide(double h_s) {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "../robot/ode_vector.h"
+#include "contacts.h"
 #include "musclesim/base/color.h"
 #include "musclesim/robot/line_of_pull.h"
 
@@ -21,13 +22,13 @@ Eigen::Matrix4f poseFrom(const Vector& position, const Eigen::Matrix3d& rotation
   return pose;
 }
 
-DrawnPart partOf(const Primitive& primitive) {
+DrawnPart partOf(const Primitive& primitive, int number) {
   const dGeomID geom = primitive.geom();
   const dReal* r = dGeomGetRotation(geom);
   Eigen::Matrix3d rotation;
   rotation << r[0], r[1], r[2], r[4], r[5], r[6], r[8], r[9], r[10];
   return {primitive.shape().kind, primitive.shape().size_mm.cast<float>(), poseFrom(fromOde(dGeomGetPosition(geom)), rotation),
-          primitive.color()};
+          primitive.color(), number};
 }
 
 /// A drum as wide as the line that it carries needs; cylinders have no ends in the model.
@@ -111,6 +112,19 @@ std::vector<DrawnFrame> framesOf(Simulation& simulation) {
   return frames;
 }
 
+std::vector<DrawnContact> contactsOf(const Simulation& simulation) {
+  std::vector<DrawnContact> contacts;
+  for (const ContactPoint& point : simulation.contacts().points())
+    contacts.push_back({fromOde(point.geometry.pos).cast<float>(), fromOde(point.geometry.normal).cast<float>()});
+  return contacts;
+}
+
+std::optional<DrawnPull> pullOf(const Simulation& simulation) {
+  if (!simulation.pull()) return std::nullopt;
+  const PullForce pull = pullForce(simulation.world(), *simulation.pull());
+  return DrawnPull{pull.point_mm.cast<float>(), simulation.pull()->towards_mm.cast<float>(), pull.force_N.norm()};
+}
+
 /// The height of the ground plane (--plane).
 std::optional<float> floorOf(dSpaceID space) {
   for (int i = 0; i < dSpaceGetNumGeoms(space); ++i) {
@@ -146,8 +160,9 @@ Snapshot SnapshotTaker::take(const State& state) {
   snapshot.state = state;
   for (const Robot::Angle& angle : simulation_.robot().angles()) snapshot.angle_names.push_back(angle.name);
   if (const Controller* controller = simulation_.controller()) snapshot.activity = controller->activity();
-  for (const auto& primitive : simulation_.world().primitives())
-    if (primitive->isVisible()) snapshot.parts.push_back(partOf(*primitive));
+  const auto& primitives = simulation_.world().primitives();
+  for (std::size_t i = 0; i < primitives.size(); ++i)
+    if (primitives[i]->isVisible()) snapshot.parts.push_back(partOf(*primitives[i], static_cast<int>(i)));
   for (const auto& actuator : simulation_.world().actuators())
     if (actuator->line())
       for (const Pulley& pulley : actuator->line()->pulleys()) snapshot.parts.push_back(partOf(pulley));
@@ -155,6 +170,8 @@ Snapshot SnapshotTaker::take(const State& state) {
   for (std::size_t i = 0; i < muscles.size(); ++i) snapshot.hoses.push_back(hoseOf(*muscles[i], muscle_colors_[i]));
   snapshot.frames = framesOf(simulation_);
   snapshot.target = target(state);
+  snapshot.contacts = contactsOf(simulation_);
+  snapshot.pull = pullOf(simulation_);
   snapshot.floor_mm = floorOf(simulation_.space());
   return snapshot;
 }

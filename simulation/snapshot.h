@@ -19,6 +19,7 @@ struct DrawnPart {
   Eigen::Vector3f size_mm;
   Eigen::Matrix4f pose;  ///< from the part's frame to the world, mm
   Color color;
+  int primitive = -1;  ///< its number in World::primitives(); -1: it is none of them
 };
 
 /// A muscle: the control points of its centre line, from attachment to attachment.
@@ -45,6 +46,22 @@ struct DrawnFrame {
 struct DrawnTarget {
   Eigen::Vector3f point_mm;
   bool is_height;  ///< only the height counts
+
+  /// Where it is after a move to this point.
+  Eigen::Vector3f movedTo(const Eigen::Vector3f& to_mm) const {
+    return is_height ? Eigen::Vector3f(point_mm.x(), to_mm.y(), point_mm.z()) : to_mm;
+  }
+};
+
+/// Where two bodies touch. The force between them is not known to all steppers.
+struct DrawnContact {
+  Eigen::Vector3f point_mm, normal;
+};
+
+/// A pull from outside: from the held point to the hand that pulls.
+struct DrawnPull {
+  Eigen::Vector3f point_mm, towards_mm;
+  double force_N;
 };
 
 /// A copy of the state, taken between two steps. Drawing it needs no simulation, so another thread may draw it.
@@ -56,6 +73,8 @@ struct Snapshot {
   std::vector<DrawnHose> hoses;
   std::vector<DrawnFrame> frames;
   std::optional<DrawnTarget> target;
+  std::vector<DrawnContact> contacts = {};
+  std::optional<DrawnPull> pull = {};
   std::optional<float> floor_mm;                      ///< height of the ground plane, if there is one
   std::shared_ptr<const DrawnGhost> ghost = nullptr;  ///< null: there is none
 };

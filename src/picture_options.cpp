@@ -16,14 +16,15 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, const std::st
       ->group(group)
       ->delimiter(',')
       ->expected(3);
+  command.add_flag("--arrows", options.arrows, "Show contacts and the tensions of muscles as arrows")->group(group);
   command.add_option("--speed", options.speed, "Simulated seconds per second of window or video (default 1; 10 in original physics)")
       ->group(group);
 }
 
 void PictureOptions::requireUsed(const std::string& why) const {
-  const bool asks_for_view = !camera.empty() || size_px != PictureOptions().size_px;
+  const bool asks_for_view = arrows || !camera.empty() || size_px != PictureOptions().size_px;
   if (asks_for_view && !wanted())
-    throw BadParameter(fmt::format("--camera and --picture-size need a window, --screenshot or --video, but {}", why));
+    throw BadParameter(fmt::format("--arrows, --camera and --picture-size need a window, --screenshot or --video, but {}", why));
   if (speed && !video) throw BadParameter(fmt::format("--speed needs a window or --video, but {} and there is no --video", why));
 }
 

@@ -70,7 +70,9 @@ class Pictures final : public Spectator {
 
   Image draw(const Snapshot& snapshot) {
     if (!camera_) camera_ = initialCamera(robot_name_, snapshot, camera_options_);
-    return offscreen_.draw(snapshot, *camera_);
+    SceneStyle style;
+    style.arrows = options_.arrows;
+    return offscreen_.draw(snapshot, *camera_, style);
   }
 
   const PictureOptions options_;

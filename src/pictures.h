@@ -20,6 +20,7 @@ struct PictureOptions {
   std::vector<int> size_px = {1024, 768};
   std::vector<float> camera;    ///< azimuth and elevation in degrees, distance in mm; empty: the robot's own view
   std::optional<double> speed;  ///< simulated time over time of the video or wall time
+  bool arrows = false;          ///< contacts and tensions are shown as arrows
   bool wanted() const { return screenshot || video; }
   /// Throws BadParameter for options that have no effect because no window opens. `why` gives the reason for the message.
   void requireUsed(const std::string& why = "no window opens here") const;

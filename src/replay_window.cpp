@@ -53,6 +53,7 @@ class PosesInWindow final : public ReplayWindow {
     auto player = std::make_unique<Player>(std::move(time_s), std::move(trajectories), std::move(ghosts), poses_.reason());
     display_.width_px = window_.pictures.size_px.at(0);
     display_.height_px = window_.pictures.size_px.at(1);
+    display_.arrows = window_.pictures.arrows;
     display_.camera = initialCamera(robot_, *player->snapshot(), window_.pictures.camera);
     display_.picture_folder = window_.folder;
     display_.log_file = window_.log_file;

@@ -14,7 +14,7 @@ namespace musclesim::command_line {
 struct ReplayWindowOptions {
   PictureOptions pictures;
   std::string folder;    ///< for pictures and videos
-  std::string log_file;  ///< see openWindow
+  std::string log_file;  ///< see makeRunWindow
   bool quiet = false;
 };
 

@@ -15,6 +15,7 @@
 #include "musclesim/base/file.h"
 #include "musclesim/base/text.h"
 #include "musclesim/controller/controller_registry.h"
+#include "musclesim/controller/manual.h"
 #include "musclesim/controller/test_signal.h"
 #include "musclesim/log/figure.h"
 #include "musclesim/log/recorder.h"
@@ -24,6 +25,7 @@
 #include "run_origin.h"
 #include "run_output.h"
 #include "run_signals.h"
+#include "simulation/recorded_pulls.h"
 #include "window.h"
 
 namespace musclesim::command_line {
@@ -88,10 +90,28 @@ struct Ending {
   int exit_status;
 };
 
+/// The next free name of a recording: run.csv, run-2.csv, run-3.csv ...
+fs::path freeName(const fs::path& first) {
+  fs::path csv = first;
+  for (int number = 2; fs::exists(csv); ++number) csv.replace_filename(fmt::format("{}-{}.csv", first.stem().string(), number));
+  return csv;
+}
+
+/// What the runs of one window share.
+struct Session {
+  std::unique_ptr<RunWindow> window;
+  std::optional<RunRequest> asked = {};  ///< the present run, if it is not the first
+  fs::path first_csv = {};               ///< the first run's recording; empty: there is none yet
+
+  InputHistory repeated() const { return asked ? asked->repeated : InputHistory{}; }
+};
+
 /// One run from the first command to the last row.
 class Run {
  public:
-  Run(const ModelOptions& model, const RunOptions& options) : model_(model), options_(options), simulation_(simulationOptions(model)) {
+  /// `session`: null without a window.
+  Run(const ModelOptions& model, const RunOptions& options, Session* session = nullptr)
+      : model_(model), options_(options), simulation_(simulationOptions(model)), session_(session) {
     simulation_.build(model.robot.value_or("arm"));
     if (!options_.controller) options_.controller = options.commands ? "schedule" : defaultController(robot(), options);
     requireHeeded(options_);
@@ -105,24 +125,25 @@ class Run {
 
   Simulation& simulation() { return simulation_; }
 
+  /// The same run again, up to its end.
+  RunRequest again() const { return {robotName(), *options_.controller, hands_->hands()->history(), csv_.filename().string()}; }
+
   int execute() {
     const std::string initial_state = model_.initial_state.value_or(simulation_.robot().initialState());
     // The first decision comes before the files are opened, because the columns depend on what the controller reports.
     const State first_state = robot().getState();
     const musclesim::Action first_action = controller_->output(first_state);
-    const fs::path csv = recordingPath(options_, simulation_);
-    requireReplaceable(csv.string());
-    if (options_.out && !options_.overwrite) requireUnfinished(csv);
-    if (options_.against) requireOther(csv, {*options_.against});
-    if (options_.commands) requireOther(csv, {*options_.commands});
+    csv_ = chooseRecording();
     signals_.emplace(robot(), *controller_, options_.record_signals, options_.summarise, simulation_.stepS());
     summary_.emplace(options_.summarise, signals_->names());
     tracking_.emplace(signals_->names());
     requireFigureSignals();
-    if (prepareRecording(csv) && options_.record) say(model_, fmt::format("made the folder {}", csv.parent_path().string()));
-    addSpectator(first_state, csv);
-    const nlohmann::json origin = options_.only_record ? nullptr : jsonOf(keepOrigin(model_, options_, csv));
-    Recorder recorder(csv.string(), describe(simulation_, options_, initial_state, origin), signals_->names());
+    if (prepareRecording(csv_) && options_.record) say(model_, fmt::format("made the folder {}", csv_.parent_path().string()));
+    addSpectator(first_state);
+    // A run that the user of a window has asked for is not the one of the command line, so `rerun` cannot repeat it.
+    const bool is_of_command_line = !options_.only_record && !(session_ && session_->asked);
+    const nlohmann::json origin = is_of_command_line ? jsonOf(keepOrigin(model_, options_, csv_)) : nlohmann::json();
+    Recorder recorder(csv_.string(), describe(simulation_, options_, initial_state, origin), signals_->names());
     say(model_, fmt::format("{} physics, stepper {}, {} internal steps of {:.4g} s per step of {:g} s, seed {}",
                             nameOf(simulation_.physics().kind), simulation_.stepper().name(), simulation_.substeps(),
                             simulation_.internalStepS(), simulation_.stepS(), simulation_.seed()));
@@ -148,16 +169,30 @@ class Run {
     if (hands_) noteHands(recorder);
     recorder.close(ending.exit_status == done);
     dismissSpectator(divergence);
-    if (!options_.only_record) report(verdict, csv, drawFigure(csv, recorder.rowCount()), ending);
+    if (!options_.only_record) report(verdict, drawFigure(recorder.rowCount()), ending);
     return ending.exit_status;
   }
 
  private:
+  std::string robotName() const { return model_.robot.value_or("arm"); }
+
+  /// Later runs of a window write beside the first one.
+  fs::path chooseRecording() {
+    if (session_ && !session_->first_csv.empty()) return freeName(session_->first_csv);
+    const fs::path csv = recordingPath(options_, simulation_);
+    requireReplaceable(csv.string());
+    if (options_.out && !options_.overwrite) requireUnfinished(csv);
+    if (options_.against) requireOther(csv, {*options_.against});
+    if (options_.commands) requireOther(csv, {*options_.commands});
+    if (session_) session_->first_csv = csv;
+    return csv;
+  }
+
   /// With a window, the user can take over from the controller.
   void addController() {
     auto controller = makeController(*options_.controller, requestFor(simulation_, options_));
-    if (hasWindow(options_)) {
-      auto hands = std::make_unique<ManualController>(std::move(controller), robot().actuatorCount());
+    if (session_) {
+      auto hands = std::make_unique<ManualController>(std::move(controller), robot().actuatorCount(), session_->repeated());
       hands_ = hands.get();
       controller = std::move(hands);
     }
@@ -173,24 +208,32 @@ class Run {
       say(model_, fmt::format("controller {} has no use for {} of the configuration", *options_.controller, fmt::join(unused, ", ")));
   }
 
-  void addSpectator(const State& first_state, const fs::path& csv) {
-    if (options_.pictures.wanted()) spectator_ = makePictures(options_.pictures, simulation_);
-    if (!hands_) return;
-    const fs::path folder = csv.has_parent_path() ? csv.parent_path() : ".";
-    spectator_ = openWindow(options_.pictures, simulation_, *hands_, first_state, folder.string(), options_.window_log.value_or(""));
+  void addSpectator(const State& first_state) {
+    if (options_.pictures.wanted()) pictures_ = makePictures(options_.pictures, simulation_);
+    spectator_ = pictures_.get();
+    if (!session_) return;
+    const std::string folder = csv_.has_parent_path() ? csv_.parent_path().string() : ".";
+    session_->window->begin({hands_->hands(), robotName(), *options_.controller, csv_.filename().string()}, simulation_, first_state,
+                            folder);
+    spectator_ = session_->window.get();
   }
 
   void dismissSpectator(const std::optional<Diverged>& divergence) {
     if (!spectator_) return;
     if (divergence) spectator_->diverge(divergence->what());
     spectator_->finish();
-    spectator_.reset();
   }
 
+  /// What the user did, and of which recording this one repeats the beginning.
   void noteHands(Recorder& recorder) const {
     nlohmann::json intervals = nlohmann::json::array();
     for (const auto& interval : hands_->manualIntervals()) intervals.push_back({interval.from_s, interval.to_s});
     recorder.note("by_hand_s", intervals.dump());
+    const auto pulls = pullsOf(hands_->hands()->history(), simulation_.stepS());
+    if (!pulls.empty()) recorder.note("pulls", toJson(pulls));
+    if (session_->repeated().step_count == 0) return;
+    recorder.note("repeats",
+                  nlohmann::json{{"recording", session_->asked->recording}, {"until_s", session_->asked->repeated.time_s}}.dump());
   }
 
   static SimulationOptions simulationOptions(const ModelOptions& model) {
@@ -215,14 +258,14 @@ class Run {
   }
 
   /// Writes the figure beside the recording. Returns an empty path if the run ended before its first row.
-  fs::path drawFigure(const fs::path& csv, long row_count) const {
+  fs::path drawFigure(long row_count) const {
     if (row_count == 0) return {};
-    fs::path svg = fs::path(csv).replace_extension(".svg");
+    fs::path svg = fs::path(csv_).replace_extension(".svg");
     if (options_.record && options_.out) {
       makeFolder(*options_.out);
       svg = fs::path(*options_.out) / svg.filename();
     }
-    const Recording recording = readRecording(csv.string());
+    const Recording recording = readRecording(csv_.string());
     if (options_.figure_signals.empty())
       writeRunFigure(recording, robot().namedMuscleColors(), recording.info.description, svg.string());
     else
@@ -241,6 +284,7 @@ class Run {
   }
 
   void record(Recorder& recorder, Progress& progress, const State& state, bool is_due) {
+    if (hands_) simulation_.pull(hands_->input().pull);
     score_.add(state.time_s, state, *controller_);
     const std::vector<double> row = signals_->row(state);
     summary_->add(state.time_s, row);
@@ -298,11 +342,12 @@ class Run {
   void sayEnding(const Ending& ending) const {
     if (!ending.error.empty()) tell("error: " + ending.error);
     if (ending.exit_status > interrupted_base) say(model_, "interrupted; the files hold everything up to then");
-    if (ending.exit_status == done && options_.duration_s && hasEndedEarly())
+    const bool goes_on = session_ && session_->window->isAsked();
+    if (ending.exit_status == done && options_.duration_s && hasEndedEarly() && !goes_on)
       say(model_, fmt::format("the window was closed: {:.4g} s of {:g} s are recorded", simulation_.time_s(), duration_s_));
   }
 
-  void report(nlohmann::json verdict, const fs::path& csv, const fs::path& svg, const Ending& ending) const {
+  void report(nlohmann::json verdict, const fs::path& svg, const Ending& ending) const {
     sayEnding(ending);
     say(model_, fmt::format("{:g} s simulated in {:.3g} s of wall time: {:.3g} x real time", simulation_.time_s(),
                             verdict["wall_s"].get<double>(), verdict["real_time_factor"].get<double>()));
@@ -315,11 +360,11 @@ class Run {
                               verdict["reached_within_mm"].get<double>(), verdict["reached_at_s"].get<double>(),
                               100 * verdict["held_share"].get<double>()));
     if (verdict.contains("signals")) fmt::print("{}", summaryText(verdict["signals"]));
-    fmt::print("log     {}\n", printable(csv.string()));
+    fmt::print("log     {}\n", printable(csv_.string()));
     if (!svg.empty()) fmt::print("figure  {}\n", printable(svg.string()));
     if (model_.json) {
       verdict["command"] = "run";
-      verdict["log"] = csv.string();
+      verdict["log"] = csv_.string();
       verdict["figure"] = svg.string();
       fmt::print("{}\n", verdict.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
     }
@@ -333,8 +378,11 @@ class Run {
   Simulation simulation_;
   Controller* controller_ = nullptr;
   double duration_s_;
-  ManualController* hands_ = nullptr;     ///< null without a window
-  std::unique_ptr<Spectator> spectator_;  ///< may be null
+  Session* session_;                     ///< null without a window
+  ManualController* hands_ = nullptr;    ///< null without a window
+  fs::path csv_;                         ///< the recording
+  std::unique_ptr<Spectator> pictures_;  ///< may be null
+  Spectator* spectator_ = nullptr;       ///< may be null
   std::optional<RunSignals> signals_;
   std::optional<SignalSummary> summary_;
   std::optional<Tracking> tracking_;
@@ -343,17 +391,47 @@ class Run {
   bool gap_warned_ = false, late_commands_warned_ = false, goes_on_ = true;
 };
 
+/// Runs one after the other in one window, until the user closes it. A run that cannot be made is explained in the window, and the one
+/// before goes on. The exit status is the first that is not `done`.
+int runInWindow(const ModelOptions& model, const RunOptions& options) {
+  Session session{makeRunWindow(options.pictures, options.window_log.value_or(""))};
+  std::optional<RunRequest> before;
+  int status = done;
+  do {
+    ModelOptions its_model = model;
+    RunOptions its_options = options;
+    if (session.asked) {
+      its_model.robot = session.asked->robot;
+      its_options.controller.reset();
+      if (!session.asked->controller.empty()) its_options.controller = session.asked->controller;
+    }
+    try {
+      Run run(its_model, its_options, &session);
+      if (options.verbose && !session.asked) list(run.simulation());
+      const int ended = run.execute();
+      if (status == done) status = ended;
+      before = run.again();
+      session.asked = session.window->takeRequest();
+    } catch (const Error& error) {
+      if (!before || dynamic_cast<const IoError*>(&error)) throw;
+      session.window->say(error.what());
+      session.asked = std::exchange(before, std::nullopt);
+    }
+  } while (session.asked && interruptSignal() == 0);
+  return status;
+}
+
 }  // namespace
 
 int run(const ModelOptions& model, const RunOptions& options) {
   requireUsedOptions(options);
+  if (hasWindow(options) && !options.print_config) return runInWindow(model, options);
   Run run(model, options);
   if (options.verbose) list(run.simulation());
   if (options.print_config) {
     fmt::print("{}", run.simulation().parameters().toToml());
     return done;
   }
-  if (hasWindow(options)) requireWindow();
   return run.execute();
 }
 

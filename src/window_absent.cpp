@@ -5,19 +5,20 @@
 
 namespace musclesim::command_line {
 
-void requireWindow() {
+namespace {
+
+[[noreturn]] void refuseWindow() {
   throw BadParameter("this build has no window: use --simple to run without one, --screenshot or --video for pictures");
 }
 
-std::unique_ptr<Spectator> openWindow(const PictureOptions&, Simulation&, ManualController&, const State&, const std::string&,
-                                      const std::string&) {
-  requireWindow();
-  return nullptr;
+}  // namespace
+
+std::unique_ptr<RunWindow> makeRunWindow(const PictureOptions&, const std::string&) {
+  refuseWindow();
 }
 
 std::unique_ptr<ReplayWindow> makeReplayWindow(const Recording&, const ReplayOptions&, MeasuredPoses&, const ReplayWindowOptions&) {
-  requireWindow();
-  return nullptr;
+  refuseWindow();
 }
 
 }  // namespace musclesim::command_line

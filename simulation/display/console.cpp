@@ -14,6 +14,7 @@ namespace {
 constexpr double hundred = 100, pressure_step_ratio = 1 / hundred;
 constexpr float zoom_step = 1.1F;
 constexpr double speed_step = 2;
+constexpr float target_step_mm = 10;
 
 void changeSpeed(Console& console, double factor) {
   console.pace().setSpeed(console.pace().speed() * factor);
@@ -43,6 +44,7 @@ Bindings bindingsOfView() {
       {"c", "reset the view", {'c'}, [](Console& c, int) { c.resetView(); }},
       {"t", "transparent bones", {'t'}, [](Console& c, int) { flip(c, c.style.transparent, "transparent bones"); }},
       {"m", "colour muscles by tension", {'m'}, [](Console& c, int) { flip(c, c.style.color_tension, "colours by tension"); }},
+      {"a", "arrows: tensions and contacts", {'a'}, [](Console& c, int) { flip(c, c.style.arrows, "arrows"); }},
       {"f", "frames and labels", {'f'}, [](Console& c, int) { flip(c, c.style.frames, "frames and labels"); }},
       {"s", "save a picture", {'s'}, [](Console& c, int) { c.wants_screenshot = true; }},
       {"v", "start or stop a video", {'v'}, [](Console& c, int) { c.wants_video = !c.wants_video; }},
@@ -91,7 +93,14 @@ const std::vector<Console::Binding>& Console::bindingsOfRun() {
           c.hands().reset();
           c.keeps_in_view = true;  // without pressure it hangs down, often out of the picture
           c.say("all pressures 0, by hand");
-        }}},
+        }},
+       {"PgUp  PgDn",
+        "target higher, lower",
+        {key::page_up, key::page_down},
+        [](Console& c, int code) { c.raiseTarget(code == key::page_up ? target_step_mm : -target_step_mm); }},
+       {"k", "keep this state", {'k'}, [](Console& c, int) { c.save(); }},
+       {"b", "back to the state that was kept last, then pause", {'b'}, [](Console& c, int) { c.restoreLast(); }},
+       {"Home", "begin the run anew", {key::home}, [](Console& c, int) { c.resetRun(); }}},
       bindingsOfView(),
   });
   return all;
@@ -137,8 +146,12 @@ const std::vector<Console::Binding>& Console::bindingsOfReplay() {
   return all;
 }
 
-Console::Console(ManualController& hands, Pace& pace, const Camera& first)
-    : camera(first), hands_(&hands), pace_(pace), first_camera_(first), muscle_count_(static_cast<int>(hands.pressures().size())) {}
+Console::Console(std::shared_ptr<const ShownRun> run, Pace& pace)
+    : camera(run->camera),
+      run_(std::move(run)),
+      pace_(pace),
+      first_camera_(camera),
+      muscle_count_(static_cast<int>(hands().pressures().size())) {}
 
 Console::Console(Player& player, Pace& pace, const Camera& first)
     : camera(first),
@@ -146,6 +159,48 @@ Console::Console(Player& player, Pace& pace, const Camera& first)
       pace_(pace),
       first_camera_(first),
       muscle_count_(static_cast<int>(player.snapshot()->hoses.size())) {}
+
+/// The view stays unless the robot is another one.
+void Console::attach(std::shared_ptr<const ShownRun> run) {
+  const bool is_other = run->robot != run_->robot;
+  run_ = std::move(run);
+  muscle_count_ = static_cast<int>(hands().pressures().size());
+  first_camera_ = run_->camera;
+  if (is_other) resetView();
+  if (selected() >= muscle_count_) style.selected = -1;
+}
+
+void Console::resetRun() {
+  wanted_run = RunRequest{run_->robot, run_->controller};
+  say("from the beginning");
+}
+
+void Console::save() {
+  saved_.push_back({run_->robot, run_->controller, hands().history(), run_->recording});
+  say(fmt::format("kept: state {} at {:.2f} s; b returns to it", saved_.size(), saved_.back().repeated.time_s));
+}
+
+void Console::restore(std::size_t which) {
+  pace_.setPaused(true);
+  wanted_run = saved_.at(which);
+  say(fmt::format("back to state {} at {:.2f} s; p goes on", which + 1, wanted_run->repeated.time_s));
+}
+
+void Console::restoreLast() {
+  if (saved_.empty()) return say("no state is kept yet: k keeps one");
+  restore(saved_.size() - 1);
+}
+
+void Console::raiseTarget(float by_mm) {
+  if (!target_mm) return say("this controller has no target");
+  const std::optional<Vector> moved_mm = hands().movedTargetMm();
+  moveTarget((moved_mm ? moved_mm->cast<float>() : *target_mm) + Eigen::Vector3f(0, by_mm, 0));
+}
+
+void Console::moveTarget(const Eigen::Vector3f& to_mm) {
+  hands().moveTarget(to_mm.cast<double>());
+  say(fmt::format("target {:.0f}, {:.0f}, {:.0f} mm", to_mm.x(), to_mm.y(), to_mm.z()));
+}
 
 void Console::resetView() {
   camera = first_camera_;
@@ -214,28 +269,30 @@ void Console::select(int muscle) {
 /// Counts in hundredths, so that fifty steps from 0 give exactly 0.5.
 void Console::raise(double by_ratio) {
   if (selected() < 0) return say("select a muscle first: 0 - 9 or a click on it");
-  const double pressure = hands_->pressures()[static_cast<std::size_t>(selected())] + by_ratio;
+  const double pressure = hands().pressures()[static_cast<std::size_t>(selected())] + by_ratio;
   setPressure(selected(), std::round(pressure * hundred) / hundred);
 }
 
 void Console::setPressure(int muscle, double pressure_ratio) {
-  if (!hands_->isManual()) say("muscles under manual control; press i for automatic");
-  hands_->set(muscle, pressure_ratio);
+  if (!hands().isManual()) say("muscles under manual control; press i for automatic");
+  hands().set(muscle, pressure_ratio);
 }
 
 void Console::toggleManual() {
-  hands_->isManual() ? hands_->handBack() : hands_->takeOver();
-  say(hands_->isManual() ? "by hand" : "automatic");
+  hands().isManual() ? hands().handBack() : hands().takeOver();
+  say(hands().isManual() ? "by hand" : "automatic");
 }
 
 void Console::say(const std::string& message) {
-  constexpr auto shown_for = std::chrono::seconds(4);
+  constexpr std::chrono::milliseconds at_least(3000), per_letter(50);
   notice_ = message;
-  notice_until_ = std::chrono::steady_clock::now() + shown_for;
+  notice_until_ = std::chrono::steady_clock::now() + at_least + per_letter * static_cast<int>(message.size());
 }
 
 std::string Console::notice() const {
-  return std::chrono::steady_clock::now() < notice_until_ ? notice_ : "";
+  if (std::chrono::steady_clock::now() < notice_until_) return notice_;
+  if (run_ && hands().isRepeating()) return fmt::format("repeats the run up to {:.2f} s", hands().repeatedUntilS());
+  return "";
 }
 
 nlohmann::json Console::state() const {
@@ -252,14 +309,20 @@ nlohmann::json Console::state() const {
                           {"transparent", style.transparent},
                           {"color_tension", style.color_tension},
                           {"frames", style.frames},
+                          {"arrows", style.arrows},
                           {"help", show_help},
                           {"panel", show_panel},
                           {"hidden_plots", hidden_plots},
                           {"video", wants_video}};
   if (divergence) state["divergence"] = *divergence;
-  if (hands_) {
-    state["manual"] = hands_->isManual();
-    state["pressures"] = hands_->pressures();
+  if (run_) {
+    state["manual"] = hands().isManual();
+    state["pressures"] = hands().pressures();
+    state["robot"] = run_->robot;
+    state["controller"] = run_->controller;
+    state["saved"] = saved_.size();
+    state["repeating"] = hands().isRepeating();
+    if (target_mm) state["target_mm"] = {target_mm->x(), target_mm->y(), target_mm->z()};
   }
   if (player_) state["replay"] = replayState();
   return state;

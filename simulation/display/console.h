@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "musclesim/controller/manual.h"
 #include "pace.h"
 #include "player.h"
+#include "run_request.h"
 #include "simulation/scene/camera.h"
 #include "simulation/scene/scene.h"
 
@@ -18,13 +18,14 @@ namespace musclesim {
 
 /// Key codes: a lower-case character, or one of these.
 namespace key {
-inline constexpr int escape = 27, f1 = 1001, up = 1002, down = 1003, left = 1004, right = 1005, home = 1006, end = 1007, tab = 9;
+inline constexpr int escape = 27, f1 = 1001, up = 1002, down = 1003, left = 1004, right = 1005, home = 1006, end = 1007, page_up = 1008,
+                     page_down = 1009, tab = 9;
 }
 
 class Console {
  public:
-  /// For a run. `hands` and `pace` belong to it; it may be in another thread.
-  Console(ManualController& hands, Pace& pace, const Camera& first);
+  /// For a run, which may be in another thread.
+  Console(std::shared_ptr<const ShownRun> run, Pace& pace);
   /// For a replay.
   Console(Player& player, Pace& pace, const Camera& first);
 
@@ -48,8 +49,26 @@ class Console {
   void setPressure(int muscle, double pressure_ratio);
   void toggleManual();
 
+  /// Shows another run from now on.
+  void attach(std::shared_ptr<const ShownRun> run);
+  /// Asks for the present run again, from its beginning.
+  void resetRun();
+  /// Asks for a run of another robot, with its usual controller, or of the same robot under another controller.
+  void chooseRobot(const std::string& robot) { wanted_run = RunRequest{robot, ""}; }
+  void chooseController(const std::string& controller) { wanted_run = RunRequest{run_->robot, controller}; }
+  /// Keeps the present state for restore().
+  void save();
+  /// Asks for a saved state, by its place in saved(); then pauses.
+  void restore(std::size_t which);
+  void restoreLast();
+  const std::vector<RunRequest>& saved() const { return saved_; }
+  /// A higher or lower target, and any other place for it.
+  void raiseTarget(float by_mm);
+  void moveTarget(const Eigen::Vector3f& to_mm);
+
   /// Of a run.
-  ManualController& hands() const { return *hands_; }
+  Hands& hands() const { return *run_->hands; }
+  const ShownRun& run() const { return *run_; }
   /// Null for a run.
   Player* player() const { return player_; }
   Pace& pace() const { return pace_; }
@@ -77,8 +96,11 @@ class Console {
   bool show_help = false, show_panel = true;
   bool keeps_in_view = false;  ///< moves the camera away until the whole robot is visible; until the user moves it
   std::set<std::string> hidden_plots = {"hand x", "hand z"};  ///< plots of the panel that the user does not want
+  std::vector<std::string> robots, controllers;               ///< among which the user may choose for the next run
   bool wants_screenshot = false, wants_video = false;
-  std::optional<std::string> divergence;  ///< text of the banner
+  std::optional<std::string> divergence;     ///< text of the banner
+  std::optional<RunRequest> wanted_run;      ///< another run that the user wants
+  std::optional<Eigen::Vector3f> target_mm;  ///< of the run, as it is drawn
 
   /// All of the above, for logs and tests.
   nlohmann::json state() const;
@@ -86,7 +108,8 @@ class Console {
  private:
   nlohmann::json replayState() const;
 
-  ManualController* hands_ = nullptr;
+  std::shared_ptr<const ShownRun> run_;
+  std::vector<RunRequest> saved_;
   Player* player_ = nullptr;
   Pace& pace_;
   Camera first_camera_;

@@ -46,8 +46,9 @@ constexpr auto poll_interval = std::chrono::milliseconds(5);
 
 }  // namespace
 
-Display::Display(DisplayOptions options, ManualController& hands, Snapshot first)
-    : shared_(std::make_unique<DisplayShared>(std::move(options), &hands, nullptr, std::move(first))) {
+Display::Display(DisplayOptions options, ShownRun run, Snapshot first)
+    : shared_(std::make_unique<DisplayShared>(std::move(options), std::make_shared<const ShownRun>(std::move(run)), nullptr,
+                                              std::move(first))) {
   open();
 }
 
@@ -78,7 +79,28 @@ Display::~Display() {
 bool Display::show(Snapshot snapshot, const Interrupted& interrupted) {
   const double time_s = snapshot.state.time_s;
   shared_->publish(std::move(snapshot));
-  return shared_->pace.waitFor(time_s, interrupted);
+  return shared_->pace.waitFor(time_s, [&] { return interrupted() || shared_->isAsked(); });
+}
+
+bool Display::showAtOnce(Snapshot snapshot, const Interrupted& interrupted) {
+  shared_->publish(std::move(snapshot));
+  return !shared_->pace.isClosed() && !shared_->isAsked() && !interrupted();
+}
+
+void Display::begin(ShownRun run, Snapshot first) {
+  shared_->begin(std::make_shared<const ShownRun>(std::move(run)), std::move(first));
+}
+
+std::optional<RunRequest> Display::takeRequest() {
+  return shared_->takeRequest();
+}
+
+bool Display::isAsked() const {
+  return shared_->isAsked();
+}
+
+void Display::say(const std::string& message) {
+  shared_->say(message);
 }
 
 void Display::showDivergence(const std::string& message, const Interrupted& interrupted) {
@@ -88,7 +110,7 @@ void Display::showDivergence(const std::string& message, const Interrupted& inte
 }
 
 void Display::waitForEnd(const Interrupted& interrupted) {
-  while (!shared_->pace.isClosed() && !interrupted()) std::this_thread::sleep_for(poll_interval);
+  while (!shared_->pace.isClosed() && !shared_->isAsked() && !interrupted()) std::this_thread::sleep_for(poll_interval);
 }
 
 std::optional<std::string> Display::loss() const {

@@ -8,8 +8,8 @@
 #include <thread>
 
 #include "display_options.h"
-#include "musclesim/controller/manual.h"
 #include "player.h"
+#include "run_request.h"
 #include "simulation/snapshot.h"
 
 namespace musclesim {
@@ -23,7 +23,7 @@ class Display {
   using Interrupted = std::function<bool()>;
 
   /// Opens the window. Throws SceneError if there is no display or it cannot draw the scene, IoError if the display is lost during that.
-  Display(DisplayOptions options, ManualController& hands, Snapshot first);
+  Display(DisplayOptions options, ShownRun run, Snapshot first);
   /// The same for a replay, which it plays until the user closes it.
   Display(DisplayOptions options, std::unique_ptr<Player> player);
   /// Closes it.
@@ -31,10 +31,19 @@ class Display {
   Display(const Display&) = delete;
   Display& operator=(const Display&) = delete;
 
-  /// Shows the snapshot and waits until the run may continue. Returns false if the user has closed the window or `interrupted` returns
-  /// true.
+  /// Another run takes the place of the present one.
+  void begin(ShownRun run, Snapshot first);
+  /// Shows the snapshot and waits until the run may continue. Returns false if the user has closed the window or wants another run, or
+  /// `interrupted` returns true.
   bool show(Snapshot snapshot, const Interrupted& interrupted);
-  /// Shows the banner of a divergence and waits until the user closes the window or `interrupted` returns true.
+  /// The same without waiting, for a run that repeats inputs.
+  bool showAtOnce(Snapshot snapshot, const Interrupted& interrupted);
+  /// The run that the user wants next, once; none: no other.
+  std::optional<RunRequest> takeRequest();
+  bool isAsked() const;
+  /// Shows the user a line for some seconds.
+  void say(const std::string& message);
+  /// Shows the banner of a divergence and waits until the user closes the window or wants another run, or `interrupted` returns true.
   void showDivergence(const std::string& message, const Interrupted& interrupted);
   /// Waits until the user closes the window or `interrupted` returns true.
   void waitForEnd(const Interrupted& interrupted);

@@ -99,6 +99,8 @@ class Labels {
 
 void drawLabels(Painter& painter, const Console& console, const Snapshot& snapshot, float width, float height) {
   Labels labels(painter, console.camera, width, height);
+  if (snapshot.pull) labels.add(snapshot.pull->towards_mm, fmt::format("{:.1f} N", snapshot.pull->force_N), ink);
+  if (!console.style.frames) return;
   for (const DrawnFrame& frame : snapshot.frames) labels.add(frame.pose.topRightCorner<3, 1>(), frame.name, ink);
   for (std::size_t i = 0; i < snapshot.hoses.size(); ++i) {
     const auto& points = snapshot.hoses[i].points_mm;
@@ -111,6 +113,7 @@ void drawHelp(Painter& painter, const Console& console, float width, float heigh
   const auto& bindings = console.bindings();
   std::vector<std::pair<std::string, std::string>> rows = {{"drag", "rotate (left button), move (right or middle button)"},
                                                            {"click", "select the muscle under the pointer"}};
+  if (!console.player()) rows.emplace_back("Ctrl + drag", "pull at a bone, or move the target");
   if (console.player()) rows.emplace_back("time line", "click or drag to go to another time");
   for (const auto& binding : bindings) rows.emplace_back(binding.keys, binding.meaning);
   float keys_width = 0, meanings_width = 0;
@@ -145,9 +148,19 @@ std::vector<std::string> wrapped(const Painter& painter, const std::string& text
   return lines;
 }
 
+/// Its last line stands at `bottom_line`, so that a long notice grows upwards.
+void drawNotice(Painter& painter, const std::string& notice, float width, float bottom_line) {
+  const std::vector<std::string> lines = wrapped(painter, notice, width - 4 * margin);
+  float widest = 0;
+  for (const std::string& line : lines) widest = std::max(widest, painter.widthOf(line));
+  const float top = bottom_line - painter.lineHeight() * static_cast<float>(lines.size() - 1);
+  drawBox(painter, (width - widest) / 2 - margin, top, lines, paper, night, 0.80F);
+}
+
 void drawBanner(Painter& painter, const Console& console, float width, float y) {
-  const char* what_now = console.player() ? "The simulation ends here; the recording goes on."
-                                          : "The run has stopped; its recording holds everything up to here. Press q to close.";
+  const char* what_now = console.player()
+                             ? "The simulation ends here; the recording goes on."
+                             : "The run has stopped; its recording holds everything up to here. Home begins anew, b goes back, q closes.";
   std::vector<std::string> lines;
   for (const std::string& text : {*console.divergence, std::string(what_now)})
     for (const std::string& line : wrapped(painter, text, width - 6 * margin)) lines.push_back(line);
@@ -166,14 +179,15 @@ void drawOverlay(Painter& painter, const Console& console, const Snapshot& snaps
   }
   if (console.divergence) drawBanner(painter, console, width, 2 * margin);
   if (console.show_help) return drawHelp(painter, console, width, whole_height);  // nothing shines through its box
-  if (console.style.frames) drawLabels(painter, console, snapshot, width, whole_height);
+  drawLabels(painter, console, snapshot, width, whole_height);
   const float notice_top = height - 3 * line - margin;
   if (with_status) {
     const std::vector<std::string> lines = statusLines(console, snapshot);
-    drawBox(painter, margin, notice_top - margin - boxHeight(painter, lines), lines, ink, paper, 0.78F);
+    const float notice_lines = static_cast<float>(wrapped(painter, console.notice(), width - 4 * margin).size());
+    const float bottom = notice_top - line * (notice_lines - 1);
+    drawBox(painter, margin, bottom - margin - boxHeight(painter, lines), lines, ink, paper, 0.78F);
   }
-  if (const std::string notice = console.notice(); !notice.empty())
-    drawBox(painter, (width - painter.widthOf(notice)) / 2 - margin, notice_top, {notice}, paper, night, 0.80F);
+  if (const std::string notice = console.notice(); !notice.empty()) drawNotice(painter, notice, width, notice_top);
   painter.text(margin, height - line - margin / 2, "h: keys", ink);
 }
 

@@ -53,6 +53,11 @@ void Pace::arrive(double simulated_s) {
   while (recent_.size() > 2 && now - recent_.front().first > measured_over) recent_.pop_front();
 }
 
+void Pace::restart() {
+  const std::lock_guard lock(access_);
+  restart_ = true;
+}
+
 void Pace::setSpeed(double speed_ratio) {
   const std::lock_guard lock(access_);
   speed_ratio_ = std::clamp(speed_ratio, 1e-3, 1e4);

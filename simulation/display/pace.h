@@ -24,6 +24,7 @@ class Pace {
   double speed() const;
   void setPaused(bool paused);
   bool isPaused() const;
+  void restart();   ///< counts from the next simulated time, whatever it is
   void stepOnce();  ///< pauses after one more step
   void close();
   bool isClosed() const;

@@ -11,7 +11,9 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "gap_plot.h"
@@ -176,6 +178,47 @@ class ImGuiPanel final : public Panel {
     ImGui::SameLine();
     drawSpeed(console);
     ImGui::TextUnformatted(paceLine(console).c_str());
+    drawRunChoice(console);
+    drawStates(console);
+  }
+
+  /// A list of names; returns the one that the user chooses.
+  static std::optional<std::string> chosenOf(const char* id, float width_px, const std::string& shown,
+                                             const std::vector<std::string>& names) {
+    ImGui::SetNextItemWidth(width_px);
+    std::optional<std::string> chosen;
+    if (!ImGui::BeginCombo(id, shown.c_str())) return chosen;
+    for (const std::string& name : names)
+      if (ImGui::Selectable(name.c_str(), name == shown)) chosen = name;
+    ImGui::EndCombo();
+    return chosen;
+  }
+
+  static void drawRunChoice(Console& console) {
+    const float half_px = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
+    if (const auto robot = chosenOf("##robot", half_px, console.run().robot, console.robots)) console.chooseRobot(*robot);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("robot: another one begins a new run");
+    ImGui::SameLine();
+    if (const auto controller = chosenOf("##controller", half_px, console.run().controller, console.controllers))
+      console.chooseController(*controller);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("controller: another one begins a new run");
+  }
+
+  static void drawStates(Console& console) {
+    for (const auto& [name, code, meaning] : {std::tuple{"Reset", key::home, "begin the run anew (Home)"},
+                                              {"Keep", static_cast<int>('k'), "keep this state (k)"},
+                                              {"Back", static_cast<int>('b'), "back to the state kept last (b)"}}) {
+      if (ImGui::Button(name, {60, 0})) console.press(code);
+      if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", meaning);
+      ImGui::SameLine();
+    }
+    ImGui::SetNextItemWidth(-1);
+    if (!ImGui::BeginCombo("##states", fmt::format("{} kept", console.saved().size()).c_str())) return;
+    for (std::size_t i = 0; i < console.saved().size(); ++i) {
+      const RunRequest& state = console.saved()[i];
+      if (ImGui::Selectable(fmt::format("{}: {} at {:.2f} s", i + 1, state.robot, state.repeated.time_s).c_str())) console.restore(i);
+    }
+    ImGui::EndCombo();
   }
 
   static void drawPause(Console& console) {
@@ -332,7 +375,7 @@ class ImGuiPanel final : public Panel {
   }
 
   static void drawPlots(Console& console, const Snapshot& snapshot, const History& history) {
-    constexpr float switches_px = 34, title_px = 21, smallest_px = 30;
+    constexpr float switches_px = 34, title_px = 21, smallest_px = 18;
     std::vector<LivePlot> plots = plotsOf(console, snapshot);
     drawReach();
     choosePlots(console, plots);
@@ -352,14 +395,15 @@ class ImGuiPanel final : public Panel {
   }
 
   static void drawSwitches(Console& console) {
-    ImGui::Checkbox("transparent", &console.style.transparent);
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("transparent bones (t)");
-    ImGui::SameLine();
-    ImGui::Checkbox("tension", &console.style.color_tension);
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("colour muscles by tension (m)");
-    ImGui::SameLine();
-    ImGui::Checkbox("labels", &console.style.frames);
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("frames and labels (f)");
+    bool is_first = true;
+    for (const auto& [name, is_on, meaning] : {std::tuple{"clear", &console.style.transparent, "transparent bones (t)"},
+                                               {"tension", &console.style.color_tension, "colour muscles by tension (m)"},
+                                               {"labels", &console.style.frames, "frames and labels (f)"},
+                                               {"arrows", &console.style.arrows, "tensions and contacts as arrows (a)"}}) {
+      if (!std::exchange(is_first, false)) ImGui::SameLine();
+      ImGui::Checkbox(name, is_on);
+      if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", meaning);
+    }
   }
 
   int left_px_ = 1 << 30;

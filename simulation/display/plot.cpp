@@ -63,6 +63,19 @@ void drawTitle(const std::string& title, const std::vector<PlotCurve>& curves, c
   }
 }
 
+/// Writes the ends of the range where they are; in a low plot, in which they would overlap, beside each other.
+void drawRange(const ImVec2& corner, const ImVec2& far_corner, std::pair<double, double> range) {
+  const ImU32 grey = IM_COL32(130, 135, 142, 255);
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  const float font = ImGui::GetFontSize(), height = far_corner.y - corner.y;
+  if (height < 2 * font + 2) {
+    const std::string both = fmt::format("{:g} .. {:g}", range.first, range.second);
+    return list->AddText({corner.x + 4, corner.y + (height - font) / 2}, grey, both.c_str());
+  }
+  list->AddText({corner.x + 4, corner.y + 1}, grey, fmt::format("{:g}", range.second).c_str());
+  list->AddText({corner.x + 4, far_corner.y - font - 1}, grey, fmt::format("{:g}", range.first).c_str());
+}
+
 }  // namespace
 
 void drawPlot(const std::string& title, const std::vector<PlotCurve>& curves, const History& history, float height_px,
@@ -80,9 +93,7 @@ void drawPlot(const std::string& title, const std::vector<PlotCurve>& curves, co
     for (const PlotCurve& curve : curves) drawCurve(curve, history, corner, size, range);
   list->PopClipRect();
   list->AddRect(corner, far_corner, IM_COL32(190, 195, 202, 255), 3);
-  const float font = ImGui::GetFontSize();
-  list->AddText({corner.x + 4, corner.y + 1}, IM_COL32(130, 135, 142, 255), fmt::format("{:g}", range.second).c_str());
-  list->AddText({corner.x + 4, far_corner.y - font - 1}, IM_COL32(130, 135, 142, 255), fmt::format("{:g}", range.first).c_str());
+  drawRange(corner, far_corner, range);
   ImGui::Dummy(size);
 }
 

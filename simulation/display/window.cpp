@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <thread>
+#include <utility>
 
 #include "musclesim/base/error.h"
 #include "painter.h"
@@ -89,6 +90,10 @@ int codeOf(int glut_key) {
       return key::home;
     case GLUT_KEY_END:
       return key::end;
+    case GLUT_KEY_PAGE_UP:
+      return key::page_up;
+    case GLUT_KEY_PAGE_DOWN:
+      return key::page_down;
     default:
       return -1;
   }
@@ -103,6 +108,8 @@ std::string nameOfKey(int code) {
                                     {key::right, "Right"},
                                     {key::home, "Home"},
                                     {key::end, "End"},
+                                    {key::page_up, "PgUp"},
+                                    {key::page_down, "PgDn"},
                                     {key::tab, "Tab"},
                                     {static_cast<int>(' '), "Space"}})
     if (named == code) return name;
@@ -113,8 +120,8 @@ std::string nameOfKey(int code) {
 
 Window::Window(DisplayShared& shared)
     : shared_(shared),
-      console_(shared.player ? Console(*shared.player, shared.pace, shared.options.camera)
-                             : Console(*shared.hands, shared.pace, shared.options.camera)),
+      seen_(shared.current().snapshot),
+      console_(shared.player ? Console(*shared.player, shared.pace, shared.options.camera) : Console(shared.current().run, shared.pace)),
       width_(shared.options.width_px),
       height_(shared.options.height_px) {
   if (!shared.options.log_file.empty()) {
@@ -128,6 +135,9 @@ Window::Window(DisplayShared& shared)
   panel_ = Panel::make();
   if (panel_) panel_->resize(width_, height_);
   console_.show_panel = panel_ != nullptr;
+  console_.style.arrows = shared_.options.arrows;
+  console_.robots = shared_.options.robots;
+  console_.controllers = shared_.options.controllers;
   listen();
 }
 
@@ -227,8 +237,33 @@ void Window::watchCost(Clock::duration cost) {
   if (is_smooth_ && shared_.frame_count > warm_up_frames && mean_cost_ > affordable) is_smooth_ = false;
 }
 
-std::shared_ptr<const Snapshot> Window::current() {
-  return shared_.player ? shared_.player->snapshot() : shared_.current();
+/// Takes what the run's thread has published, and passes on what the user wants of it.
+void Window::follow() {
+  const auto [run, snapshot] = shared_.current();
+  seen_ = snapshot;
+  if (run.get() != &console_.run()) {
+    grab_.reset();
+    history_ = {};
+    console_.attach(run);
+    glutSetWindowTitle(run->title.c_str());
+  }
+  console_.divergence = shared_.currentDivergence();
+  if (const auto message = shared_.takeMessage()) console_.say(*message);
+  if (const auto wanted = std::exchange(console_.wanted_run, std::nullopt)) shared_.ask(*wanted);
+  history_.add(*seen_);
+  showMovedTarget();
+}
+
+/// The run takes a moved target over with its next step, the picture at once.
+void Window::showMovedTarget() {
+  const auto moved_mm = console_.hands().movedTargetMm();
+  if (seen_->target && moved_mm) {
+    Snapshot changed = *seen_;
+    changed.target->point_mm = changed.target->movedTo(moved_mm->cast<float>());
+    seen_ = std::make_shared<const Snapshot>(std::move(changed));
+  }
+  console_.target_mm.reset();
+  if (seen_->target) console_.target_mm = seen_->target->point_mm;
 }
 
 /// Moves a replay on by the time since the last picture.
@@ -237,20 +272,19 @@ void Window::play() {
   const double wall_s = std::chrono::duration<double>(now - std::exchange(played_at_, now)).count();
   if (!is_scrubbing_) console_.play(wall_s);
   console_.divergence = shared_.player->divergence();
+  seen_ = shared_.player->snapshot();
 }
 
 void Window::draw() {
   if (shared_.player)
     play();
   else
-    console_.divergence = shared_.currentDivergence();
-  const auto snapshot = current();
-  if (!shared_.player) history_.add(*snapshot);
+    follow();
   fitTarget();
-  console_.keepInView(boundsOf(*snapshot), static_cast<float>(target_->width()), static_cast<float>(height_));
-  scene_->draw(*snapshot, console_.camera, console_.style, *target_);
+  console_.keepInView(boundsOf(current()), static_cast<float>(target_->width()), static_cast<float>(height_));
+  scene_->draw(current(), console_.camera, console_.style, *target_);
   savePictures();
-  drawOver(*snapshot);
+  drawOver(current());
   glutSwapBuffers();
   ++shared_.frame_count;
 }
@@ -299,10 +333,12 @@ void Window::button(int which, int state, int x, int y) {
     last_x_ = x;
     last_y_ = y;
     has_moved_ = false;
+    if (which == GLUT_LEFT_BUTTON && (glutGetModifiers() & GLUT_ACTIVE_CTRL) != 0) grab(x, y);
     return;
   }
   if (dragged_button_ != which) return;
   dragged_button_ = -1;
+  if (grab_) return letGo();
   if (!has_moved_ && which == GLUT_LEFT_BUTTON) pickMuscle(x, y);
   log(has_moved_ ? "drag" : "click");
 }
@@ -315,6 +351,7 @@ void Window::drag(int x, int y) {
   has_moved_ = true;
   last_x_ = x;
   last_y_ = y;
+  if (grab_) return dragGrabbed(x, y);
   const auto dx = static_cast<float>(right), dy = static_cast<float>(down);
   if (dragged_button_ == GLUT_LEFT_BUTTON)
     console_.rotate(dx, dy);
@@ -326,16 +363,44 @@ void Window::drag(int x, int y) {
 void Window::pickMuscle(int x, int y) {
   constexpr float near_px = 12;
   const Eigen::Vector2f pointer(static_cast<float>(x), static_cast<float>(y));
-  const auto snapshot = current();
+  const Snapshot& snapshot = current();
   float nearest = near_px;
-  for (std::size_t i = 0; i < snapshot->hoses.size(); ++i) {
-    for (const Eigen::Vector3f& point : smoothCurve(snapshot->hoses[i].points_mm)) {
+  for (std::size_t i = 0; i < snapshot.hoses.size(); ++i) {
+    for (const Eigen::Vector3f& point : smoothCurve(snapshot.hoses[i].points_mm)) {
       const auto seen = console_.camera.pixelOf(point, static_cast<float>(target_->width()), static_cast<float>(height_));
       if (!seen || (*seen - pointer).norm() >= nearest) continue;
       nearest = (*seen - pointer).norm();
       console_.select(static_cast<int>(i));
     }
   }
+}
+
+/// Takes hold of the bone or the target under the pointer.
+void Window::grab(int x, int y) {
+  if (shared_.player) return console_.say("a replay cannot be pulled at: it has been simulated");
+  const Camera& camera = console_.camera;
+  const Eigen::Vector3f through = camera.pointUnder(Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)), camera.center_mm,
+                                                    static_cast<float>(target_->width()), static_cast<float>(height_));
+  grab_ = grabAt(current(), camera.eyeMm(), through);
+  if (!grab_) return console_.say("there is no bone under the pointer");
+  if (grab_->primitive >= 0 && console_.pace().isPaused()) console_.say("the run is paused: it is pulled as soon as it goes on");
+}
+
+/// Moves the hand in the plane through the place where it took hold, parallel to the picture.
+void Window::dragGrabbed(int x, int y) {
+  const Eigen::Vector3f to_mm = console_.camera.pointUnder(Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)), grab_->seen_mm,
+                                                           static_cast<float>(target_->width()), static_cast<float>(height_));
+  if (grab_->primitive < 0) {
+    if (current().target) console_.moveTarget(current().target->movedTo(to_mm));
+    return;
+  }
+  console_.hands().pull(Pull{static_cast<std::size_t>(grab_->primitive), grab_->point_mm.cast<double>(), to_mm.cast<double>()});
+}
+
+void Window::letGo() {
+  if (grab_->primitive >= 0) console_.hands().pull(std::nullopt);
+  log(grab_->primitive < 0 ? "target" : "pull");
+  grab_.reset();
 }
 
 std::string Window::fileFor(const char* extension) const {
@@ -362,7 +427,7 @@ void Window::savePictures() {
 void Window::saveScreenshot() {
   const std::string file = fileFor(".png");
   const GpuTarget target(gl_, target_->width(), target_->height(), GpuTarget::smooth);
-  scene_->draw(*current(), console_.camera, console_.style, target);
+  scene_->draw(current(), console_.camera, console_.style, target);
   writePng(target.read(), file);
   console_.say("picture " + file);
 }
@@ -392,7 +457,9 @@ void Window::log(const std::string& event) {
   nlohmann::json line = console_.state();
   line["event"] = event;
   line["smooth"] = is_smooth_;
-  line["time_s"] = current()->state.time_s;
+  const auto latest = shared_.player ? shared_.player->snapshot() : shared_.current().snapshot;
+  line["pull_N"] = latest->pull ? nlohmann::json(latest->pull->force_N) : nullptr;
+  line["time_s"] = latest->state.time_s;
   line["frames_per_s"] = static_cast<double>(shared_.frame_count) / std::chrono::duration<double>(Clock::now() - shared_.opened_at).count();
   log_ << line.dump() << std::endl;
 }

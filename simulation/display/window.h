@@ -8,6 +8,7 @@
 #include <string>
 
 #include "console.h"
+#include "grab.h"
 #include "history.h"
 #include "panel.h"
 #include "shared.h"
@@ -36,17 +37,22 @@ class Window {
   void draw();
   void drawOver(const Snapshot& snapshot);
   void play();
+  void follow();
+  void showMovedTarget();
   void fitTarget();
   void watchCost(Clock::duration cost);
   void press(int code);
   /// What is to be seen now.
-  std::shared_ptr<const Snapshot> current();
+  const Snapshot& current() const { return *seen_; }
   TimeLine timeLine() const;
   void scrubTo(int x);
   bool scrub(int which, int state, int x, int y);
   void button(int which, int state, int x, int y);
   void drag(int x, int y);
   void pickMuscle(int x, int y);
+  void grab(int x, int y);
+  void dragGrabbed(int x, int y);
+  void letGo();
   void savePictures();
   void saveScreenshot();
   void updateVideo();
@@ -54,6 +60,7 @@ class Window {
   void log(const std::string& event);
 
   DisplayShared& shared_;
+  std::shared_ptr<const Snapshot> seen_;
   Console console_;
   History history_;
   Gl gl_;
@@ -68,6 +75,7 @@ class Window {
   int window_ = 0, width_, height_;
   int dragged_button_ = -1, last_x_ = 0, last_y_ = 0;
   bool has_moved_ = false, is_scrubbing_ = false;
+  std::optional<Grab> grab_;
   Clock::time_point played_at_ = Clock::now();
 };
 

@@ -37,6 +37,14 @@ std::optional<Eigen::Vector2f> Camera::pixelOf(const Eigen::Vector3f& point_mm, 
   return Eigen::Vector2f((clip.x() / clip.w() + 1) / 2 * width_px, (1 - clip.y() / clip.w()) / 2 * height_px);
 }
 
+Eigen::Vector3f Camera::pointUnder(const Eigen::Vector2f& pixel, const Eigen::Vector3f& through_mm, float width_px, float height_px) const {
+  const Eigen::Matrix4f axes = view();
+  const float depth_mm = -(axes * through_mm.homogeneous()).z();
+  const float half_mm = depth_mm * std::tan(field_of_view_deg / 2 * rad), mm_per_px = 2 * half_mm / height_px;
+  const Eigen::Vector3f seen((pixel.x() - width_px / 2) * mm_per_px, (height_px / 2 - pixel.y()) * mm_per_px, -depth_mm);
+  return eyeMm() + axes.topLeftCorner<3, 3>().transpose() * seen;
+}
+
 Eigen::Vector3f Camera::eyeMm() const {
   const float a = azimuth_deg * rad, e = elevation_deg * rad;
   return center_mm + distance_mm * Eigen::Vector3f(std::cos(e) * std::sin(a), std::sin(e), std::cos(e) * std::cos(a));

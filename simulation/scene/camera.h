@@ -25,6 +25,9 @@ struct Camera {
   /// The place of a world point in a picture, in pixels from the upper left corner; none if the point is behind the eye.
   std::optional<Eigen::Vector2f> pixelOf(const Eigen::Vector3f& point_mm, float width_px, float height_px) const;
 
+  /// The world point under a pixel, in the plane through `through_mm` parallel to the picture.
+  Eigen::Vector3f pointUnder(const Eigen::Vector2f& pixel, const Eigen::Vector3f& through_mm, float width_px, float height_px) const;
+
   Eigen::Vector3f eyeMm() const;
   Eigen::Matrix4f view() const;
   Eigen::Matrix4f projection(float aspect_ratio) const;

@@ -15,12 +15,14 @@ using M = Eigen::Matrix4f;
 
 constexpr float background = 0.9F, hose_grey = 0.2F;
 const V selected_color(0.80F, 0.06F, 0.06F), target_color(1.0F, 0.10F, 0.10F), shadow_color(0.80F, 0.805F, 0.815F),
-    ghost_color(0.10F, 0.42F, 0.95F);
-constexpr float target_radius_mm = 30, level_radius_mm = 220, target_alpha = 0.45F, bone_alpha = 0.35F, ghost_alpha = 0.42F;
+    ghost_color(0.10F, 0.42F, 0.95F), contact_color(0.95F, 0.50F, 0.0F), pull_color(0.72F, 0.05F, 0.72F);
+constexpr float level_radius_mm = 220, target_alpha = 0.45F, bone_alpha = 0.35F, ghost_alpha = 0.42F;
 constexpr float ghost_margin_mm = 1.5F;  ///< by which a ghost is larger all around, so that it can be seen where the poses agree
 constexpr float grid_mm = 100, floor_reach_mm = 1600;
 constexpr float cap_cone_in_radii = 1.5F, cap_length_in_radii = 3.0F, cap_width_ratio = 1.2F;
 constexpr float frame_mm = 45, frame_radius_mm = 1.6F;
+constexpr float tension_mm_per_N = 1, shortest_tension_N = 0.5F, longest_tension_mm = 150, tension_radius_mm = 2.5F;
+constexpr float contact_mm = 30, contact_radius_mm = 1.5F, pull_radius_mm = 4;
 
 M scaled(float x, float y, float z) {
   return Eigen::Vector4f(x, y, z, 1).asDiagonal();
@@ -101,6 +103,7 @@ Scene::Scene(const Gl& gl)
       cylinder_(gl, turnedMesh({{1, 0}, {1, 1}})),
       disc_cylinder_(gl, turnedMesh({{0, 0}, {1, 0}, {1, 1}, {0, 1}})),
       cap_(gl, turnedMesh({{0, -0.06F}, {0.30F, -0.04F}, {0.45F, 0.02F}, {1, 0.5F}, {1, 1}, {0.8F, 1.04F}, {0, 1.04F}})),
+      cone_(gl, turnedMesh({{0, 0}, {1, 0}, {0, 1}})),
       square_(gl, squareMesh()) {}
 
 Scene::~Scene() = default;
@@ -155,6 +158,37 @@ void Scene::addFrame(std::vector<Item>& items, const DrawnFrame& frame) const {
   }
 }
 
+/// Arrows are marks, not things: they cast no shadow.
+void Scene::addArrow(std::vector<Item>& items, const V& from, const V& to, float radius, const V& color) const {
+  constexpr float head_in_radii = 7, head_width_in_radii = 2.6F;
+  const float length = (to - from).norm();
+  if (length < radius) return;
+  const V neck = to + (from - to) * std::min(head_in_radii * radius / length, 0.6F);
+  items.push_back({&disc_cylinder_, between(from, neck, radius), color, 1, 0.1F, false});
+  items.push_back({&cone_, between(neck, to, head_width_in_radii * radius), color, 1, 0.1F, false});
+}
+
+/// One arrow at each end, beside the hose as seen from the eye: the force of the muscle on what it is attached to, 1 mm per newton.
+void Scene::addTensions(std::vector<Item>& items, const DrawnHose& hose, const V& eye_mm) const {
+  constexpr float beside_in_radii = 1.8F;
+  const auto tension_N = static_cast<float>(hose.tension_N);
+  if (tension_N < shortest_tension_N) return;
+  const float length_mm = std::min(tension_mm_per_N * tension_N, longest_tension_mm);
+  std::vector<V> curve = smoothCurve(hose.points_mm);
+  for (int end = 0; end < 2; ++end) {
+    const V &tip = curve.front(), along = (pointAt(curve, cap_length_in_radii * hose.radius_mm) - tip).stableNormalized();
+    const V start = tip + beside_in_radii * hose.radius_mm * along.cross(eye_mm - tip).stableNormalized();
+    addArrow(items, start, start + length_mm * along, tension_radius_mm, rgb(tensionColor(hose.tension_N)));
+    std::ranges::reverse(curve);
+  }
+}
+
+/// Two arrows along the normal, one into each body.
+void Scene::addContact(std::vector<Item>& items, const DrawnContact& contact) const {
+  for (const float sense : {-1.0F, 1.0F})
+    addArrow(items, contact.point_mm, contact.point_mm + sense * contact_mm * contact.normal, contact_radius_mm, contact_color);
+}
+
 /// A ghost has one colour, and no details of its muscles.
 void Scene::addGhost(std::vector<Item>& items, const DrawnGhost& ghost) const {
   const std::size_t first = items.size();
@@ -177,11 +211,16 @@ void Scene::addGhost(std::vector<Item>& items, const DrawnGhost& ghost) const {
   }
 }
 
-std::vector<Scene::Item> Scene::itemsOf(const Snapshot& snapshot, const SceneStyle& style) {
+std::vector<Scene::Item> Scene::itemsOf(const Snapshot& snapshot, const SceneStyle& style, const V& eye_mm) {
   std::vector<Item> items;
   for (std::size_t i = 0; i < snapshot.hoses.size(); ++i) addHose(items, snapshot.hoses[i], i, style);
   if (style.frames)
     for (const DrawnFrame& frame : snapshot.frames) addFrame(items, frame);
+  if (style.arrows) {
+    for (const DrawnHose& hose : snapshot.hoses) addTensions(items, hose, eye_mm);
+    for (const DrawnContact& contact : snapshot.contacts) addContact(items, contact);
+  }
+  if (snapshot.pull) addArrow(items, snapshot.pull->point_mm, snapshot.pull->towards_mm, pull_radius_mm, pull_color);
   for (const DrawnPart& part : snapshot.parts) addPart(items, part, style.transparent ? bone_alpha : 1);
   if (style.ghost && snapshot.ghost) addGhost(items, *snapshot.ghost);
   return items;
@@ -253,7 +292,7 @@ void Scene::draw(const Snapshot& snapshot, const Camera& camera, const SceneStyl
   gl_.DepthMask(GL_TRUE);
   drawBackground();
   const float aspect_ratio = static_cast<float>(target.width()) / static_cast<float>(target.height());
-  const std::vector<Item> items = itemsOf(snapshot, style);
+  const std::vector<Item> items = itemsOf(snapshot, style, camera.eyeMm());
   const M view = camera.view();
   const Eigen::Matrix3f to_world = view.topLeftCorner<3, 3>().transpose();
   solid_.use();

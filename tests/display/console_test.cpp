@@ -11,17 +11,13 @@
 namespace musclesim {
 namespace {
 
-class Still final : public Controller {
- public:
-  Action output(const State&) override { return Action(12, 0.2); }
-};
-
 class ConsoleOfTwelveMuscles : public testing::Test {
  protected:
-  void SetUp() override { hands.output(State{}); }
-  ManualController hands{std::make_unique<Still>(), 12};
+  void SetUp() override { hands.note(Action(12, 0.2)); }
+  std::shared_ptr<const ShownRun> run = std::make_shared<ShownRun>(ShownRun{std::make_shared<Hands>(12), "twelve", "still", "run.csv"});
+  Hands& hands = *run->hands;
   Pace pace{1};
-  Console console{hands, pace, Camera{}};
+  Console console{run, pace};
 };
 
 TEST_F(ConsoleOfTwelveMuscles, NoKeyHasTwoMeanings) {
@@ -86,6 +82,49 @@ TEST_F(ConsoleOfTwelveMuscles, UnboundKeysDoNothing) {
   const auto before = console.state();
   for (const int code : {int{'x'}, int{'?'}, 1, key::left, 5000}) EXPECT_FALSE(console.press(code));
   EXPECT_EQ(console.state(), before);
+}
+
+TEST_F(ConsoleOfTwelveMuscles, AStateThatWasKeptIsAskedForAgain) {
+  console.press('b');
+  EXPECT_FALSE(console.wanted_run) << "nothing is kept yet";
+  hands.sample(0);
+  hands.set(4, 0.7);
+  hands.sample(0.01);
+  console.press('k');
+  hands.sample(0.02);
+  console.press('b');
+  ASSERT_TRUE(console.wanted_run);
+  EXPECT_TRUE(pace.isPaused());
+  EXPECT_EQ(console.wanted_run->robot, "twelve");
+  EXPECT_EQ(console.wanted_run->controller, "still");
+  EXPECT_EQ(console.wanted_run->recording, "run.csv");
+  EXPECT_EQ(console.wanted_run->repeated.step_count, 2);
+  EXPECT_EQ(console.wanted_run->repeated.time_s, 0.01);
+  EXPECT_EQ(console.wanted_run->repeated.at(0), UserInput{});
+  EXPECT_EQ(console.wanted_run->repeated.at(1).pressures[4], 0.7);
+}
+
+TEST_F(ConsoleOfTwelveMuscles, AnotherRunKeepsWhatIsKept) {
+  console.press('k');
+  console.press('9');
+  console.press(',');
+  for (int i = 0; i < 4; ++i) console.press('.');
+  EXPECT_EQ(console.selected(), 11);
+  console.attach(std::make_shared<ShownRun>(ShownRun{std::make_shared<Hands>(2), "two", "other", "run-2.csv"}));
+  EXPECT_EQ(console.selected(), -1) << "there is no such muscle";
+  EXPECT_EQ(console.saved().size(), 1u);
+  console.press(key::home);
+  EXPECT_EQ(console.wanted_run->robot, "two");
+  EXPECT_EQ(console.wanted_run->repeated.step_count, 0);
+}
+
+TEST_F(ConsoleOfTwelveMuscles, TargetGoesUpAndDown) {
+  console.press(key::page_up);
+  EXPECT_FALSE(hands.movedTargetMm()) << "there is none";
+  console.target_mm = Eigen::Vector3f(1, 2, 3);
+  for (int i = 0; i < 3; ++i) console.press(key::page_up);
+  console.press(key::page_down);
+  EXPECT_EQ(*hands.movedTargetMm(), Vector(1, 22, 3));
 }
 
 /// docs/user/window.md lists the same keys as the help.

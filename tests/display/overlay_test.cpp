@@ -33,11 +33,6 @@ void expectNoTextOverText(const Console& console, const Snapshot& snapshot, floa
       EXPECT_FALSE(listing.texts[i].box.intersects(listing.texts[j].box)) << listing.texts[i].words << " / " << listing.texts[j].words;
 }
 
-class Resting final : public Controller {
- public:
-  Action output(const State&) override { return {0.2}; }
-};
-
 /// One muscle and a hand.
 Snapshot snapshot() {
   Snapshot result;
@@ -47,14 +42,14 @@ Snapshot snapshot() {
 }
 
 TEST(Overlay, NoTextOfARunStandsOnAnother) {
-  ManualController hands(std::make_unique<Resting>(), 1);
-  hands.output(State{});
   Pace pace(1);
-  Console console(hands, pace, Camera{});
+  Console console(std::make_shared<ShownRun>(ShownRun{std::make_shared<Hands>(1), "rig", "hold"}), pace);
   console.select(0);
   for (const float width_px : {320.0F, 640.0F}) {
     expectNoTextOverText(console, snapshot(), width_px);
     console.say("muscles under manual control");
+    expectNoTextOverText(console, snapshot(), width_px);
+    console.say("a message so long that it does not fit into the width of a window and therefore takes several lines of text there");
     expectNoTextOverText(console, snapshot(), width_px);
     console.press('f');
     console.press('h');

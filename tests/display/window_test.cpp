@@ -105,6 +105,8 @@ class WindowTest : public testing::Test {
 
 XServer* WindowTest::server_ = nullptr;
 
+constexpr int robot_list_y = 95;  ///< in the panel, pixels from the upper edge
+constexpr int lists_px = 52;      ///< height of the lists of robots and controllers and of the buttons below
 const std::vector<std::string> small_arm = {"--picture-size", "640x480"};
 
 TEST_F(WindowTest, HandSetsAPressureThatIsRecordedAndTheMuscleTurnsRed) {
@@ -138,7 +140,8 @@ TEST_F(WindowTest, HandSetsAPressureThatIsRecordedAndTheMuscleTurnsRed) {
 /// Tests every other key of the help.
 TEST_F(WindowTest, EveryKeyDoesWhatTheHelpSays) {
   Session session(*server_, folder_, small_arm);
-  std::set<int> tried = {'i', 'r', '+', 's', 'q'};  // in the test above
+  // In other tests.
+  std::set<int> tried = {'i', 'r', '+', 's', 'q', 'k', 'b', key::home, key::page_down};
   const auto press = [&](const std::string& key, int code) {
     tried.insert(code);
     return session.press(key);
@@ -166,8 +169,12 @@ TEST_F(WindowTest, EveryKeyDoesWhatTheHelpSays) {
   EXPECT_NEAR(press("Down", key::down)["camera"]["distance_mm"], distance, 1e-2);
   session.press("Down");
   EXPECT_EQ(press("c", 'c')["camera"], state["camera"]);
-  for (const auto& [name, code, member] : std::vector<std::tuple<std::string, int, std::string>>{
-           {"t", 't', "transparent"}, {"m", 'm', "color_tension"}, {"f", 'f', "frames"}, {"h", 'h', "help"}, {"F1", key::f1, "help"}}) {
+  for (const auto& [name, code, member] : std::vector<std::tuple<std::string, int, std::string>>{{"t", 't', "transparent"},
+                                                                                                 {"a", 'a', "arrows"},
+                                                                                                 {"m", 'm', "color_tension"},
+                                                                                                 {"f", 'f', "frames"},
+                                                                                                 {"h", 'h', "help"},
+                                                                                                 {"F1", key::f1, "help"}}) {
     const bool before = session.press("0")[member];
     EXPECT_EQ(press(name, code)[member], !before) << name;
     EXPECT_EQ(press(name, code)[member], before) << name;
@@ -216,7 +223,7 @@ TEST_F(WindowTest, MouseRotatesZoomsAndSelects) {
   EXPECT_EQ(session.press("t")["selected"], 1);
 
   if (first["panel"]) {  // the first slider, at its middle: right of the scene, in the row below the lines of the run
-    session.xdotool("mousemove " + std::to_string(scene_px + 181) + " 96 click 1");
+    session.xdotool("mousemove " + std::to_string(scene_px + 181) + " " + std::to_string(96 + lists_px) + " click 1");
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     state = session.press("t");
     EXPECT_EQ(state["manual"], true);
@@ -226,14 +233,152 @@ TEST_F(WindowTest, MouseRotatesZoomsAndSelects) {
   EXPECT_EQ(session.exitStatus(), 0);
 }
 
+/// The value after "musclesim replay --json" of the largest difference between a recording and its replay.
+double largestDifference(const fs::path& folder, const std::string& recording, const std::string& signal) {
+  const ProgramResult replayed = runProgram({"replay", recording, "--json"}, folder);
+  const json verdict = json::parse(replayed.out.substr(replayed.out.rfind('\n', replayed.out.size() - 2) + 1));
+  return verdict["signals"][signal]["largest"];
+}
+
+const std::vector<std::string> elbow_from_the_front = {"--robot",  "elbow",   "--controller",   "hold",
+                                                       "--camera", "0,0,900", "--picture-size", "950x480"};
+
+TEST_F(WindowTest, MousePullsAtABoneAndAReplayRepeatsIt) {
+  Session session(*server_, folder_, elbow_from_the_front);
+  session.runUntil(0.2);
+  const Image before = picture(session);
+  const json state = session.press("0");
+  const auto hand = cameraOf(state).pixelOf({0, -200, 0}, static_cast<float>(before.width), 480);
+  const auto at = [&](float right_px) {
+    return std::to_string(std::lround(hand->x() + right_px)) + " " + std::to_string(std::lround(hand->y()));
+  };
+  session.xdotool("mousemove " + at(0) + " keydown ctrl mousedown 1 keyup ctrl sleep 0.1 mousemove " + at(30) + " sleep 0.1 mousemove " +
+                  at(90) + " sleep 0.7");
+  const json held = session.press("0");
+  EXPECT_GT(held["pull_N"], 5.0);
+  EXPECT_EQ(held["camera"], state["camera"]) << "the drag turns nothing";
+  const Image pulled = picture(session);
+  session.xdotool("mouseup 1 sleep 0.3");
+  EXPECT_TRUE(session.press("0")["pull_N"].is_null());
+  EXPECT_GT(differingShare(before, pulled), 0.005);
+  session.press("q");
+  ASSERT_EQ(session.exitStatus(), 0);
+
+  const Recording recording = readRecording((folder_ / "run" / "run.csv").string());
+  const auto& angle = recording.find("angle_elbow_deg")->values;
+  EXPECT_GT(*std::ranges::max_element(angle), angle.front() + 5) << "to the right";
+  EXPECT_EQ(sidecar().at("by_hand_s").size(), 0u);
+  EXPECT_GE(sidecar().at("pulls").size(), 2u);
+  EXPECT_FALSE(sidecar().at("pulls").back().contains("part")) << "the last one lets go";
+  EXPECT_EQ(largestDifference(folder_, "run/run.csv", "angle_elbow_deg"), 0);
+}
+
+TEST_F(WindowTest, StatesComeBackToTheBit) {
+  Session session(*server_, folder_, {"--seed", "3", "--picture-size", "640x480"});
+  session.runUntil(0.3);
+  session.press("2");
+  session.press("plus", 20);
+  session.press("p");
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  const double kept_s = session.press("k")["time_s"];
+  session.press("p");
+  session.runUntil(kept_s + 0.3);
+  session.press("b");
+  json state;
+  for (int i = 0; i < 1000; ++i) {
+    state = session.press("2");
+    if (state["time_s"] == kept_s && state["repeating"] == false) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  EXPECT_EQ(state["time_s"], kept_s);
+  EXPECT_EQ(state["paused"], true);
+  EXPECT_EQ(state["manual"], true);
+  EXPECT_EQ(state["saved"], 1);
+  session.press("p");
+  session.runUntil(kept_s + 0.1);
+  session.press("Home");
+  session.press("q");
+  ASSERT_EQ(session.exitStatus(), 0);
+
+  const std::string first = contentOf(folder_ / "run" / "run.csv"), second = contentOf(folder_ / "run" / "run-2.csv");
+  const auto rows = static_cast<std::ptrdiff_t>(std::lround(kept_s / 0.01)) + 2;  // with the header
+  std::size_t same = 0;
+  for (std::ptrdiff_t row = 0; row < rows; ++row) same = first.find('\n', same) + 1;
+  EXPECT_EQ(first.substr(0, same), second.substr(0, same));
+  const json again = json::parse(contentOf(folder_ / "run" / "run-2.json"));
+  EXPECT_EQ(again.at("repeats").at("recording"), "run.csv");
+  EXPECT_NEAR(again.at("repeats").at("until_s"), kept_s, 1e-9);
+  for (const char* name : {"run.json", "run-2.json"})
+    EXPECT_EQ(json::parse(contentOf(folder_ / "run" / name)).at("complete"), true) << name;
+  EXPECT_EQ(largestDifference(folder_, "run/run-2.csv", "length_3_mm"), 0);
+}
+
+TEST_F(WindowTest, TargetIsMovedByKeysAndByTheMouse) {
+  Session session(*server_, folder_, {"--task", "reach", "--picture-size", "640x480"});
+  session.runUntil(0.1);
+  json state = session.press("Next", 3);  // Page down
+  EXPECT_EQ(session.press("0")["manual"], false);
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  state = session.press("0");
+  EXPECT_EQ(state["target_mm"], json({-300, -30, 150}));
+  const Image view = picture(session);
+  const auto at = cameraOf(state).pixelOf({-300, -30, 150}, static_cast<float>(view.width), 480);
+  const std::string x = std::to_string(std::lround(at->x())), y = std::to_string(std::lround(at->y()));
+  const std::string higher = std::to_string(std::lround(at->y()) - 60);
+  session.xdotool("mousemove " + x + " " + y + " keydown ctrl mousedown 1 keyup ctrl mousemove " + x + " " + higher +
+                  " sleep 0.1 mouseup 1");
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  EXPECT_GT(session.press("0")["target_mm"][1], 20.0);
+  session.press("q");
+  ASSERT_EQ(session.exitStatus(), 0);
+  const auto& recorded = readRecording((folder_ / "run" / "run.csv").string()).find("target_y_mm")->values;
+  EXPECT_EQ(recorded.front(), 0);
+  EXPECT_GT(recorded.back(), 20);
+}
+
+/// The lists of robots and controllers, and what happens if the wanted run cannot be made.
+TEST_F(WindowTest, MouseChoosesRobotAndController) {
+  Session session(*server_, folder_, {"--robot", "elbow", "--controller", "hold", "--picture-size", "1000x600"});
+  json state = session.press("0");
+  if (!state["panel"]) GTEST_SKIP() << "this build has no panel";
+  const auto choose = [&](int x, int entry) {  // of a list below the lines of the run
+    for (const int y : {robot_list_y, robot_list_y + 24 + 20 * entry}) {
+      session.xdotool("mousemove " + std::to_string(x) + " " + std::to_string(y) + " click 1");
+      std::this_thread::sleep_for(std::chrono::milliseconds(400));
+    }
+    return session.press("0");
+  };
+  state = choose(1000 - 230, 3);
+  EXPECT_EQ(state["robot"], "rig");
+  EXPECT_EQ(state["pressures"].size(), 1u);
+  EXPECT_EQ(state["controller"], "triangle") << "its usual one";
+  state = choose(1000 - 80, 0);
+  EXPECT_EQ(state["controller"], "triangle") << "aasm needs a hand, which the rig has not: the run before goes on";
+  state = choose(1000 - 80, 3);
+  EXPECT_EQ(state["controller"], "hold");
+  session.press("q");
+  EXPECT_EQ(session.exitStatus(), 0);
+  EXPECT_EQ(sidecar().at("robot"), "elbow");
+  EXPECT_EQ(sidecar().at("complete"), true);
+  std::vector<std::string> robots, controllers;
+  for (const char* name : {"run.json", "run-2.json", "run-3.json", "run-4.json"}) {
+    const json other = json::parse(contentOf(folder_ / "run" / name));
+    EXPECT_EQ(other.at("complete"), true) << name;
+    robots.push_back(other.at("robot"));
+    controllers.push_back(other.at("controller"));
+  }
+  EXPECT_EQ(robots, (std::vector<std::string>{"elbow", "rig", "rig", "rig"}));
+  EXPECT_EQ(controllers, (std::vector<std::string>{"hold", "triangle", "triangle", "hold"}));
+}
+
 TEST_F(WindowTest, MouseChoosesPlots) {
   Session session(*server_, folder_, {"--robot", "elbow", "--controller", "hold", "--picture-size", "1000x600"});
   json state = session.press("p");
   if (!state["panel"]) GTEST_SKIP() << "this build has no panel";
   EXPECT_EQ(state["hidden_plots"], json({"hand x", "hand z"}));
   const std::string x = std::to_string(1000 - 253);  // the list of plots, below the two sliders; it opens downwards
-  for (const char* y : {"154", "199"}) {             // its second entry
-    session.xdotool("mousemove " + x + " " + y + " click 1");
+  for (const int y : {154, 199}) {                   // its second entry
+    session.xdotool("mousemove " + x + " " + std::to_string(y + lists_px) + " click 1");
     std::this_thread::sleep_for(std::chrono::milliseconds(400));
   }
   state = session.press("0");

@@ -21,6 +21,15 @@ TEST(Camera, LooksAtItsCentreWithYUp) {
   EXPECT_NEAR((camera.eyeMm() - camera.center_mm).norm(), 500, 1e-2);
 }
 
+TEST(Camera, PointUnderAPixelIsSeenThere) {
+  const Camera camera{{10, 20, 30}, 40, 15, 500};
+  const Eigen::Vector3f through(60, -20, 10);
+  const Eigen::Vector2f pixel(500, 120);
+  const Eigen::Vector3f point = camera.pointUnder(pixel, through, 640, 480);
+  EXPECT_LT((*camera.pixelOf(point, 640, 480) - pixel).norm(), 1e-2);
+  EXPECT_NEAR((point - through).dot((camera.eyeMm() - camera.center_mm).normalized()), 0, 1e-2) << "in the plane through the other point";
+}
+
 TEST(Camera, AzimuthZeroLooksAlongMinusZ) {
   const Camera camera{{0, 0, 0}, 0, 0, 100};
   EXPECT_LT((camera.eyeMm() - Eigen::Vector3f(0, 0, 100)).norm(), 1e-3);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 
 #include "musclesim/controller/hold.h"
 #include "simulation/scene/scene_error.h"
@@ -123,6 +124,56 @@ TEST_F(Pictures, StylesLookAsStored) {
   style = frames;
   style.selected = selected.selected;
   compareStyle("arm_frames", snapshot, style, {frames, selected});
+}
+
+/// Pixels in which a colour stands out: red, green and blue are compared with their mean.
+static long pixelsLike(const Image& image, const std::function<bool(int red, int green, int blue)>& is_like) {
+  long count = 0;
+  for (std::size_t i = 0; i < image.rgb.size(); i += 3) count += is_like(image.rgb[i], image.rgb[i + 1], image.rgb[i + 2]);
+  return count;
+}
+
+TEST_F(Pictures, ArrowsLookAsStored) {
+  SceneStyle arrows;
+  arrows.arrows = true;
+  Snapshot snapshot = snapshotOf("elbow");
+  ASSERT_GT(snapshot.hoses[0].tension_N, 5);
+  const Image plain = draw("elbow", snapshot), marked = draw("elbow", snapshot, arrows);
+  compareWithStored("elbow_arrows", marked);
+  EXPECT_GT(differingShare(plain, marked), 0.02);
+  for (DrawnHose& hose : snapshot.hoses) hose.tension_N = 0;
+  EXPECT_EQ(differingShare(draw("elbow", snapshot), draw("elbow", snapshot, arrows)), 0) << "without tension there is no arrow";
+}
+
+TEST_F(Pictures, ContactsAndPullsAreArrowsOfTheirOwnColours) {
+  const auto is_orange = [](int red, int green, int blue) { return red > 150 && green > 60 && green < red - 40 && blue < 60; };
+  const auto is_purple = [](int red, int green, int blue) { return red > 80 && blue > 80 && green < red / 2 && green < blue / 2; };
+  SceneStyle arrows;
+  arrows.arrows = true;
+  Snapshot snapshot = snapshotOf("rig");
+  const Image before = draw("rig", snapshot, arrows);
+  snapshot.contacts.push_back({{80, -100, 0}, {1, 0, 0}});
+  snapshot.pull = DrawnPull{{0, -150, 30}, {-80, -200, 30}, 20};
+  const Image after = draw("rig", snapshot, arrows), without = draw("rig", snapshot);
+  EXPECT_GT(pixelsLike(after, is_orange), pixelsLike(before, is_orange) + 20);
+  EXPECT_GT(pixelsLike(after, is_purple), pixelsLike(before, is_purple) + 40);
+  EXPECT_EQ(pixelsLike(without, is_orange), 0) << "contacts only with the arrows";
+  EXPECT_GT(pixelsLike(without, is_purple), 40) << "a pull is always shown";
+}
+
+TEST_F(Pictures, SnapshotsHaveTheContacts) {
+  Simulation simulation;
+  simulation.build("arm");
+  simulation.start("built", musclesim::Action(10, 0.3));
+  for (int i = 0; i < 30; ++i) simulation.step();
+  const Snapshot snapshot = SnapshotTaker(simulation).take(simulation.robot().getState());
+  EXPECT_GT(snapshot.contacts.size(), 2u);
+  EXPECT_EQ(snapshot.contacts.size(), static_cast<std::size_t>(simulation.contactCount()));
+  const Bounds bounds = boundsOf(snapshot);
+  for (const DrawnContact& contact : snapshot.contacts) {
+    EXPECT_NEAR(contact.normal.norm(), 1, 1e-5F);
+    EXPECT_TRUE((contact.point_mm.array() >= bounds.low.array()).all() && (contact.point_mm.array() <= bounds.high.array()).all());
+  }
 }
 
 TEST_F(Pictures, NothingIsClippedInTheFirstView) {

@@ -64,6 +64,7 @@ class AasmController final : public Controller {
   std::optional<double> activity() const override { return decision_activity_; }
   std::optional<Vector> targetMm() const override { return target_.point_mm; }
   bool targetIsHeight() const override { return target_.is_height; }
+  void moveTarget(const Vector& target_mm) override { target_.point_mm = target_mm; }
 
   /// State x, n numbers in [-1, 1].
   const Eigen::VectorXd& x() const { return x_; }

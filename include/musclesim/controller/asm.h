@@ -30,6 +30,7 @@ class AsmController final : public Controller {
   std::optional<double> activity() const override { return activity_; }
   std::optional<Vector> targetMm() const override { return task_->targetMm(); }
   bool targetIsHeight() const override { return task_->targetIsHeight(); }
+  void moveTarget(const Vector& target_mm) override { task_->moveTarget(target_mm); }
 
   /// State x, n numbers in [-1, 1].
   const Eigen::VectorXd& x() const { return x_; }

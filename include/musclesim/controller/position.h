@@ -48,6 +48,8 @@ class PositionController final : public Controller {
   Action output(const State& state) override;
   std::optional<Vector> targetMm() const override;
   bool targetIsHeight() const override { return is_height_; }
+  /// The height then stays there, whatever a targets file says.
+  void moveTarget(const Vector& target_mm) override;
   std::vector<std::pair<std::string, double>> signals() const override;
   std::optional<double> endS() const override { return end_s_; }
   std::vector<std::string> notes() const override;

@@ -34,6 +34,7 @@ class Task {
   virtual double activity(const State& state) = 0;
   Vector targetMm() const { return target_.point_mm; }
   bool targetIsHeight() const { return target_.is_height; }
+  void moveTarget(const Vector& target_mm) { target_.point_mm = target_mm; }
 
   /// Throws BadParameter if no task has this name; the message gives the nearest name.
   static void requireKnown(const std::string& task);

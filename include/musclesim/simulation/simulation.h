@@ -15,6 +15,7 @@
 #include "musclesim/controller/controller.h"
 #include "musclesim/effect/effect_chain.h"
 #include "musclesim/log/active_effect.h"
+#include "musclesim/robot/pull.h"
 #include "musclesim/robot/robot.h"
 #include "musclesim/robot/world.h"
 #include "musclesim/simulation/stepper.h"
@@ -99,7 +100,13 @@ class Simulation {
   EffectChain& effects() { return *effects_; }
   Controller* controller() { return controller_.get(); }
 
+  /// Pulls at a body from now on; none: nobody pulls. Throws BadParameter if there is no such body.
+  void pull(const std::optional<Pull>& pull);
+  const std::optional<Pull>& pull() const { return pull_; }
+
   int contactCount() const;
+  /// The contacts of the last internal step.
+  const Contacts& contacts() const { return *contacts_; }
   /// Number of messages from ODE's solver ("LCP internal error") during this simulation's steps.
   long solverMessageCount() const { return solver_message_count_; }
 
@@ -142,6 +149,7 @@ class Simulation {
   std::function<bool()> interrupted_;
   long solver_message_count_ = 0;
   TornJoint worst_gap_;
+  std::optional<Pull> pull_;
   std::unique_ptr<Contacts> contacts_;
   std::unique_ptr<Stepper> stepper_;
   std::unique_ptr<EffectChain> effects_;
