@@ -42,8 +42,8 @@ int check(const ModelOptions& model, const std::string& robot) {
   const auto simulation = built(model, robot);
   const Robot& made = simulation->robot();
   made.requireTolerances();
-  fmt::print("{}: {} bodies, {} joints with a reported angle, {} muscles; starts {}\n", printable(robot), simulation->world().bodies().size(),
-             made.angles().size(), made.actuatorCount(), made.initialState());
+  fmt::print("{}: {} bodies, {} joints with a reported angle, {} muscles; starts {}\n", printable(robot),
+             simulation->world().bodies().size(), made.angles().size(), made.actuatorCount(), made.initialState());
   const auto found = oddities(simulation->world(), made);
   if (made.initialState() == "settled") simulation->settle(musclesim::Action(static_cast<std::size_t>(made.actuatorCount()), 0.0));
   printOddities(found);
