@@ -57,8 +57,10 @@ class QuietStandardError {
 /// includes until the memory ends, and looks for files in other folders.
 class SdfInspection {
  public:
+  explicit SdfInspection(const std::string& file) : file_(file), folder_(std::filesystem::path(file).parent_path()) {}
+
   /// Throws BadFile if there is too much, or if something else than files in the folder or below is included.
-  explicit SdfInspection(const std::string& file) : file_(file), folder_(std::filesystem::path(file).parent_path()) { inspect(file); }
+  void inspect() { inspect(file_); }
 
   /// The path of an included file or of a model's folder; empty if there is none.
   static std::string find(const std::filesystem::path& folder, const std::string& uri) {
@@ -121,7 +123,7 @@ class SdfReader {
   }
 
   SourceRobot read() {
-    SdfInspection{robot_.file};
+    SdfInspection(robot_.file).inspect();
     const QuietStandardError quiet;
     sdf::Console::Instance()->SetQuiet(true);
     sdf::ParserConfig config;
