@@ -153,7 +153,7 @@ TEST(NextExperiment, SaysWhatItSeparatesAndWhatNot) {
                      Fidelity::coarse, 2, [] {});
   EXPECT_EQ(experiment.separates, (std::vector<std::string>{"lag", "weaker"}));
   EXPECT_GT(experiment.difference, 3);
-  EXPECT_TRUE(contains(experiment.why, "lag and weaker"));
+  EXPECT_TRUE(contains(experiment.why, "the two of these that are most alike")) << experiment.why;
 }
 
 /// The worth of an experiment does not depend on the sum of the probabilities.
