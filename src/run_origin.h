@@ -37,7 +37,7 @@ RunOrigin keepOrigin(const ModelOptions& model, const RunOptions& options, const
 
 nlohmann::json jsonOf(const RunOrigin& origin);
 /// Reads what jsonOf wrote. Throws BadFile with the sidecar's name.
-RunOrigin originFromJson(const nlohmann::json& json, const std::string& sidecar);
+RunOrigin originFromJson(const nlohmann::json& value, const std::string& sidecar);
 
 /// The hash of a file's contents, as in KeptFile. Throws IoError, BadFile if it is too large.
 std::string hashOfFile(const std::filesystem::path& file);
