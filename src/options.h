@@ -25,7 +25,7 @@ struct ModelOptions {
   std::optional<std::string> muscle, joint_friction;
   std::vector<std::string> set;
   std::optional<std::string> config, effects;
-  std::vector<std::string> plugins;  ///< those that have been loaded
+  std::vector<std::string> plugins;  ///< libraries of --plugin; they are loaded when the option is read
   bool quiet = false, json = false;
   std::string command_line;            ///< all arguments, as one would type them
   std::vector<std::string> arguments;  ///< without the sub-command

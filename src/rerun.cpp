@@ -72,7 +72,8 @@ fs::path recordingIn(const std::string& folder) {
   return csv;
 }
 
-/// All options of the run, with its files' copies in place of the files. Plugins are code: only those that the user names are loaded.
+/// The options that the run was given, with the copies of its input files in place of the files. A plugin is code, so none is loaded unless
+/// the user of `rerun` names it.
 class StoredRun {
  public:
   StoredRun(const RunOrigin& origin, const fs::path& csv) : sidecar_(sidecarPath(csv.string())) {

@@ -168,7 +168,8 @@ void Scene::addArrow(std::vector<Item>& items, const V& from, const V& to, float
   items.push_back({&cone_, between(neck, to, head_width_in_radii * radius), color, 1, 0.1F, false});
 }
 
-/// One arrow at each end, beside the hose as seen from the eye: the force of the muscle on what it is attached to, 1 mm per newton.
+/// One arrow at each end of a muscle: the force with which the muscle pulls at what it is attached to, 1 mm long per newton. The arrow
+/// stands beside the hose, as seen from the eye.
 void Scene::addTensions(std::vector<Item>& items, const DrawnHose& hose, const V& eye_mm) const {
   constexpr float beside_in_radii = 1.8F;
   const auto tension_N = static_cast<float>(hose.tension_N);
