@@ -37,7 +37,8 @@ Diagnosis large() {
 
 /// Markup, quotes, right-to-left and control characters, and ten thousand letters, in everything that comes from files and arguments.
 std::string hostileText() {
-  return "<script>hostile = 1</script><img src=x onerror=hostile=1>\"'&amp;]]><!-- \u202egnorw\u202c \x1b[31m\x07 " + std::string(10'000, 'x');
+  return "<script>hostile = 1</script><img src=x onerror=hostile=1>\"'&amp;]]><!-- \u202egnorw\u202c \x1b[31m\x07 " +
+         std::string(10'000, 'x');
 }
 
 Diagnosis hostile() {
