@@ -48,7 +48,7 @@ Complexity Evidence::complexityOf(const Explanation& explanation) const {
       determined += is_fitted && !std::isfinite(explanation.half_width[k]) ? 0 : 1;
     // An effect of which the data determine nothing is not for free.
     result.parameters += std::max({determined, static_cast<double>(hypothesis.countedParameters()), 1.0});
-    result.effects += i > 0 ? 1 : 0;
+    result.effects += (i > 0 ? 1 : 0) + hypothesis.furtherMechanisms();
     result.same_place += actsWhereOthersDo(explanation, i) ? 1 : 0;
     result.excess += hypothesis.excess(explanation.z.segment(first, hypothesis.coordinateCount()));
     result.shared_sensor += hypothesis.info().stage == Stage::sensor && hypothesis.component() == "all" ? 1 : 0;
@@ -69,9 +69,12 @@ double Evidence::score(const Explanation& explanation) const {
 
 double Evidence::ofSomethingElse(const std::vector<Explanation>& explanations) const {
   const double gap = comparison_.misfit(nominal_residual_);
-  const Explanation& best = *std::ranges::max_element(explanations, {}, &Explanation::score);
-  const double share_left = gap > 0 ? std::max(0.0, comparison_.misfit(best.residual)) / gap : 0;
-  return per_share_left * (share_left - share_of_unknown);
+  double sum = 0;
+  for (const Explanation& explanation : explanations) {
+    const double share_left = gap > 0 ? std::max(0.0, comparison_.misfit(explanation.residual)) / gap : 0;
+    sum += explanation.probability / (1 + std::exp(-per_share_left * (share_left - share_of_unknown)));
+  }
+  return sum;
 }
 
 }  // namespace musclesim

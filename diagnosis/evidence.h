@@ -12,15 +12,15 @@ namespace musclesim {
 /// What the price of an explanation is made of, one number each.
 struct Complexity {
   double parameters = 0;     ///< coordinates that the data determine, or numbers that were counted or tried
-  double effects = 0;        ///< beyond the first
+  double effects = 0;        ///< beyond the first, and mechanisms that are a share of another one's law (a second lag)
   double same_place = 0;     ///< effects on the same muscle or signal as an earlier one, or both on the body: they may only mend its law
-  double excess = 0;         ///< e-folds by which strengths exceed their usual range
+  double excess = 0;         ///< e-folds by which parameters leave their usual range
   double shared_sensor = 0;  ///< faults that all sensors share
   constexpr std::array<double, 5> asArray() const { return {parameters, effects, same_place, excess, shared_sensor}; }
 };
 /// Nats for one of each; docs/developer/diagnosis.md says on which plants they were found.
 inline constexpr Complexity prices = {.parameters = 1.0, .effects = 3.1, .same_place = 1.0, .excess = 1.0, .shared_sensor = 4.0};
-/// ln odds of something else per share of the misfit that the best explanation leaves, and the share at which it is as likely as not.
+/// ln odds of something else per share of the misfit that an explanation leaves, and the share at which it is as likely as not.
 inline constexpr double per_share_left = 12, share_of_unknown = 0.3;
 
 class Evidence {
@@ -34,7 +34,9 @@ class Evidence {
   double price(const Explanation& explanation) const;
   /// ln of the odds up to a constant: -misfit - price - sum of numbers^2 / 2; minus infinity with an inactive effect.
   double score(const Explanation& explanation) const;
-  /// ln odds that something acts which the best of some explanations does not hold: the right one leaves a small share of the misfit.
+  /// The probability that something acts beside what the explanations hold,
+  ///     sum over explanations S of P(S) / (1 + exp(-per_share_left (share_S - share_of_unknown))),
+  /// share_S the share of the misfit that S leaves: the right one leaves a small one. Needs Explanation::probability, of sum 1.
   double ofSomethingElse(const std::vector<Explanation>& explanations) const;
 
  private:

@@ -228,7 +228,7 @@ void Search::weigh() {
   double sum = 0;
   for (Explanation& explanation : explanations_) sum += explanation.probability = std::exp(explanation.score - largest);
   for (Explanation& explanation : explanations_) explanation.probability /= sum;
-  none_of_these_ = 1 / (1 + std::exp(-evidence().ofSomethingElse(explanations_)));
+  none_of_these_ = evidence().ofSomethingElse(explanations_);
   std::ranges::stable_sort(explanations_, std::greater<>{}, &Explanation::probability);
 }
 

@@ -235,16 +235,24 @@ ActiveEffect Hypothesis::at(const Eigen::VectorXd& z) const {
   return activeEffect(info_, component_, values);
 }
 
+/// How many times its usual range a coordinate's value needs; at most 1 within it.
+double Hypothesis::stretchOf(int coordinate, double z) const {
+  const Coordinate& c = coordinates_[static_cast<std::size_t>(coordinate)];
+  const EffectParameter& p = info_.parameters[c.parameter];
+  const double value = std::clamp(valueOf(c, z), p.minimum, p.maximum);
+  if (c.scale == Scale::factor) return std::max(value / p.usual_high, p.usual_low / value);
+  if (std::isinf(p.neutral)) return p.usual_low / value;
+  return std::abs(value - p.neutral) / std::max(std::abs(p.usual_low - p.neutral), std::abs(p.usual_high - p.neutral));
+}
+
 double Hypothesis::excess(const Eigen::VectorXd& z) const {
   double sum = 0;
-  for (const int strength : strengths_) {
-    const Coordinate& c = coordinates_[static_cast<std::size_t>(strength)];
-    const EffectParameter& p = info_.parameters[c.parameter];
-    if (p.unit == "unit of the signal" || info_.id == "force_law") continue;
-    const double value = std::clamp(valueOf(c, z[strength]), p.minimum, p.maximum);
-    const double ratio = std::isinf(p.neutral) ? p.usual_low / value
-                                               : std::abs(value - p.neutral) /
-                                                     std::max(std::abs(p.usual_low - p.neutral), std::abs(p.usual_high - p.neutral));
+  for (int i = 0; i < coordinateCount(); ++i) {
+    const Coordinate& c = coordinates_[static_cast<std::size_t>(i)];
+    const bool is_strength = std::ranges::find(strengths_, i) != strengths_.end();
+    if (!(is_strength || c.scale == Scale::factor) || info_.parameters[c.parameter].unit == "unit of the signal" || info_.id == "force_law")
+      continue;
+    const double ratio = stretchOf(i, z[i]);
     if (ratio > 1 && std::isfinite(ratio)) sum += std::log(ratio);
   }
   return sum;
@@ -284,6 +292,11 @@ std::vector<Hypothesis> Hypothesis::smallAndLarge() const {
     c.typical = large * info_.parameters[c.parameter].usual_high;
   }
   return result;
+}
+
+int Hypothesis::furtherMechanisms() const {
+  return static_cast<int>(
+      std::ranges::count_if(coordinates_, [this](const Coordinate& c) { return info_.parameters[c.parameter].adds_mechanism; }));
 }
 
 /// With and without shares that may be zero (of a second lag, of a filter, of friction that depends on the pressure): the simpler law is

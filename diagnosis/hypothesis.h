@@ -28,6 +28,8 @@ class Hypothesis {
   int coordinateCount() const { return static_cast<int>(coordinates_.size()); }
   /// Numbers that were counted in the recordings or tried one by one instead of fitted.
   int countedParameters() const { return coordinates_.empty() ? static_cast<int>(info_.parameters.size()) : 0; }
+  /// Coordinates that are mechanisms beside the effect's own (EffectParameter::adds_mechanism).
+  int furtherMechanisms() const;
   /// Indices of the coordinates that are strengths: at 0 the effect vanishes.
   const std::vector<int>& strengths() const { return strengths_; }
   /// Whether a strength may have either sign.
@@ -49,8 +51,8 @@ class Hypothesis {
   Eigen::VectorXd coordinatesOf(const std::map<std::string, Parameter::Value>& values) const;
   /// Names and words of the parameters that are words and matter on this component.
   std::map<std::string, std::string> choices() const;
-  /// How far strengths exceed their usual range: sum of ln(distance from neutral / largest usual distance), 0 within the range. Strengths
-  /// in units of the signal have no usual range.
+  /// How far parameters leave their usual range, 0 within it: for strengths the sum of ln(distance from neutral / largest usual distance),
+  /// for shapes of ln(factor beyond the nearer end of the range). Strengths in units of the signal have no usual range.
   double excess(const Eigen::VectorXd& z) const;
   /// z with every coordinate between the bounds that the parameters' ranges give.
   Eigen::VectorXd clamped(Eigen::VectorXd z) const;
@@ -70,6 +72,7 @@ class Hypothesis {
     double farthest = 0;  ///< bound of the distance from neutral (inverse: least value); 0: only the parameter's own range bounds it
   };
   double valueOf(const Coordinate& coordinate, double z) const;
+  double stretchOf(int coordinate, double z) const;
   double coordinateOf(const Coordinate& coordinate, double value) const;
   void useCorrectedLaw(const Plant& plant);
   void countHeld(const Plant& plant);

@@ -102,6 +102,7 @@ class Search {
   std::vector<Proposal> additions(const Surroundings& around) const;
   std::vector<Proposal> swaps(const Surroundings& around) const;
   std::vector<Proposal> drops(const Surroundings& around) const;
+  std::optional<Proposal> withoutFurtherMechanisms(const Proposal& proposal) const;
   std::vector<Proposal> widened(const Explanation& base) const;
   void fitOnScreening(std::vector<Proposal> proposals);
   void nearToOrigin(Proposal& proposal) const;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -92,6 +93,36 @@ TEST_F(EvidenceOnARig, AFurtherEffectInTheSamePlaceCostsMore) {
   EXPECT_EQ(priceOf({gain, threshold}), priceOf({threshold, gain}));
 }
 
+TEST_F(EvidenceOnARig, AFurtherMechanismOfALawCostsLikeAnEffect) {
+  Causes lags(plant_, on_simulation_);
+  lags.hypotheses = Hypothesis(effectInfo("valve_lag"), "muscle_0", plant_).variants(plant_);
+  ASSERT_EQ(lags.hypotheses.size(), 2u);
+  ASSERT_EQ(lags.hypotheses[0].furtherMechanisms(), 1) << "of the second lag";
+  ASSERT_EQ(lags.hypotheses[1].furtherMechanisms(), 0);
+  const Evidence evidence(comparison_, nominal_, lags);
+  const auto priceOf = [&](std::size_t variant) {
+    Explanation explanation;
+    explanation.members = {variant};
+    explanation.z = lags.hypotheses[variant].typical();
+    return evidence.price(explanation);
+  };
+  EXPECT_NEAR(priceOf(0) - priceOf(1), prices.effects + prices.parameters, 1e-9);
+}
+
+TEST_F(EvidenceOnARig, AShapeBeyondItsUsualRangeCosts) {
+  const Hypothesis limit(effectInfo("flow_limit"), "muscle_0", plant_);
+  const auto& parameters = limit.info().parameters;
+  const auto band = std::ranges::find(parameters, "proportional_band", &EffectParameter::name);
+  ASSERT_NE(band, parameters.end());
+  const auto excessAt = [&](double value) {
+    return limit.excess(limit.coordinatesOf({{"fill_rate_per_s", 3.0}, {"vent_rate_per_s", 3.0}, {"proportional_band", value}}));
+  };
+  const double usual = excessAt(band->usual_high);
+  EXPECT_NEAR(excessAt(band->usual_low), usual, 1e-9);
+  EXPECT_NEAR(excessAt(2 * band->usual_high) - usual, std::log(2), 1e-9);
+  EXPECT_NEAR(excessAt(band->usual_low / 2) - usual, std::log(2), 1e-9);
+}
+
 TEST_F(EvidenceOnARig, PlacesOverlapThroughAllAndThroughPairsOfMuscles) {
   Causes on_two(plant_, on_simulation_);
   on_two.hypotheses = {{effectInfo("force_gain"), "muscle_1", plant_},
@@ -162,19 +193,24 @@ TEST_F(EvidenceOnARig, InactiveEffectsAndFailedFitsHaveNone) {
   EXPECT_EQ(evidence_.score(failed), -std::numeric_limits<double>::infinity());
 }
 
-TEST_F(EvidenceOnARig, SomethingElseIsLikelyWhereTheBestLeavesMuch) {
-  const auto somethingElse = [&](double best_sigmas) {
-    std::vector<Explanation> explanations = {fitted({gain}, 16), fitted({payload}, best_sigmas), fitted({}, gap)};
-    for (Explanation& explanation : explanations) explanation.score = evidence_.score(explanation);
+TEST_F(EvidenceOnARig, SomethingElseIsLikelyWhereTheExplanationsLeaveMuch) {
+  const auto somethingElse = [&](double sigmas, double other_sigmas, double probability_of_other) {
+    std::vector<Explanation> explanations = {fitted({gain}, other_sigmas), fitted({payload}, sigmas)};
+    explanations[0].probability = probability_of_other;
+    explanations[1].probability = 1 - probability_of_other;
     return evidence_.ofSomethingElse(explanations);
   };
-  for (const double sigmas : {1.0, 2.5, 5.0, 15.0}) {
+  const auto beside = [&](double sigmas) {
     const double share = temperedMisfit(sigmas, gap) / temperedMisfit(gap, gap);
-    EXPECT_NEAR(somethingElse(sigmas), per_share_left * (share - share_of_unknown), 1e-9) << sigmas;
+    return 1 / (1 + std::exp(-per_share_left * (share - share_of_unknown)));
+  };
+  for (const double sigmas : {1.0, 2.5, 5.0, 15.0}) {
+    EXPECT_NEAR(somethingElse(sigmas, 16, 0), beside(sigmas), 1e-9) << sigmas;
+    EXPECT_NEAR(somethingElse(sigmas, 16, 0.25), 0.75 * beside(sigmas) + 0.25 * beside(16), 1e-9) << sigmas;
   }
-  EXPECT_GT(somethingElse(15), 2);
-  EXPECT_LT(somethingElse(1.2), -2);
-  EXPECT_NEAR(somethingElse(0.5), somethingElse(1), 1e-9) << "less than noise is no less";
+  EXPECT_GT(somethingElse(15, 16, 0), 0.88);
+  EXPECT_LT(somethingElse(1.2, 16, 0), 0.12);
+  EXPECT_NEAR(somethingElse(0.5, 16, 0), somethingElse(1, 16, 0), 1e-9) << "less than noise is no less";
 }
 
 }  // namespace
