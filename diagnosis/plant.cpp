@@ -12,6 +12,7 @@
 #include "data_checks.h"
 #include "drawing.h"
 #include "musclesim/base/error.h"
+#include "musclesim/base/hash.h"
 
 namespace musclesim {
 
@@ -86,8 +87,8 @@ Split splitOf(const std::vector<Recording>& recordings) {
   return split;
 }
 
-/// All that a simulation depends on except the recording.
-std::string keyOf(const Model& model) {
+/// A model as a key: all that a simulation depends on beside the recording and the user's model.
+std::string modelKey(const Model& model) {
   auto written = [](const Parameter::Value& value) {
     return std::holds_alternative<double>(value) ? fmt::format("{:a}", std::get<double>(value)) : std::get<std::string>(value);
   };
@@ -112,7 +113,8 @@ bool hasNumbers(const Signal& signal) {
 
 }  // namespace
 
-Plant::Plant(std::vector<Recording> recordings, const DiagnosisOptions& options) : recordings_(std::move(recordings)), options_(options) {
+Plant::Plant(std::vector<Recording> recordings, const DiagnosisOptions& options)
+    : recordings_(std::move(recordings)), options_(options), store_(options.kept) {
   for (Recording& recording : recordings_) replaceRobot(recording.info, options.model.robot);
   requireDiagnosable(recordings_);
   for (const auto* ids : {&options.candidates, &options.exclude})
@@ -124,6 +126,8 @@ Plant::Plant(std::vector<Recording> recordings, const DiagnosisOptions& options)
   reference_->parameters().requireAllKnown();
   if (std::string note = otherDescriptionNote(info, reference_->robot()); !note.empty()) notes_.push_back(std::move(note));
   findNumbers();
+  for (const UncertainNumber& number : numbers_)
+    if (number.is_tuned) key_of_tuned_ += fmt::format("{:a},", std::get<double>(number.parameter.value));
   const bool has_hinges =
       std::ranges::any_of(reference_->world().actuators(), [](const auto& actuator) { return !actuator->hinges().empty(); });
   for (const Parameter& parameter : reference_->parameters().declared())
@@ -378,11 +382,16 @@ void Plant::count(double simulated_s) const {
   simulated_ms_ += std::lround(simulated_s * ms_per_s);
 }
 
+/// What a simulation depends on beside the model that is tried: the recording, its length, the time step, and the tuned numbers.
+std::string Plant::simulationKey(int recording, std::size_t rows, Fidelity fidelity) const {
+  return fmt::format("{} {} {} {}", recording, rows, ratioOf(possible(fidelity)), key_of_tuned_);
+}
+
 Prediction Plant::predict(int recording, const Model& model, int end_row, Fidelity fidelity) const {
   const Recording& recorded = recordings_[static_cast<std::size_t>(recording)];
   const std::size_t all_rows = recorded.time_s.size();
   const std::size_t rows = end_row > 0 ? std::min(static_cast<std::size_t>(end_row), all_rows) : all_rows;
-  const std::string key = fmt::format("{} {} {} {}", recording, rows, ratioOf(possible(fidelity)), keyOf(model));
+  const std::string key = simulationKey(recording, rows, fidelity) + modelKey(model);
   const bool is_new = store_.isNew(key);
   Prediction prediction = store_.get(key, [&] { return replay(recorded, model, end_row, fidelity); });
   if (is_new && !prediction.refused) count(recorded.time_s[rows - 1] - recorded.time_s.front());
@@ -398,9 +407,13 @@ Prediction Plant::predict(int recording, const Model& model, const std::vector<s
       const auto muscle = static_cast<std::size_t>(std::stoi(signal.name.substr(8)));
       for (std::size_t row = 0; row < commands.size(); ++row) signal.values[row] = commands[row][muscle];
     }
-  count(changed.time_s[static_cast<std::size_t>(end_row > 0 ? end_row : static_cast<int>(changed.time_s.size())) - 1] -
-        changed.time_s.front());
-  return replay(std::move(changed), model, end_row, fidelity);
+  const auto rows = end_row > 0 ? static_cast<std::size_t>(end_row) : changed.time_s.size();
+  count(changed.time_s[rows - 1] - changed.time_s.front());
+  Hash hash;
+  for (const std::vector<double>& row : commands)
+    for (const double command : row) hash.add(command);
+  const std::string key = simulationKey(recording, rows, fidelity) + modelKey(model) + " commands " + hash.text();
+  return store_.get(key, [&] { return replay(changed, model, end_row, fidelity); });
 }
 
 /// Whether changed parameters need far more internal steps than the model, for example a force that grows a millionfold towards full
@@ -443,6 +456,7 @@ Prediction Plant::replay(Recording recording, const Model& model, int end_row, F
   if (!result) return {std::vector<std::vector<double>>(signals_.size(), std::vector<double>(all_rows, nan)), true, true};
   Prediction prediction;
   prediction.diverged = result->divergence.has_value() || result->interrupted;
+  prediction.cut = result->interrupted;
   for (const ComparedSignal& signal : signals_) {
     prediction.values.push_back(result->simulated.find(signal.name)->values);
     prediction.values.back().resize(all_rows, nan);

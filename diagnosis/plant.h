@@ -133,6 +133,7 @@ class Plant {
   Parameter numberNamed(const std::string& option, const std::string& name) const;
   void findNumbers();
   Fidelity possible(Fidelity fidelity) const;
+  std::string simulationKey(int recording, std::size_t rows, Fidelity fidelity) const;
   void count(double simulated_s) const;
   enum class HeldSamples { as_measured, drawn };
   bool canBeBuilt(const Eigen::VectorXd& eta, double margin) const;
@@ -151,6 +152,7 @@ class Plant {
   std::vector<std::pair<std::string, double>> nominal_;
   std::vector<UncertainNumber> numbers_;
   mutable std::atomic<long> simulation_count_{0}, simulated_ms_{0};
+  std::string key_of_tuned_;  ///< the values in force of the tuned numbers
   mutable PredictionStore store_;
   mutable std::mutex access_to_built_;
   mutable std::map<std::vector<double>, bool> built_;  ///< canBeBuilt() by coordinates

@@ -256,6 +256,9 @@ void writeRecording(const Recording& recording, const std::string& csv_file) {
   const std::string csv_text = csvText(recording);
   FileReplacement csv(csv_file, csv_text);
   FileReplacement json(json_file, json_text);
+  // A process that is killed between the two must not leave new readings with an old sidecar: without a sidecar they are refused.
+  std::error_code absent;
+  std::filesystem::remove(json_file, absent);
   csv.commit();
   json.commit();
 }

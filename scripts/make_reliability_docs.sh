@@ -15,6 +15,8 @@ rows=(
   "parsers|the readers of recordings (CSV, sidecar), parameters (TOML), effects, sweep plans and manifests and the command line under libFuzzer with both sanitizers: no crash, no hang, errors name their place|scripts/fuzz.sh 60"
   "altered|altered and cut variants of the kept corpus through all targets, 10 s each, without sanitizers and without a view of what is reached|env MUSCLESIM_LONG_TESTS=1 $build/tests/fuzz/fuzz_tests --gtest_filter=*Altered*"
   "corpus|the kept corpus, and altered and cut variants of it, through the same targets|$build/tests/fuzz/fuzz_tests"
+  "outputs|a fault in everything that the program writes (runs, diagnoses, replays, figures, imports, fits, robot files, reruns, sweeps, blind checks, pictures, the window's recordings): full and read-only disks, failing system calls, SIGKILL at random instants, a clock set back by a day: what stands under its final name is whole or marked as not complete; exit status 5 with a message, or 0 and all files|tests/faults/output_check.py $build/musclesim"
+  "resume|diagnoses killed at random instants, again and again, go on with --resume to the bytes of an undisturbed diagnosis; also from damaged files, and what does not fit is refused by name|tests/faults/resume_check.py $build/musclesim"
   "numbers|NaN, infinities, 1e308, -0 and denormals at every muscle's pressure, in forces, in every parameter of effects and robots, in every column of a recording: refused or Diverged within a step|$build/tests/reliability/reliability_tests --gtest_filter=NonFinite.*"
   "divergence|non-finite, far, fast and torn bodies end the run with time, place and cause; the next simulation is as if nothing had been|$build/tests/robot/robot_tests --gtest_filter=*AFault*"
   "random_robots|2,000 robots of random calls x 200 steps and 500 with an impossible number: done, diverged or refused, no signal|env MUSCLESIM_LONG_TESTS=1 $build/tests/reliability/reliability_tests --gtest_filter=RandomRobots.*"
@@ -106,7 +108,8 @@ TEXT
 - Hinges and sliders are compared with closed forms and between two steppers, not with Simbody.
 - Fuzzing lasts 60 s per target; 1e6 executions per target are what a release needs (`RUNS=1000000 scripts/fuzz.sh 0`). libFuzzer has not run yet on the targets foreign_table, robot_toml, robot_built, robot_urdf, robot_mjcf, robot_sdf, mapping_toml, matlab, commands_csv, targets_csv, static_points and run_origin; the rows corpus and altered have them.
 - MATLAB files are read in a process of their own, so a crash of libmatio is an answer and no finding. With large files the memory allowed grows: 128 MB and 40 times the file.
-- A diagnosis that was killed begins again; there is no `--resume`.
+- `tests/faults/output_check.py` needs root, fiu-utils and faketime (apt-get install fiu-utils faketime); it names what it could not try. Several files of one command are renamed one after the other; a process that is killed within these microseconds leaves some of an earlier answer beside those of the new one.
+- `diagnose --resume` repeats the simulations of the next experiment, which are not kept. In the folder of a killed diagnosis `unfinished.dat` stays until the diagnosis is resumed or repeated.
 - The Debian packages: `scripts/debian_package_check.sh DIR` installs them on a fresh Debian 12.
 TEXT
 } >docs/developer/reliability.md

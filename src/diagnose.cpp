@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <ctime>
 #include <filesystem>
+#include <memory>
 
 #include "commands.h"
+#include "diagnose_arguments.h"
 #include "interrupt.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
+#include "musclesim/base/record_file.h"
 #include "musclesim/base/text.h"
 #include "musclesim/diagnosis/proposed_recording.h"
 #include "musclesim/effect/effects_file.h"
@@ -21,14 +24,8 @@ namespace musclesim::command_line {
 namespace {
 
 constexpr const char* files_of_all_answers[] = {"diagnosis.json", "report.html", "effects.json"};
+constexpr const char* kept_file = "unfinished.dat";  ///< the simulations of a diagnosis that has not ended yet
 constexpr const char* files_of_some_answers[] = {"attempt.json", "nominal.toml", "next.csv", "next.json"};
-
-struct DiagnoseArguments {
-  std::vector<std::string> recordings, candidates, exclude, ignore_columns, tune;
-  std::optional<std::string> out, json, fixed_effects;
-  int jobs = 0, max_effects = 4;
-  bool without_active_effects = false;
-};
 
 std::filesystem::path folderFor(const DiagnoseArguments& arguments) {
   if (arguments.out) return *arguments.out;
@@ -36,11 +33,19 @@ std::filesystem::path folderFor(const DiagnoseArguments& arguments) {
   return stem.replace_extension().string() + "-diagnosis";
 }
 
-/// Includes the fixed effects, so that the file describes the whole machine.
-void writeWith(const std::vector<ActiveEffect>& found, std::vector<ActiveEffect> effects, const std::filesystem::path& file) {
-  effects.insert(effects.end(), found.begin(), found.end());
-  writeEffects(effects, file.string());
-}
+/// Files that take their places together, once all of them are on the disk: a full disk leaves an earlier answer as it was.
+class FilesTogether {
+ public:
+  void add(const std::filesystem::path& file, const std::string& text) {
+    files_.push_back(std::make_unique<FileReplacement>(file.string(), text));
+  }
+  void commit() {
+    for (const auto& file : files_) file->commit();
+  }
+
+ private:
+  std::vector<std::unique_ptr<FileReplacement>> files_;
+};
 
 /// "2026-11-26 21:05".
 std::string localTime() {
@@ -49,18 +54,26 @@ std::string localTime() {
 
 void writeAll(const Diagnosis& diagnosis, const std::filesystem::path& folder, const DiagnoseArguments& arguments,
               const std::vector<ActiveEffect>& effects_of_user, const RecordingInfo& plant, const std::string& command_line) {
-  for (const char* of_an_earlier_run : files_of_some_answers) std::filesystem::remove(folder / of_an_earlier_run);
+  FilesTogether files;
+  // Includes the fixed effects, so that the file describes the whole machine.
+  const auto addEffects = [&](const char* file, const std::vector<ActiveEffect>& found) {
+    std::vector<ActiveEffect> effects = effects_of_user;
+    effects.insert(effects.end(), found.begin(), found.end());
+    files.add(folder / file, effectsText(effects));
+  };
   const std::string json = diagnosisJson(diagnosis);
-  replaceFile((folder / "diagnosis.json").string(), json);
-  replaceFile((folder / "report.html").string(), diagnosisReport(diagnosis, {localTime(), command_line}));
-  writeWith(diagnosis.chosen_effects, effects_of_user, folder / "effects.json");
-  if (!diagnosis.attempt.effects.empty()) writeWith(diagnosis.attempt.active_effects, effects_of_user, folder / "attempt.json");
-  if (!diagnosis.tuned.empty()) replaceFile((folder / "nominal.toml").string(), tunedToml(diagnosis.tuned));
+  files.add(folder / "diagnosis.json", json);
+  files.add(folder / "report.html", diagnosisReport(diagnosis, {localTime(), command_line}));
+  addEffects("effects.json", diagnosis.chosen_effects);
+  if (!diagnosis.attempt.effects.empty()) addEffects("attempt.json", diagnosis.attempt.active_effects);
+  if (!diagnosis.tuned.empty()) files.add(folder / "nominal.toml", tunedToml(diagnosis.tuned));
   if (const ProposedRecording next = proposedRecording(diagnosis, plant); !next.csv.empty()) {
-    replaceFile((folder / "next.csv").string(), next.csv);
-    replaceFile((folder / "next.json").string(), next.json);
+    files.add(folder / "next.csv", next.csv);
+    files.add(folder / "next.json", next.json);
   }
-  if (arguments.json) replaceFile(*arguments.json, json);
+  if (arguments.json) files.add(*arguments.json, json);
+  for (const char* of_an_earlier_run : files_of_some_answers) std::filesystem::remove(folder / of_an_earlier_run);
+  files.commit();
 }
 
 /// Checks before minutes of work that all outputs can be written and that none would overwrite an input.
@@ -87,6 +100,43 @@ void requireDifferent(std::vector<std::string> tuned) {
     throw BadParameter("--tune", fmt::format("{},{}", *twice, *twice), "name each number once");
 }
 
+/// Begins to keep the simulations in the folder, or goes on from those of an unfinished diagnosis. Throws BadParameter if that is another.
+void beginOrResume(RecordFile& kept, const std::string& origin, const std::filesystem::path& folder, const ModelOptions& model,
+                   bool resume) {
+  if (resume && !kept.origin().empty()) {
+    requireSameOrigin(kept.origin(), origin, folder.string());
+    const std::size_t count = kept.resume();
+    say(model, fmt::format("goes on from {} simulations of the unfinished diagnosis in {}", count, folder.string()));
+    if (const std::size_t dropped = kept.droppedBytes())
+      say(model, fmt::format("the last {} bytes kept there are no whole simulation and are not used", dropped));
+    return;
+  }
+  if (resume)
+    say(model, fmt::format("{} holds no unfinished diagnosis: this one begins at the start", folder.string()));
+  else if (!kept.origin().empty())
+    say(model, fmt::format("the unfinished diagnosis in {} is begun anew; --resume would have gone on from it", folder.string()));
+  kept.begin(origin);
+}
+
+/// The diagnosis. One that is refused keeps nothing.
+Diagnosis diagnosed(std::vector<Recording> recordings, const DiagnosisOptions& options) {
+  try {
+    return diagnose(std::move(recordings), options);
+  } catch (const std::exception&) {
+    options.kept->remove();
+    throw;
+  }
+}
+
+/// A finished diagnosis needs its simulations no longer.
+void endKeeping(RecordFile& kept, bool finished, const ModelOptions& model) {
+  if (const std::string why = kept.trouble(); !why.empty()) say(model, "the simulations could not be kept for --resume: " + why);
+  if (finished)
+    kept.remove();
+  else
+    say(model, "the same command with --resume goes on from here");
+}
+
 int diagnoseCommand(const ModelOptions& model, const DiagnoseArguments& arguments) {
   const std::filesystem::path folder = folderFor(arguments);
   requireDifferent(arguments.tune);
@@ -111,8 +161,12 @@ int diagnoseCommand(const ModelOptions& model, const DiagnoseArguments& argument
   PhaseProgress progress(model.quiet);
   options.progress = [&](const DiagnosisProgress& now) { progress.show(now.phase, now.done, now.expected); };
   const RecordingInfo plant = diagnosedModel(recordings.front(), options.model);
-  const Diagnosis diagnosis = diagnose(std::move(recordings), options);
+  RecordFile kept((folder / kept_file).string());
+  beginOrResume(kept, diagnosisOrigin(recordings, plant, model, arguments), folder, model, arguments.resume);
+  options.kept = &kept;
+  const Diagnosis diagnosis = diagnosed(std::move(recordings), options);
   writeAll(diagnosis, folder, arguments, options.model.effects, plant, model.command_line);
+  endKeeping(kept, !diagnosis.partial, model);
   fmt::print("{}report    {}\n", diagnosisSummary(diagnosis), printable((folder / "report.html").string()));
   return diagnosis.partial ? interrupted_base + interruptSignal() : done;
 }
@@ -138,6 +192,9 @@ Action addDiagnose(CLI::App& command, ModelOptions& model) {
   command.add_option("--fixed-effects", arguments->fixed_effects, "JSON file with effects of the model that are not fitted");
   command.add_flag("--without-active-effects", arguments->without_active_effects,
                    "Compare with the model without the active_effects of the recordings' sidecars: look for them");
+  command.add_flag("--resume", arguments->resume,
+                   "Go on from a diagnosis of the same recordings with the same options that was killed or interrupted: repeats none of "
+                   "the simulations kept in the folder of the answer");
   addList(command, "--ignore-columns", arguments->ignore_columns, "Columns to skip, separated by commas");
   addModelOptions(command, model);
   command.remove_option(command.get_option("--json"));

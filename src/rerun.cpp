@@ -10,6 +10,7 @@
 
 #include "commands.h"
 #include "interrupt.h"
+#include "json_differences.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
 #include "musclesim/base/json_document.h"
@@ -141,20 +142,6 @@ bool isOfTheModel(const std::string& member) {
   static const std::vector<std::string> others = {"format",     "robot",       "program", "complete",   "verdict", "run",      "by_hand_s",
                                                   "robot_hash", "description", "trial",   "controller", "task",    "repeat_of"};
   return std::ranges::find(others, member) == others.end();
-}
-
-/// Lists what differs between two JSON values, by the names of the members.
-void addDifferences(const std::string& name, const json& recorded, const json& repeated, std::vector<std::string>& differences) {
-  if (recorded == repeated) return;
-  if (recorded.is_object() && repeated.is_object()) {
-    json members = recorded;
-    members.update(repeated);
-    for (const auto& [member, value] : members.items())
-      addDifferences(name.empty() ? member : name + "." + member, recorded.value(member, json()), repeated.value(member, json()),
-                     differences);
-    return;
-  }
-  differences.push_back(fmt::format("{}: {} was recorded, {} is what the repetition has", name, recorded.dump(), repeated.dump()));
 }
 
 json ofTheModel(const json& sidecar) {
@@ -296,7 +283,8 @@ int rerun(const RerunArguments& arguments) {
     const int status = stored->repeat(out.csv(), recording.time_s.back());
     if (status > interrupted_base) return status;
     compareTables(csv, out.csv(), comparison);
-    addDifferences("", ofTheModel(sidecar), ofTheModel(sidecarOf(out.csv())), comparison.differences);
+    for (const auto& [name, before, now] : differencesOf(ofTheModel(sidecar), ofTheModel(sidecarOf(out.csv()))))
+      comparison.differences.push_back(fmt::format("{}: {} was recorded, {} is what the repetition has", name, before, now));
   }
   addProgramDifferences(sidecar, origin ? &*origin : nullptr, comparison.differences);
   if (origin) addFileDifferences(*origin, csv.parent_path(), arguments, comparison.differences);

@@ -16,6 +16,8 @@
 
 namespace musclesim {
 
+class RecordFile;
+
 /// Progress of a diagnosis, for a progress line.
 struct DiagnosisProgress {
   std::string phase;  ///< in a few words
@@ -32,6 +34,9 @@ struct DiagnosisOptions {
   std::vector<ActiveEffect> earlier;    ///< an earlier finding: a set that the search begins with, fitted anew and kept if it is believed
   int job_count = 0;                    ///< threads; 0: one per core. The answer does not depend on it
   std::uint64_t seed = 1;               ///< of the bootstrap and the negative control
+  /// Keeps the simulations, and has those of an earlier diagnosis of the same recordings with the same options, by the same program: they
+  /// are not repeated. Null: nothing is kept.
+  RecordFile* kept = nullptr;
   std::function<void(const DiagnosisProgress&)> progress;  ///< called from one thread at a time
   std::function<bool()> interrupted;                       ///< return true to stop soon; the result is then partial
 };
