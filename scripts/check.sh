@@ -3,6 +3,8 @@
 #
 #     scripts/check.sh          layers (direction of the includes), format of the sources, links of the documents, clang-tidy, tests under
 #                               the address and undefined-behaviour sanitizers; the sanitizers take more than half an hour
+#                               and what has threads under the thread sanitizer (scripts/thread_check.sh), which takes another half hour
+#     scripts/check.sh --sanitizers   only the tests under the address and undefined-behaviour sanitizers. ALL=1: slow tests, too, for hours
 #     scripts/check.sh --ci     all but the sanitizers, and clang-tidy only on sources that the last commits changed: what continuous
 #                               integration has time for
 #
@@ -13,12 +15,13 @@ root=$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")
 # shellcheck source=scripts/common.sh
 source "$root/scripts/common.sh"
 
-ci=false
+ci=false sanitizers_only=false
 case "${1-}" in
   "") ;;
   --ci) ci=true ;;
+  --sanitizers) sanitizers_only=true ;;
   *)
-    say "check: unknown argument '$1'; allowed: --ci"
+    say "check: unknown argument '$1'; allowed: --ci, --sanitizers"
     exit 2
     ;;
 esac
@@ -80,19 +83,24 @@ check_sources() {
   return "$status"
 }
 
-# Tests labelled "slow" or "package" run only without sanitizers.
+# Tests labelled "package" run only without sanitizers, those labelled "slow" only with ALL=1.
 run_sanitized_tests() {
   export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
-  build_preset asan all && ctest --preset asan --parallel "$jobs" --label-exclude 'slow|package'
+  build_preset asan all && ctest --preset asan --parallel "$jobs" --label-exclude "$([[ -n ${ALL-} ]] && echo package || echo 'slow|package')"
 }
 
 phase dependencies scripts/install_dependencies.sh --check || exit 1
-phase layers scripts/check_layers.py || true
-phase format check_format || true
-phase links scripts/check_docs.sh || true
-phase clang-tidy check_sources || true
+if ! $sanitizers_only; then
+  phase layers scripts/check_layers.py || true
+  phase format check_format || true
+  phase links scripts/check_docs.sh || true
+  phase clang-tidy check_sources || true
+fi
 if ! $ci; then
   phase sanitizers run_sanitized_tests || true
+fi
+if ! $ci && ! $sanitizers_only; then
+  phase threads scripts/thread_check.sh || true
 fi
 
 printf '\n=== summary ===\n'

@@ -48,6 +48,8 @@ test_packages=(
   "ffmpeg                 videos"
   "xvfb                   a display for the tests of the window"
   "xdotool                keys and mouse for the tests of the window"
+  "fiu-utils              system calls that fail"
+  "faketime               a clock that is set back"
   "chromium               a browser for the tests of the report"
   "chromium-driver        drives the browser"
   "python3-selenium       drives the browser"
