@@ -17,7 +17,7 @@ rows=(
   "altered|altered and cut variants of the kept corpus through all targets, 10 s each, without sanitizers and without a view of what is reached|env MUSCLESIM_LONG_TESTS=1 $build/tests/fuzz/fuzz_tests --gtest_filter=*Altered*"
   "corpus|the kept corpus, and altered and cut variants of it, through the same targets|$build/tests/fuzz/fuzz_tests"
   "outputs|a fault in everything that the program writes (runs, diagnoses, replays, figures, imports, fits, robot files, reruns, sweeps, blind checks, pictures, the window's recordings): full and read-only disks, failing system calls, SIGKILL at random instants, a clock set back by a day: what stands under its final name is whole or marked as not complete; exit status 5 with a message, or 0 and all files|tests/faults/output_check.py $build/musclesim"
-  "resume|diagnoses killed at random instants, again and again, go on with --resume to the bytes of an undisturbed diagnosis; also from damaged files, and what does not fit is refused by name|tests/faults/resume_check.py $build/musclesim"
+  "resume|diagnoses killed at random instants, again and again, go on with --resume to the bytes of an undisturbed diagnosis; also from damaged files, and what does not fit is refused by name|tests/faults/resume_check.py $build/musclesim 6"
   "numbers|NaN, infinities, 1e308, -0 and denormals at every muscle's pressure, in forces, in every parameter of effects and robots, in every column of a recording: refused or Diverged within a step|$build/tests/reliability/reliability_tests --gtest_filter=NonFinite.*"
   "divergence|non-finite, far, fast and torn bodies end the run with time, place and cause; the next simulation is as if nothing had been|$build/tests/robot/robot_tests --gtest_filter=*AFault*"
   "random_robots|2,000 robots of random calls x 200 steps and 500 with an impossible number: done, diverged or refused, no signal|env MUSCLESIM_LONG_TESTS=1 $build/tests/reliability/reliability_tests --gtest_filter=RandomRobots.*"
@@ -102,10 +102,9 @@ TEXT
     IFS='|' read -r name _ command <<<"$row"
     printf '\n## %s\n\n`%s`\n' "$name" "$command"
     if [[ -e docs/research/reliability/$name.txt ]]; then printf '\n```\n%s\n```\n' "$(tail -n +4 "docs/research/reliability/$name.txt")"; fi
+    if [[ $name == work && -e docs/developer/figures/soak.svg ]]; then printf '\n![Memory of the processes over time](figures/soak.svg)\n'; fi
   done
   cat <<'TEXT'
-
-![Memory of the processes of the row work over time](figures/soak.svg)
 
 ## Not covered by a row above
 
