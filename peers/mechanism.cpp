@@ -7,6 +7,7 @@
 #include "../robot/ode_vector.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/units.h"
+#include "musclesim/robot/actuator.h"
 #include "musclesim/robot/line_of_pull.h"
 #include "musclesim/simulation/simulation.h"
 

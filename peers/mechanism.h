@@ -1,6 +1,7 @@
 /// A robot in the terms that every engine of rigid bodies has: bodies, joints, muscles. Read from the robot itself, in its present pose.
 ///
-/// Units are those of the other engines: m, kg, s, N, rad. The world's y axis points up, as in musclesim.
+/// The engines' sources include this header, so it needs no C++20. Units are those of the other engines: m, kg, s, N, rad. The world's y
+/// axis points up, as in musclesim.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -9,11 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "musclesim/robot/actuator.h"
 #include "musclesim/robot/joint.h"
 
 namespace musclesim {
 
+class Actuator;
 class Simulation;
 
 namespace peers {

@@ -43,8 +43,8 @@ class Writer {
     const double shortest_s = 2 * options_.step_s;
     const double damping_ratio = std::max(1.0, std::sqrt(stop_time_constant_s / (2 * shortest_s)));
     out_ += fmt::format(
-        "<default><joint solreflimit=\"{0:.17g} {1:.17g}\" solreffriction=\"{0:.17g} 1\"/><equality solref=\"{0:.17g} 1\"/></default>",
-        shortest_s, damping_ratio);
+        "<default><joint solreflimit=\"{0:.17g} {1:.17g}\" solreffriction=\"{0:.17g} 1\"{2}/><equality solref=\"{0:.17g} 1\"/></default>",
+        shortest_s, damping_ratio, options_.hard_stops ? " solimplimit=\"0.999 0.9999 0.001\"" : "");
     out_ += "<worldbody>";
     writeSites(environment);
     for (const std::size_t node : children_[environment]) writeBody(node);

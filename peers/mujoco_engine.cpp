@@ -217,15 +217,19 @@ class MujocoPeer final : public Peer {
 
 thread_local MujocoPeer* MujocoPeer::running_ = nullptr;
 
-/// A method is "INTEGRATOR, SOLVER", and with "added inertia" also the inertia that musclesim gives to beads.
+/// A method is "INTEGRATOR, SOLVER" and may go on: "added inertia" gives beads the inertia that musclesim gives them, "hard stops"
+/// MjcfOptions.
 std::unique_ptr<Peer> make(const Mechanism& mechanism, const Tree& tree, const PeerSettings& settings) {
   mju_user_error = throwError;
   mju_user_warning = ignoreWarning;
   const std::string& method = settings.method;
   const std::size_t comma = method.find(", "), end = method.find(", ", comma + 2);
-  const MjcfOptions options{
-      .step_s = settings.step_s, .integrator = method.substr(0, comma), .solver = method.substr(comma + 2, end - comma - 2)};
-  return std::make_unique<MujocoPeer>(mechanism, tree, options, end != std::string::npos);
+  const std::string further = end == std::string::npos ? "" : method.substr(end + 2);
+  const MjcfOptions options{.step_s = settings.step_s,
+                            .integrator = method.substr(0, comma),
+                            .solver = method.substr(comma + 2, end - comma - 2),
+                            .hard_stops = further == "hard stops"};
+  return std::make_unique<MujocoPeer>(mechanism, tree, options, further == "added inertia");
 }
 
 }  // namespace

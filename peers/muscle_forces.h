@@ -1,29 +1,22 @@
-/// Forces of muscles in the units of the other engines (m, N). Here and not in a source: the engines are libraries of their own.
+/// Forces of muscles in the units of the other engines (m, N).
+///
+/// The libraries of the engines compile these functions themselves, and this header needs no C++20: Simbody's headers do not allow it.
 #pragma once
 
-#include <algorithm>
+namespace musclesim {
 
-#include "musclesim/base/units.h"
-#include "musclesim/robot/actuator.h"
-#include "musclesim/robot/line_of_pull.h"
+class Actuator;
 
-namespace musclesim::peers {
+namespace peers {
 
 /// The force that a muscle's law gives, N: as in the simulation, without effects.
-inline double tensionN(const Actuator& actuator, double pressure_ratio, double length_m) {
-  return std::max(0.0, actuator.calculateForce(pressure_ratio, length_m * mm_per_m));
-}
+double tensionN(const Actuator& actuator, double pressure_ratio, double length_m);
 
 /// The force of a line muscle, N: its law's, a slider's friction, and the stop at its longest length (LineOfPull).
-inline double lineForceN(const Actuator& actuator, double pressure_ratio, double length_m, double speed_m_per_s) {
-  return tensionN(actuator, pressure_ratio, length_m) + LineOfPull::frictionN(speed_m_per_s * mm_per_m, actuator.settings()) +
-         LineOfPull::stopN(length_m * mm_per_m, actuator.maximumLengthMm());
-}
+double lineForceN(const Actuator& actuator, double pressure_ratio, double length_m, double speed_m_per_s);
 
 /// The stops of the hinges between links at plus and minus this angle, which close as the chain shortens.
-inline double hingeStopRad(const Actuator& actuator, double length_m) {
-  const double least_mm = actuator.minimumLengthMm(), most_mm = actuator.maximumLengthMm();
-  return actuator.settings().hinge_limit_deg * rad_per_deg * std::max(0.0, (length_m * mm_per_m - least_mm) / (most_mm - least_mm));
-}
+double hingeStopRad(const Actuator& actuator, double length_m);
 
-}  // namespace musclesim::peers
+}  // namespace peers
+}  // namespace musclesim

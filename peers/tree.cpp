@@ -2,6 +2,7 @@
 
 #include "mechanism.h"
 #include "musclesim/base/error.h"
+#include "musclesim/robot/actuator.h"
 
 namespace musclesim::peers {
 

@@ -6,6 +6,8 @@
 #include <set>
 
 #include "musclesim/base/error.h"
+#include "musclesim/base/units.h"
+#include "musclesim/robot/actuator.h"
 #include "peers/muscle_forces.h"
 #include "peers_fixture.h"
 

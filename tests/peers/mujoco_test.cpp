@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "musclesim/base/error.h"
 #include "musclesim/base/random.h"
 #include "musclesim/base/units.h"
 #include "peers/engine.h"
