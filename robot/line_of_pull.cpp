@@ -214,10 +214,12 @@ double LineOfPull::speed() const {
 
 double LineOfPull::totalForceN(double tension_N, double maximum_length_mm, const MuscleSettings& settings,
                                const PhysicsSettings& physics) const {
-  const double speed_mm_per_s = speed() / speedRatio(physics);
-  const double friction_N = settings.slider_friction_N * (settings.viscous ? speed_mm_per_s / settings.slider_viscous_speed_mm_per_s
-                                                                           : std::tanh(speed_mm_per_s / dry_speed_mm_per_s));
-  return tension_N + friction_N + stopN(length_mm_, maximum_length_mm);
+  return tension_N + frictionN(speed() / speedRatio(physics), settings) + stopN(length_mm_, maximum_length_mm);
+}
+
+double LineOfPull::frictionN(double speed_mm_per_s, const MuscleSettings& settings) {
+  return settings.slider_friction_N *
+         (settings.viscous ? speed_mm_per_s / settings.slider_viscous_speed_mm_per_s : std::tanh(speed_mm_per_s / dry_speed_mm_per_s));
 }
 
 double LineOfPull::stopN(double length_mm, double maximum_length_mm) {

@@ -1,4 +1,5 @@
-/// `musclesim bench`: real-time ratio r(n) over the number of muscles, per stepper and muscle model, in one run (the paper's Figure 9).
+/// `musclesim bench`: real-time ratio r(n) over the number of muscles, per stepper and muscle model, in one run (the paper's Figure 9);
+/// with --peers the comparison with other engines.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,6 +16,8 @@
 #include "musclesim/base/random.h"
 #include "musclesim/base/units.h"
 #include "output_folder.h"
+#include "peers_bench.h"
+#include "peers_report.h"
 #include "progress.h"
 
 namespace musclesim::command_line {
@@ -22,11 +25,16 @@ namespace musclesim::command_line {
 namespace {
 
 struct BenchArguments {
-  double duration_s = 2, time_limit_s = 5;
+  double duration_s = 2;
+  std::optional<double> time_limit_s;
   int repeat_count = 3;
-  std::vector<int> muscle_counts = {1, 2, 5, 10, 15, 20, 25, 30};
+  std::vector<int> muscle_counts;
   std::optional<std::string> out;
+  bool peers = false;
 };
+
+const std::vector<int> muscle_counts = {1, 2, 5, 10, 15, 20, 25, 30}, muscle_counts_of_peers = {1, 5, 10, 30};
+constexpr double time_limit_s = 5, time_limit_of_peers_s = 20;
 
 constexpr double shortest_cpu_s =
     0.1;  ///< fast runs are extended to this time, so that their first, slower steps (cold caches) do not matter
@@ -82,7 +90,7 @@ BenchRun measure(const Candidate& candidate, int muscle_count, const BenchArgume
   const double begin = cpuSeconds();
   const auto goesOn = [&] {
     const double cpu_s = cpuSeconds() - begin;
-    return (simulation.time_s() < duration_s - 1e-9 || cpu_s < shortest_cpu_s) && cpu_s < arguments.time_limit_s;
+    return (simulation.time_s() < duration_s - 1e-9 || cpu_s < shortest_cpu_s) && cpu_s < *arguments.time_limit_s;
   };
   try {
     for (long i = 0; goesOn(); ++i) {
@@ -112,9 +120,12 @@ BenchRun median(std::vector<BenchRun> runs) {
   return result;
 }
 
-int bench(const ModelOptions& model, const BenchArguments& arguments) {
+int bench(const ModelOptions& model, BenchArguments arguments) {
+  if (arguments.muscle_counts.empty()) arguments.muscle_counts = arguments.peers ? muscle_counts_of_peers : muscle_counts;
+  if (!arguments.time_limit_s) arguments.time_limit_s = arguments.peers ? time_limit_of_peers_s : time_limit_s;
   if (!(arguments.duration_s >= 0.05)) throw BadParameter("duration", fmt::format("{} s", arguments.duration_s), "be at least 0.05 s");
   if (arguments.repeat_count < 1) throw BadParameter("repeats", fmt::format("{}", arguments.repeat_count), "be at least 1");
+  if (arguments.peers) return benchPeers(model, {arguments.muscle_counts, arguments.repeat_count, *arguments.time_limit_s, arguments.out});
   const std::vector<Candidate> all = candidates();
   std::vector<std::vector<std::vector<BenchRun>>> runs(all.size());  // by candidate, number of muscles, repeat
   for (auto& of_candidate : runs) of_candidate.resize(arguments.muscle_counts.size());
@@ -138,8 +149,9 @@ int bench(const ModelOptions& model, const BenchArguments& arguments) {
   }
   const std::filesystem::path folder = outputFolder(arguments.out, "bench");
   makeFolder(folder / "figures");
-  const std::string table = benchTable(curves, arguments.duration_s, shortest_cpu_s, arguments.time_limit_s);
-  replaceFile((folder / "performance.md").string(), table);
+  const std::string table = benchTable(curves, arguments.duration_s, shortest_cpu_s, *arguments.time_limit_s);
+  const std::string peers = peersSectionOf(existingPage(folder));
+  replaceFile((folder / "performance.md").string(), peers.empty() ? table : withPeersSection(table, peers));
   replaceFile((folder / "figures" / "performance.svg").string(), benchFigure(curves));
   fmt::print("{}\ntable   {}\nfigure  {}\n", table, (folder / "performance.md").string(),
              (folder / "figures" / "performance.svg").string());
@@ -151,16 +163,24 @@ int bench(const ModelOptions& model, const BenchArguments& arguments) {
 
 Action addBench(CLI::App& command, ModelOptions& model) {
   auto arguments = std::make_shared<BenchArguments>();
-  command.add_option("--duration", arguments->duration_s, "Simulated time per run, in true s")->capture_default_str();
-  command.add_option("--time-limit", arguments->time_limit_s, "A run that has used this much CPU time, in s, is cut short")
-      ->capture_default_str();
+  command.add_flag(
+      "--peers", arguments->peers,
+      "Instead: the same arm in MuJoCo and Simbody, as far as they were installed when musclesim was built, each at its best step");
+  command.add_option("--duration", arguments->duration_s, "Simulated time per run, in true s; without --peers")->capture_default_str();
+  command.add_option("--time-limit", arguments->time_limit_s,
+                     fmt::format("A run that has used this much CPU time, in s, is cut short (default: {:g}, with --peers {:g})",
+                                 time_limit_s, time_limit_of_peers_s));
   command.add_option("--repeats", arguments->repeat_count, "Number of runs per point; the report gives their median")
       ->capture_default_str();
-  command.add_option("--muscles", arguments->muscle_counts, "Numbers of muscles, separated by commas")
-      ->delimiter(',')
-      ->capture_default_str();
-  command.add_option("--out", arguments->out,
-                     "Folder for performance.md and figures/performance.svg (default: log/runs/<date-time>-bench)");
+  command
+      .add_option("--muscles", arguments->muscle_counts,
+                  fmt::format("Numbers of muscles, separated by commas (default: {}, with --peers {})", fmt::join(muscle_counts, ","),
+                              fmt::join(muscle_counts_of_peers, ",")))
+      ->delimiter(',');
+  command.add_option(
+      "--out", arguments->out,
+      "Folder for performance.md and figures (default: log/runs/<date-time>-bench); a page that is there keeps what the other "
+      "of the two kinds of comparison wrote");
   command.add_flag("--quiet", model.quiet, "No messages on standard error except errors");
   command.add_flag("--json", model.json, "Print the results as one JSON object, the last line of standard output");
   return [&model, arguments] { return bench(model, *arguments); };

@@ -137,7 +137,7 @@ std::string benchTable(const std::vector<BenchCurve>& curves, double duration_s,
   return text + "\n![r over the number of muscles, with the paper's curve](figures/performance.svg)\n";
 }
 
-std::string benchFigure(const std::vector<BenchCurve>& curves) {
+std::string benchFigure(const std::vector<BenchCurve>& curves, BenchReference reference) {
   Svg svg(960, 620, "Real-time ratio over the number of muscles");
   const Plane plane;
   drawAxes(svg, plane);
@@ -151,7 +151,7 @@ std::string benchFigure(const std::vector<BenchCurve>& curves) {
   };
   std::vector<SvgPoint> paper;
   for (double n = 1; n <= 30; n += 1) paper.push_back(plane.at(n, paperRatio(n)));
-  draw(paper, {0, 0, 0, ""}, 2.5, "paper, 2007: 8.5e-3 n^3.2");
+  if (reference == BenchReference::paper) draw(paper, {0, 0, 0, ""}, 2.5, "paper, 2007: 8.5e-3 n^3.2");
   for (std::size_t c = 0; c < curves.size(); ++c) {
     std::vector<SvgPoint> points;
     for (const BenchRun& run : curves[c].runs)

@@ -25,8 +25,9 @@ struct BenchCurve {
 double fittedExponent(const BenchCurve& curve, int first_count);
 
 std::string benchTable(const std::vector<BenchCurve>& curves, double duration_s, double shortest_cpu_s, double time_limit_s);
-/// The figure: r over n, both axes logarithmic, with the paper's curve.
-std::string benchFigure(const std::vector<BenchCurve>& curves);
+enum class BenchReference { none, paper };
+/// The figure: r over n, both axes logarithmic, with the paper's curve or without.
+std::string benchFigure(const std::vector<BenchCurve>& curves, BenchReference reference = BenchReference::paper);
 nlohmann::json benchJson(const std::vector<BenchCurve>& curves);
 
 }  // namespace musclesim::command_line

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "../../src/bench_report.h"
+#include "../../src/peers_report.h"
 #include "src/program.h"
 #include "support/support.h"
 
@@ -47,6 +48,61 @@ TEST(BenchCommand, WritesTableAndFigureOfEveryCandidate) {
   }
   EXPECT_TRUE(fs::exists(folder / "figures" / "performance.svg"));
   EXPECT_EQ(runProgram({"bench", "--repeats", "0", "--out", "."}, folder).status, 2);
+  fs::remove_all(folder);
+}
+
+command_line::PeerResult peer(const std::string& engine, double over_ours, const std::string& failure = "") {
+  command_line::PeerResult result;
+  result.engine = engine;
+  result.failure = failure;
+  result.muscle_count = 10;
+  result.over_ours = over_ours;
+  return result;
+}
+
+TEST(PeersReport, SaysWhereAnotherEngineIsFaster) {
+  const std::string text =
+      command_line::peersSection({peer("musclesim", 1), peer("Fast", 0.5), peer("Slow", 3), peer("None", 0, "not built")}, 3, 20);
+  EXPECT_TRUE(contains(text, "Another engine is faster: Fast, n = 10, chains (0.50 of our time)."));
+  EXPECT_TRUE(contains(text, "musclesim is faster: Slow, n = 10, chains (3.0 times ours)."));
+  EXPECT_TRUE(contains(text, "| 10 | None | not built |"));
+}
+
+TEST(PeersReport, ReplacesItsSectionOfThePage) {
+  const std::string first = command_line::peersSection({peer("First", 1)}, 3, 20),
+                    second = command_line::peersSection({peer("Second", 1)}, 3, 20);
+  const std::string page = command_line::withPeersSection("# Performance\n", first);
+  EXPECT_EQ(command_line::peersSectionOf(page), first);
+  EXPECT_EQ(command_line::withPeersSection(page, second), "# Performance\n\n" + second);
+  EXPECT_EQ(command_line::peersSectionOf("# Performance\n"), "");
+}
+
+TEST(BenchCommand, KeepsTheSectionOfThePeers) {
+  const fs::path folder = fs::temp_directory_path() / ("musclesim_peers_test_" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  const std::string section = command_line::peersSection({peer("Kept", 1)}, 3, 20);
+  std::ofstream(folder / "performance.md") << "old\n" << section;
+  const ProgramResult result = runProgram(
+      {"bench", "--muscles", "1", "--duration", "0.05", "--time-limit", "0.1", "--repeats", "1", "--out", ".", "--quiet"}, folder);
+  EXPECT_EQ(result.status, 0) << result.err;
+  std::ifstream file(folder / "performance.md");
+  const std::string page(std::istreambuf_iterator<char>(file), {});
+  EXPECT_TRUE(page.starts_with("# Performance"));
+  EXPECT_EQ(command_line::peersSectionOf(page), section);
+  fs::remove_all(folder);
+}
+
+/// Every engine has a row: with its version, or with the reason why it has none.
+TEST(BenchCommand, ComparesWithOtherEnginesThatAreThere) {
+  const fs::path folder = fs::temp_directory_path() / ("musclesim_engines_test_" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  const ProgramResult result = runProgram(
+      {"bench", "--peers", "--muscles", "1", "--repeats", "1", "--time-limit", "0.02", "--out", ".", "--quiet", "--json"}, folder);
+  EXPECT_EQ(result.status, 0) << result.err;
+  const auto json = nlohmann::json::parse(result.out.substr(result.out.rfind("\n{") + 1));
+  ASSERT_EQ(json["peers"].size(), 6u);  // three engines, chains and lines
+  for (const auto& entry : json["peers"]) EXPECT_TRUE(entry.contains("failure") || entry["over_ours"].get<double>() > 0) << entry;
+  EXPECT_TRUE(fs::exists(folder / "figures" / "peers.svg"));
   fs::remove_all(folder);
 }
 

@@ -53,6 +53,21 @@ class LineOfPull {
   /// Start, via points and end in the world frame, with points on each pulley where the thread lies on it.
   std::vector<Vector> pointsMm() const;
 
+  struct Point {
+    dBodyID body = nullptr;  ///< null: the environment
+    Vector place;            ///< position in the body's frame, from its centre of mass, or in the world frame, mm
+    bool connected = false;
+  };
+  /// A pulley in the frame of a body (null: the environment), from its centre of mass.
+  struct MountedPulley {
+    dBodyID body;
+    Pulley pulley;
+  };
+  /// Start, via points and end.
+  const std::vector<Point>& points() const { return points_; }
+  /// The pulley between each point and the next one; none where the way is straight.
+  const std::vector<std::optional<MountedPulley>>& mountedPulleys() const { return pulleys_; }
+
   /// The pulleys in the world frame, for drawing.
   std::vector<Pulley> pulleys() const;
 
@@ -70,6 +85,8 @@ class LineOfPull {
   };
   /// One entry per point that is fixed to a body, and one per pulley that is fixed to a body and carries the thread.
   std::vector<Push> pushes() const;
+  /// F_f tanh(v / v_0) or F_f v / v_1, the friction in N at a speed in mm/s of true time.
+  static double frictionN(double speed_mm_per_s, const MuscleSettings& settings);
   /// k max(0, l - l_max), the force of the stop in N.
   static double stopN(double length_mm, double maximum_length_mm);
   /// stiffnessNPerMm: d(force)/dl at the longest length in N/mm, including the stop's spring. dampingNsPerMm: d(force)/d(speed) at rest, in
@@ -78,16 +95,6 @@ class LineOfPull {
   static double dampingNsPerMm(const MuscleSettings& settings);
 
  private:
-  struct Point {
-    dBodyID body = nullptr;  ///< null: the environment
-    Vector place;            ///< position in the body's frame, from its centre of mass, or in the world frame, mm
-    bool connected = false;
-  };
-  /// A pulley in the frame of a body (null: the environment), from its centre of mass.
-  struct MountedPulley {
-    dBodyID body;
-    Pulley pulley;
-  };
   /// Where a body was when the thread was located last; a pose that is not a number is unlike any other.
   struct Pose {
     dBodyID body;
