@@ -9,7 +9,7 @@ namespace musclesim::command_line {
 
 namespace {
 
-constexpr const char* text =
+constexpr const char* template_text =
     R"(# {0}: a lever between two muscles. Change what is different on your machine; docs/reference/robot_format.md lists all keys.
 #
 #     musclesim robot check {0}.toml       says what is wrong or odd
@@ -77,7 +77,7 @@ state = "settled"                                    # runs begin at rest under 
 }  // namespace
 
 std::string robotTemplate(const std::string& name) {
-  std::string result = fmt::format(fmt::runtime(text), name);
+  std::string result = fmt::format(fmt::runtime(template_text), name);
   try {
     checkRobotText(result, name + ".toml");
   } catch (const BadFile& problem) {

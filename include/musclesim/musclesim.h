@@ -1,6 +1,7 @@
 /// All public headers.
 #pragma once
 
+#include "musclesim/base/record_file.h"
 #include "musclesim/base/color.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
