@@ -31,8 +31,8 @@ struct RunOrigin {
 /// The files that the options name; `option` and `given` alone are filled in.
 std::vector<KeptFile> namedFiles(const ModelOptions& model, const RunOptions& options);
 
-/// Copies the input files of a run into the folder STEM_inputs beside its recording, one folder per option. Of a plugin, which may need
-/// other libraries, and of what is no regular file, no copy is made: only hash and path are kept. Throws IoError.
+/// Copies the input files of a run into the folder STEM_inputs beside its recording, one folder per option. Plugins,
+/// which may need other libraries, and devices and pipes are not copied: their hash and path are kept instead. Throws IoError.
 RunOrigin keepOrigin(const ModelOptions& model, const RunOptions& options, const std::filesystem::path& csv);
 
 nlohmann::json jsonOf(const RunOrigin& origin);

@@ -168,8 +168,8 @@ void Scene::addArrow(std::vector<Item>& items, const V& from, const V& to, float
   items.push_back({&cone_, between(neck, to, head_width_in_radii * radius), color, 1, 0.1F, false});
 }
 
-/// One arrow at each end of a muscle: the force with which the muscle pulls at what it is attached to, 1 mm long per newton. The arrow
-/// stands beside the hose, as seen from the eye.
+/// Adds an arrow at each end of a muscle. Its length is the muscle's tension at 1 mm per newton, and it points along the muscle, as the
+/// muscle pulls there. Arrows stand beside the hose, as seen from the eye, so that the hose does not hide them.
 void Scene::addTensions(std::vector<Item>& items, const DrawnHose& hose, const V& eye_mm) const {
   constexpr float beside_in_radii = 1.8F;
   const auto tension_N = static_cast<float>(hose.tension_N);

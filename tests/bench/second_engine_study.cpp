@@ -122,8 +122,8 @@ void settle(Sample& sample) {
   sample.read();
 }
 
-/// Both fall without pressure from where pressures held the robot; robots without muscles, and those that cannot settle, from the pose as
-/// built.
+/// Lets the robot fall without pressure in both engines. It begins where pressures held it at rest; a robot without muscles, or one that
+/// cannot settle, begins in the pose as built.
 Fall fall(const StudyRobot& robot) {
   Sample sample(robot.source, joined(robot.parameters, hard), substeps);
   if (robot.settles) settle(sample);

@@ -3,9 +3,8 @@
 
 #include <cmath>
 
+#include "hand_difference.h"
 #include "musclesim/base/error.h"
-#include "musclesim/base/random.h"
-#include "musclesim/base/units.h"
 #include "peers/engine.h"
 #include "peers/own.h"
 #include "peers_fixture.h"
@@ -15,25 +14,11 @@ extern "C" const musclesim::peers::PeerEngine* musclesim_peer_mujoco();
 namespace musclesim::peers {
 namespace {
 
-constexpr double control_step_s = 0.01;
-
-/// The largest distance of the two hands within `duration_s` under random pressures.
 double handDifferenceMm(const std::string& robot, const std::vector<std::string>& parameters, double duration_s, int substeps) {
   Sample ours(robot, parameters, substeps);
   const auto theirs =
       musclesim_peer_mujoco()->make(ours.mechanism, ours.tree, {musclesim_peer_mujoco()->methods.front(), control_step_s / substeps});
-  RandomStream random(3, "test");
-  Action command(ours.mechanism.muscles.size());
-  for (double& pressure : command) pressure = random.uniform();
-  double worst_mm = 0;
-  for (int i = 0; i < std::lround(duration_s / control_step_s); ++i) {
-    ours.simulation.robot().step(command);
-    ours.simulation.step();
-    theirs->advance(command, substeps);
-    worst_mm = std::max(worst_mm, (theirs->handM() * 1000 - ours.simulation.robot().handMm()).norm());
-  }
-  EXPECT_LT(theirs->gapM(), 1e-3);
-  return worst_mm;
+  return handDifferenceMm(ours, *theirs, duration_s, substeps);
 }
 
 TEST(MujocoPeer, LineMusclesMoveTheArmAlike) {

@@ -1,10 +1,8 @@
 /// The robot in Simbody: the way of the arm against musclesim's, both with short steps.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
+#include "hand_difference.h"
 #include "musclesim/base/error.h"
-#include "musclesim/base/random.h"
 #include "peers/engine.h"
 #include "peers_fixture.h"
 
@@ -13,24 +11,10 @@ extern "C" const musclesim::peers::PeerEngine* musclesim_peer_simbody();
 namespace musclesim::peers {
 namespace {
 
-constexpr double control_step_s = 0.01;
-
-/// The largest distance of the two hands within 0.1 s under random pressures.
 double handDifferenceMm(const std::string& robot, const std::vector<std::string>& parameters, const std::string& method, int substeps) {
   Sample ours(robot, parameters, 200);
   const auto theirs = musclesim_peer_simbody()->make(ours.mechanism, ours.tree, {method, control_step_s / substeps});
-  RandomStream random(3, "test");
-  Action command(ours.mechanism.muscles.size());
-  for (double& pressure : command) pressure = random.uniform();
-  double worst_mm = 0;
-  for (int i = 0; i < 10; ++i) {
-    ours.simulation.robot().step(command);
-    ours.simulation.step();
-    theirs->advance(command, substeps);
-    worst_mm = std::max(worst_mm, (theirs->handM() * 1000 - ours.simulation.robot().handMm()).norm());
-  }
-  EXPECT_LT(theirs->gapM(), 1e-3);
-  return worst_mm;
+  return handDifferenceMm(ours, *theirs, 0.1, substeps);
 }
 
 TEST(SimbodyPeer, LineMusclesMoveTheArmAlike) {

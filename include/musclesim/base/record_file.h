@@ -30,7 +30,8 @@ class RecordFile {
   const std::string& origin() const { return origin_; }
   /// Empties the file and begins anew. `origin`: one line of text. Throws IoError.
   void begin(const std::string& origin);
-  /// Finds the records in the file; drops what is not whole. Returns the number of records. Throws IoError.
+  /// Reads the file, so that find() knows its records, and cuts off the first incomplete record and all after it. Returns the number of
+  /// records. Throws IoError.
   std::size_t resume();
 
   /// The value of a key; none if it is not in the file.
