@@ -48,8 +48,8 @@ Complexity Evidence::complexityOf(const Explanation& explanation) const {
       determined += is_fitted && !std::isfinite(explanation.half_width[k]) ? 0 : 1;
     // An effect of which the data determine nothing is not for free.
     result.parameters += std::max({determined, static_cast<double>(hypothesis.countedParameters()), 1.0});
-    result.effects += (i > 0 ? 1 : 0) + hypothesis.furtherMechanisms();
-    result.same_place += actsWhereOthersDo(explanation, i) ? 1 : 0;
+    result.effects += i > 0 ? 1 : 0;
+    result.same_place += (actsWhereOthersDo(explanation, i) ? 1 : 0) + hypothesis.furtherMechanisms();
     result.excess += hypothesis.excess(explanation.z.segment(first, hypothesis.coordinateCount()));
     result.shared_sensor += hypothesis.info().stage == Stage::sensor && hypothesis.component() == "all" ? 1 : 0;
     first += hypothesis.coordinateCount();

@@ -11,9 +11,11 @@ namespace musclesim {
 
 /// What the price of an explanation is made of, one number each.
 struct Complexity {
-  double parameters = 0;     ///< coordinates that the data determine, or numbers that were counted or tried
-  double effects = 0;        ///< beyond the first, and mechanisms that are a share of another one's law (a second lag)
-  double same_place = 0;     ///< effects on the same muscle or signal as an earlier one, or both on the body: they may only mend its law
+  double parameters = 0;  ///< coordinates that the data determine, or numbers that were counted or tried
+  double effects = 0;     ///< beyond the first
+  /// Effects on the same muscle or signal as an earlier one, or both on the body, and further mechanisms within a law (a second lag): they
+  /// may only mend the law.
+  double same_place = 0;
   double excess = 0;         ///< e-folds by which parameters leave their usual range
   double shared_sensor = 0;  ///< faults that all sensors share
   constexpr std::array<double, 5> asArray() const { return {parameters, effects, same_place, excess, shared_sensor}; }

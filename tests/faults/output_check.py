@@ -105,11 +105,12 @@ def files():
 
 
 def isUnfinished(name):
-    """Whether it is a part of a recording that does not claim to be complete, or is refused because its sidecar is missing."""
+    """Whether it is a part of a recording that does not claim to be complete, or is refused because its sidecar is missing. A sidecar is
+    written first, so it stands alone where its table could not be opened."""
     sidecar = (out / name).with_suffix(".json")
     if name.endswith(".csv"):
         return not sidecar.exists() or b'"complete": false' in sidecar.read_bytes()
-    return name.endswith(".json") and (out / name).with_suffix(".csv").exists() and b'"complete": false' in (out / name).read_bytes()
+    return name.endswith(".json") and b'"complete": false' in (out / name).read_bytes()
 
 
 def clear():
