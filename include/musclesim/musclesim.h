@@ -1,7 +1,6 @@
 /// All public headers.
 #pragma once
 
-#include "musclesim/base/record_file.h"
 #include "musclesim/base/color.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
@@ -9,6 +8,7 @@
 #include "musclesim/base/json_document.h"
 #include "musclesim/base/parameters.h"
 #include "musclesim/base/random.h"
+#include "musclesim/base/record_file.h"
 #include "musclesim/base/text.h"
 #include "musclesim/base/unique_name.h"
 #include "musclesim/base/units.h"
