@@ -73,14 +73,17 @@ Search::Surroundings Search::surroundingsOf(const Explanation& base) const {
 }
 
 /// The hypotheses that may be added to the base with most gain by the linear model about no effect, the nearest variant of each label, and
-/// some of each stage.
+/// some of each stage. Members of the base whose change was unknown there, since a simulation diverged, are not in that model.
 std::vector<std::size_t> Search::worthAdding(const Explanation& base) const {
+  std::vector<std::size_t> modelled;
+  for (const std::size_t member : base.members)
+    if (!about_nothing_->of_hypothesis[member].empty()) modelled.push_back(member);
   std::vector<std::pair<double, std::size_t>> costs;
   for (std::size_t i = 0; i < causes_.hypotheses.size(); ++i)
     if (!about_nothing_->of_hypothesis[i].empty() && fitsBeside(i, base.members)) costs.emplace_back(0, i);
   parallelFor(static_cast<int>(costs.size()), options_.job_count, [&](int k) {
     auto& [cost, index] = costs[static_cast<std::size_t>(k)];
-    std::vector<std::size_t> members = base.members;
+    std::vector<std::size_t> members = modelled;
     members.push_back(index);
     cost = proposed(*about_nothing_, {}, members).cost;
   });

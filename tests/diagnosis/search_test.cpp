@@ -114,8 +114,8 @@ TEST(Search, GivesTheSameBitsWithOneAndTwoThreads) {
   EXPECT_EQ(one.search.noneOfThese(), two.search.noneOfThese());
 }
 
-/// The arm knows no tolerances, so that "no effect" has nothing to fit.
-TEST(Search, NeedsNoNumbersWithATolerance) {
+/// Recordings of the length of one muscle of an arm of ten lines, 0.6 s each. The arm knows no tolerances.
+std::vector<Recording> armRecordings(const std::vector<std::string>& files, const std::vector<ActiveEffect>& effects, double length_gain) {
   Recording plan;
   plan.info.robot = "arm";
   plan.info.robot_parameters = {{"muscle.model", std::string("line")}};
@@ -124,20 +124,40 @@ TEST(Search, NeedsNoNumbersWithATolerance) {
     for (int row = 0; row < 60; ++row) command.values.push_back(row < 20 ? 0.3 : 0.3 + 0.03 * muscle);
   }
   for (int row = 0; row < 60; ++row) plan.time_s.push_back(0.01 * row);
+  ReplayOptions options;
+  options.effects = effects;
   std::vector<Recording> recordings;
-  for (const char* file : {"first.csv", "second.csv"}) {
+  for (const std::string& file : files) {
     for (Signal& command : plan.signals)
-      for (double& value : command.values) value += 0.01;
-    recordings.push_back(replayRecording(plan).simulated);
+      for (double& value : command.values) value += 0.03;
+    recordings.push_back(replayRecording(plan, options).simulated);
     recordings.back().file = file;
     std::erase_if(recordings.back().signals, [](const Signal& s) { return !s.name.starts_with("command_") && s.name != "length_3_mm"; });
     recordings.back().info.noise_std = {{"length_3_mm", 0.05}};
     recordings.back().info.active_effects.clear();
-    for (double& value : recordings.back().signals.back().values) value *= 1.02;
+    for (double& value : recordings.back().signals.back().values) value *= length_gain;
   }
-  const Diagnosis found = diagnose(recordings, planted::few({"sensor_gain", "force_gain"}));
+  return recordings;
+}
+
+TEST(Search, NeedsNoNumbersWithATolerance) {
+  const Diagnosis found = diagnose(armRecordings({"first.csv", "second.csv"}, {}, 1.02), planted::few({"sensor_gain", "force_gain"}));
   EXPECT_EQ(found.chosen, std::vector<std::string>{"sensor_gain@signal_length_3"}) << diagnosisSummary(found);
   EXPECT_TRUE(found.numbers.empty());
+}
+
+/// Of many hypotheses only some are screened on all segments; a set may have a member that was not.
+TEST(Search, GoesOnFromAnEffectThatWasNotScreened) {
+  const ActiveEffect slow{"valve_lag", "muscle_3", {{"fill_time_constant_s", 0.05}, {"vent_time_constant_s", 0.05}}};
+  DiagnosisOptions options = planted::few({"valve_lag"});
+  options.earlier = {{"valve_lag", "muscle_9", {{"fill_time_constant_s", 0.02}, {"vent_time_constant_s", 0.02}}}};
+  const Plant plant(armRecordings({"first.csv", "second.csv", "third.csv"}, {slow}, 1), options);
+  Search search(plant, options, [] {});
+  search.screen();
+  const auto earlier = std::ranges::find(search.hypotheses(), "valve_lag@muscle_9", &Hypothesis::label) - search.hypotheses().begin();
+  ASSERT_EQ(search.catalogue().sensitivities.at(static_cast<std::size_t>(earlier)).per_strength.front().size(), 0);
+  search.decide();
+  EXPECT_EQ(search.causes().labelsOf(search.explanations().front().members), Labels{"valve_lag@muscle_3"});
 }
 
 }  // namespace
