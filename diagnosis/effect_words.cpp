@@ -91,7 +91,7 @@ const std::vector<EffectWords> effect_words = {
      "Valve and volume need time to fill and to vent: after a step the pressure approaches its new value along a curve.",
      {{"fill_time_constant_s", "time constant while filling", "a lag of {} (filling)"},
       {"vent_time_constant_s", "time constant while venting", "a lag of {} (venting)"},
-      {"second_lag_share", "share of a second lag in series", "", "%"}}},
+      {"next_lag_ratio", "ratio of each lag in series to the one before", "", ""}}},
     {"volume_coupling",
      "motion changes the pressure",
      "Stretching {} changes the pressure in it",

@@ -42,17 +42,16 @@ Complexity Evidence::complexityOf(const Explanation& explanation) const {
   Eigen::Index first = 0;
   for (std::size_t i = 0; i < explanation.members.size(); ++i) {
     const Hypothesis& hypothesis = causes_.hypotheses[explanation.members[i]];
-    const bool is_fitted = explanation.half_width.size() == explanation.z.size();
-    double determined = 0;
-    for (Eigen::Index k = first; k < first + hypothesis.coordinateCount(); ++k)
-      determined += is_fitted && !std::isfinite(explanation.half_width[k]) ? 0 : 1;
+    const int count = hypothesis.coordinateCount();
+    const bool is_fitted = explanation.determined.size() == explanation.z.size();
+    const double determined = is_fitted ? explanation.determined.segment(first, count).sum() : count;
     // An effect of which the data determine nothing is not for free.
     result.parameters += std::max({determined, static_cast<double>(hypothesis.countedParameters()), 1.0});
-    result.effects += i > 0 ? 1 : 0;
-    result.same_place += (actsWhereOthersDo(explanation, i) ? 1 : 0) + hypothesis.furtherMechanisms();
-    result.excess += hypothesis.excess(explanation.z.segment(first, hypothesis.coordinateCount()));
+    result.effects += (i > 0 ? 1 : 0) + hypothesis.furtherMechanisms();
+    result.same_place += actsWhereOthersDo(explanation, i) ? 1 : 0;
+    result.excess += hypothesis.excess(explanation.z.segment(first, count));
     result.shared_sensor += hypothesis.info().stage == Stage::sensor && hypothesis.component() == "all" ? 1 : 0;
-    first += hypothesis.coordinateCount();
+    first += count;
   }
   return result;
 }

@@ -4,6 +4,13 @@
 
 namespace musclesim {
 
+void setCertainty(Explanation& explanation, const Certainty& certainty) {
+  const Eigen::Index count = certainty.half_width.size() ? explanation.z.size() : 0;
+  explanation.half_width = certainty.half_width.head(count);
+  explanation.determined = certainty.determined.head(count);
+  explanation.numbers_half_width = certainty.half_width.tail(certainty.half_width.size() - count);
+}
+
 namespace {
 
 constexpr double roughly_enough = 0.02, roughly_valid = 0.2;  ///< nats: for fits that only rank explanations
@@ -111,8 +118,7 @@ void Causes::refit(Explanation& explanation, const Comparison& comparison, int r
   explanation.z = result.z.head(effect_count);
   explanation.numbers = result.z.tail(number_count);
   if (rounds > 0 || explanation.half_width.size() == 0) {
-    explanation.half_width = result.half_width.head(effect_count);
-    explanation.numbers_half_width = result.half_width.tail(number_count);
+    setCertainty(explanation, result.certainty);
   }
   explanation.residual = result.residual;
   explanation.jacobian = result.jacobian;

@@ -18,6 +18,7 @@ struct Explanation {
   Eigen::VectorXd z;                               ///< coordinates of all members, one after the other
   Eigen::VectorXd numbers;                         ///< coordinates of the uncertain numbers (Plant::numbersAt)
   Eigen::VectorXd half_width, numbers_half_width;  ///< of their 95 % intervals
+  Eigen::VectorXd determined;                      ///< Certainty::determined of z; empty before a fit
   Eigen::VectorXd residual;                        ///< on the comparison that it was fitted to last
   Eigen::MatrixXd jacobian;                        ///< of the prediction there, by z and then numbers
   double score = 0;                                ///< Evidence::score
@@ -25,12 +26,15 @@ struct Explanation {
   bool is_inactive = false;  ///< one of its effects is inactive: the fit is as good at nearly zero strength
 };
 
-/// The hypotheses of a plant, and what a set of them means.
+/// Takes over the certainty of a fit of z and numbers; an empty one makes it unknown.
+void setCertainty(Explanation& explanation, const Certainty& certainty);
+
 /// What a fit is for: a misfit that ranks explanations, or parameters that are reported.
 enum class Accuracy { ranking, estimates };
 /// Where known derivatives were computed: at the parameters from which a fit begins, or at others.
 enum class Known { here, elsewhere };
 
+/// The hypotheses of a plant, and what a set of them means.
 class Causes {
  public:
   Causes(const Plant& plant, const OnSimulation& on_simulation) : plant_(plant), on_simulation_(on_simulation) {}

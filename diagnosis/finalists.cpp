@@ -43,7 +43,7 @@ std::vector<Explanation> Search::otherVariants(const Explanation& explanation) c
       other.members[m] = i;
       other.z.resize(explanation.z.size() - (after - first) + own.size());
       other.z << explanation.z.head(first), own, explanation.z.tail(explanation.z.size() - after);
-      other.half_width.resize(0);
+      setCertainty(other, {});
       result.push_back(std::move(other));
     }
   return result;
@@ -102,10 +102,9 @@ void Search::polish() {
     const Explanation before = explanation;
     goOn(explanation, Accuracy::estimates);
     if (explanation.residual.size() != fit_.size()) explanation = before;
-    const Eigen::VectorXd half = halfWidths(fit_, causes_.problemOf(explanation, fit_, Fidelity::coarse), explanation.residual);
+    const Certainty certainty = certaintyAt(fit_, causes_.problemOf(explanation, fit_, Fidelity::coarse), explanation.residual);
     if (plant_.interrupted()) return;
-    explanation.half_width = half.head(explanation.z.size());
-    explanation.numbers_half_width = half.tail(explanation.numbers.size());
+    setCertainty(explanation, certainty);
     takeFromCounterparts(explanation);
     explanation.score = evidence().score(explanation);
   });

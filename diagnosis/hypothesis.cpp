@@ -299,7 +299,7 @@ int Hypothesis::furtherMechanisms() const {
       std::ranges::count_if(coordinates_, [this](const Coordinate& c) { return info_.parameters[c.parameter].adds_mechanism; }));
 }
 
-/// With and without shares that may be zero (of a second lag, of a filter, of friction that depends on the pressure): the simpler law is
+/// With and without shares that may be zero (of further lags, of a filter, of friction that depends on the pressure): the simpler law is
 /// also fitted by itself, because a share leads fits away from its optimum.
 std::vector<Hypothesis> Hypothesis::withAndWithoutShares() const {
   Hypothesis without = *this;

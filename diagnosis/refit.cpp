@@ -90,10 +90,10 @@ double samplesPerIndependent(const Comparison& comparison, const Eigen::VectorXd
   return sum / block_count;
 }
 
-/// Half of the 95 % interval of every coordinate; infinite if the data do not determine it, alone or together with the others.
+/// A half width is infinite if the data do not determine the coordinate, alone or together with the others.
 /// `error`: relative error of each column of the Jacobian. A direction in which the columns cancel to less than their errors is not known.
-Eigen::VectorXd halfWidths(const Comparison& comparison, const FitProblem& problem, const Eigen::VectorXd& residual,
-                           const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& error) {
+Certainty certaintyOf(const Comparison& comparison, const FitProblem& problem, const Eigen::VectorXd& residual,
+                      const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& error) {
   constexpr double nothing = 1e-12, flat = 1e-8, takes_part = 0.1;
   const Eigen::MatrixXd weighted = perSample(comparison, residual).asDiagonal() * jacobian;
   const Eigen::MatrixXd information = weighted.transpose() * weighted / samplesPerIndependent(comparison, residual);
@@ -110,15 +110,17 @@ Eigen::VectorXd halfWidths(const Comparison& comparison, const FitProblem& probl
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> directions(known);
   constexpr double unbounded = std::numeric_limits<double>::infinity();
-  Eigen::ArrayXd variance = Eigen::ArrayXd::Zero(size.size());
+  Eigen::ArrayXd variance = Eigen::ArrayXd::Zero(size.size()), determined = Eigen::ArrayXd::Zero(size.size());
   for (Eigen::Index k = 0; k < size.size(); ++k) {
     const Eigen::ArrayXd share = directions.eigenvectors().col(k).array().square();
-    if (directions.eigenvalues()[k] > flat)
+    if (directions.eigenvalues()[k] > flat) {
       variance += share / directions.eigenvalues()[k];
-    else
+      determined += share;
+    } else {
       variance = (share > takes_part * takes_part).select(unbounded, variance);
+    }
   }
-  return (size > nothing).select(normal_95 * variance.sqrt() * per_size.array(), unbounded);
+  return {(size > nothing).select(normal_95 * variance.sqrt() * per_size.array(), unbounded), determined};
 }
 
 }  // namespace
@@ -158,6 +160,11 @@ void update(Eigen::MatrixXd& jacobian, const Point& from, const Point& to) {
   if (step.squaredNorm() > 0) jacobian += (from.residual - to.residual - jacobian * step) * step.transpose() / step.squaredNorm();
 }
 
+/// Of a fit that has no derivatives.
+Certainty allDetermined(Eigen::Index count) {
+  return {Eigen::VectorXd::Zero(count), Eigen::VectorXd::Ones(count)};
+}
+
 }  // namespace
 
 double stepOf(const FitProblem& problem, const Eigen::VectorXd& z, Eigen::Index coordinate) {
@@ -175,7 +182,7 @@ Eigen::MatrixXd derivatives(const Comparison& comparison, const FitProblem& prob
 FitResult fit(const Comparison& comparison, const FitProblem& problem, int round_count) {
   Point best = evaluate(comparison, problem, problem.start);
   if (!best.residual.size() || best.z.size() == 0 || round_count == 0)
-    return {best.z, best.residual, best.cost, Eigen::VectorXd::Zero(best.z.size()), {}};
+    return {best.z, best.residual, best.cost, allDetermined(best.z.size()), {}};
   double difference = wide;
   Eigen::MatrixXd jacobian = derivatives(comparison, problem, best, difference, problem.known_derivatives);
   const bool is_known = !problem.known_derivatives.empty();
@@ -200,22 +207,26 @@ FitResult fit(const Comparison& comparison, const FitProblem& problem, int round
     }
     fresh = settled;
   }
-  return {best.z, best.residual, best.cost, halfWidths(comparison, problem, best.residual, jacobian, Eigen::VectorXd::Zero(best.z.size())),
+  return {best.z, best.residual, best.cost, certaintyOf(comparison, problem, best.residual, jacobian, Eigen::VectorXd::Zero(best.z.size())),
           jacobian};
 }
 
-Eigen::VectorXd halfWidths(const Comparison& comparison, const FitProblem& problem, const Eigen::VectorXd& residual) {
+Certainty notDetermined(Eigen::Index count) {
+  return {Eigen::VectorXd::Constant(count, std::numeric_limits<double>::infinity()), Eigen::VectorXd::Zero(count)};
+}
+
+Certainty certaintyAt(const Comparison& comparison, const FitProblem& problem, const Eigen::VectorXd& residual) {
   if (problem.start.size() == 0) return {};
   constexpr double largest_error = 0.3;  // secants that differ more show a bend of the response, as dry friction makes it
   const Point at = evaluate(comparison, problem, problem.start);
-  if (!at.residual.size()) return Eigen::VectorXd::Constant(problem.start.size(), std::numeric_limits<double>::infinity());
+  if (!at.residual.size()) return notDetermined(problem.start.size());
   const Eigen::MatrixXd far = derivatives(comparison, problem, at, wide), near = derivatives(comparison, problem, at, narrow);
   const Eigen::VectorXd weights = perSample(comparison, residual);
   Eigen::VectorXd error = Eigen::VectorXd::Zero(near.cols());
   for (Eigen::Index k = 0; k < near.cols(); ++k)
     if (const double norm = weights.cwiseProduct(near.col(k)).norm(); norm > 0)
       error[k] = std::min(largest_error, weights.cwiseProduct(far.col(k) - near.col(k)).norm() / norm);
-  return halfWidths(comparison, problem, residual, near, error);
+  return certaintyOf(comparison, problem, residual, near, error);
 }
 
 FitResult fitCorrected(const Comparison& comparison, const FitProblem& cheap, const Predicted& exact, int round_count) {
@@ -223,7 +234,7 @@ FitResult fitCorrected(const Comparison& comparison, const FitProblem& cheap, co
   FitProblem exactly = cheap;
   exactly.predicted = exact;
   Point best = evaluate(comparison, exactly, cheap.start);
-  FitResult result{best.z, best.residual, best.cost, Eigen::VectorXd::Zero(best.z.size()), {}};
+  FitResult result{best.z, best.residual, best.cost, allDetermined(best.z.size()), {}};
   for (int pass = 0; pass < pass_count && best.residual.size() && !comparison.plant().interrupted(); ++pass) {
     const Eigen::VectorXd before = cheap.predicted(best.z);
     if (before.size() != comparison.size()) break;
@@ -235,7 +246,7 @@ FitResult fitCorrected(const Comparison& comparison, const FitProblem& cheap, co
       return predicted.size() == shift.size() ? predicted + shift : predicted;
     };
     const FitResult fitted = fit(comparison, corrected, round_count);
-    result.half_width = fitted.half_width;
+    result.certainty = fitted.certainty;
     result.jacobian = fitted.jacobian;
     if (fitted.cost > best.cost - cheap.enough) break;
     Point next = evaluate(comparison, exactly, fitted.z);

@@ -29,12 +29,22 @@ struct FitProblem {
   bool narrow_differences = true;  ///< whether the last rounds use narrow differences
 };
 
+/// How well the data and the prior determine the coordinates of a fit.
+struct Certainty {
+  Eigen::VectorXd half_width;  ///< half of the 95 % interval of every coordinate; infinite: not determined
+  /// Share of every coordinate in the directions that are determined, 0 .. 1. The sum is the number of these directions: two coordinates of
+  /// which only the ratio shows are one.
+  Eigen::VectorXd determined;
+};
+
+Certainty notDetermined(Eigen::Index count);
+
 struct FitResult {
   Eigen::VectorXd z;
-  Eigen::VectorXd residual;    ///< measured - predicted; empty if no prediction could be made
-  double cost = 0;             ///< misfit + sum of precision z^2 / 2, in nats
-  Eigen::VectorXd half_width;  ///< half of the 95 % interval of every coordinate; infinite: not determined
-  Eigen::MatrixXd jacobian;    ///< d(prediction)/dz near z: the last derivatives, with rank-one updates since
+  Eigen::VectorXd residual;  ///< measured - predicted; empty if no prediction could be made
+  double cost = 0;           ///< misfit + sum of precision z^2 / 2, in nats
+  Certainty certainty;
+  Eigen::MatrixXd jacobian;  ///< d(prediction)/dz near z: the last derivatives, with rank-one updates since
 };
 
 /// d(prediction)/dz at z, column by column, from one-sided differences: 20 % of the coordinate, at least 0.2, to the side where the model
@@ -52,10 +62,10 @@ double stepOf(const FitProblem& problem, const Eigen::VectorXd& z, Eigen::Index 
 /// number of samples (from the residual's autocorrelation).
 FitResult fit(const Comparison& comparison, const FitProblem& problem, int round_count);
 
-/// Half of the 95 % interval of every coordinate at problem.start from fresh derivatives, with differences of two sizes: what these
+/// Certainty of every coordinate at problem.start from fresh derivatives, with differences of two sizes: what these
 /// disagree in is taken for the error of the derivatives, below which two coordinates that act alike are not told apart. `residual`:
 /// measured minus the exact prediction there.
-Eigen::VectorXd halfWidths(const Comparison& comparison, const FitProblem& problem, const Eigen::VectorXd& residual);
+Certainty certaintyAt(const Comparison& comparison, const FitProblem& problem, const Eigen::VectorXd& residual);
 
 /// Two-fidelity fit: minimises the misfit of the cheap prediction plus the exact-minus-cheap difference at the start, predicts the result
 /// exactly, and repeats once from there (additive correction, Alexandrov and Lewis 2001). The residual is that of the exact prediction,

@@ -223,7 +223,7 @@ void Search::fitOnScreening(std::vector<Proposal> proposals) {
   }
 }
 
-/// The same start by laws without further mechanisms; nothing if it has none. A second lag may have taken in a part of what an added dead
+/// The same start by laws without further mechanisms; nothing if it has none. Further lags may have taken in a part of what an added dead
 /// time makes, so that a fit of both ends between the two.
 std::optional<Search::Proposal> Search::withoutFurtherMechanisms(const Proposal& proposal) const {
   Explanation start = proposal.start;

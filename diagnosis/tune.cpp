@@ -46,9 +46,9 @@ Tuning tune(const std::vector<Recording>& recordings, DiagnosisOptions& options)
   FitResult result = fit(fitted, problem, tuning_round_count);
   if (!result.residual.size()) {
     if (!plant.interrupted()) throw Diverged(0, plant.robot(), "the model without further effects cannot follow the recordings");
-    result.half_width.setConstant(std::numeric_limits<double>::infinity());
+    result.certainty = notDetermined(result.z.size());
   }
-  Tuning tuning{tunedParameters(plant, result.z, result.half_width), plant.simulationCount(), plant.simulatedS()};
+  Tuning tuning{tunedParameters(plant, result.z, result.certainty.half_width), plant.simulationCount(), plant.simulatedS()};
   for (const TunedParameter& parameter : tuning.parameters) options.model.parameters.set(parameter.name, parameter.fitted.value, "--tune");
   return tuning;
 }

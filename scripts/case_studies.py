@@ -136,8 +136,8 @@ def told(name, effect, words):
 
 def lag_words(v):
     total = 0.5 * (v['fill_time_constant_s'] + v['vent_time_constant_s'])
-    share = v.get('second_lag_share', 0)
-    shape = 'two equal lags in a row' if share > 0.45 else f'second lag {100 * share:.0f} %'
+    ratio = v.get('next_lag_ratio', 0)
+    shape = f'three lags in series, each {ratio:.2f} of the one before' if ratio > 0 else 'a single lag'
     return f'{1000 * v["fill_time_constant_s"]:.0f} ms filling, {1000 * v["vent_time_constant_s"]:.0f} ms venting ({shape}; {1000 * total:.0f} ms in the mean)'
 
 

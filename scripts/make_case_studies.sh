@@ -3,9 +3,9 @@
 #
 #     scripts/make_case_studies.sh REAL ANSWERS [build folder]
 #
-# REAL holds porcaro-drum-arm/ and zagreb-dmsp10-250/; the measurements are not part of the project. The mappings in docs/examples/import
+# REAL holds porcaro-drum-arm/, zagreb-dmsp10-250/, cavatappi/ and bellows/; the measurements are not part of the project. The mappings in docs/examples/import
 # make recordings of them, in ANSWERS/recordings; diagnoses are kept in ANSWERS, and those that are there already are not made again. About
-# ten minutes on one core. Only derived numbers reach the page.
+# twenty minutes on one core. Only derived numbers reach the page.
 set -euo pipefail
 
 root=$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")
@@ -14,7 +14,7 @@ if (($# < 2)); then
   exit 2
 fi
 real=$1 answers=$2 program=$(readlink -f "${3:-$root/build/release}/musclesim")
-for folder in porcaro-drum-arm zagreb-dmsp10-250; do
+for folder in porcaro-drum-arm zagreb-dmsp10-250 cavatappi bellows; do
   [[ -d $real/$folder ]] || { echo "make_case_studies.sh: there is no $real/$folder; nothing is changed (the measurements are not part of the project)" >&2; exit 0; }
 done
 mkdir -p "$answers/recordings"
@@ -34,6 +34,14 @@ make_recording zagreb-dmsp10-250/step_up_0_to_4p074V_100Hz.csv bench_step
 # The sweep as published, with the slow clock of its figure.
 sed 's/, factor = 0.9702//' "$maps/wrist_sweep.toml" >"$answers/recordings/as_published.toml"
 "$program" import "$real/porcaro-drum-arm/fig1c_sweep_real.csv" "$answers/recordings/as_published.toml" "$answers/recordings/wrist_sweep_as_published.csv" --quiet >/dev/null
+for volts in 7 9 11; do
+  "$program" import "$real/bellows/1606${volts}V.txt" "$maps/bellows.toml" "$answers/recordings/bellows_$volts.csv" --quiet
+done
+# The hold of a cavatappi with its outer stop, which it never reaches, at three places.
+for stop_mm in 72 90 120; do
+  cp "$real/cavatappi/rec_400_long.csv" "$answers/recordings/hold_$stop_mm.csv"
+  sed "s/\"rig.maximum_length_mm\": 120.0/\"rig.maximum_length_mm\": $stop_mm.0/" "$real/cavatappi/rec_400_long.json" >"$answers/recordings/hold_$stop_mm.json"
+done
 
 # NAME TUNED RECORDING...: the last recording measures the result. $excluded effects are no candidates.
 excluded=""
@@ -42,7 +50,7 @@ diagnose() {
   shift 2
   [[ -e $answers/$name/diagnosis.json ]] && return
   echo "$name" >&2
-  (cd "$answers/recordings" && "$program" diagnose "${@/%/.csv}" --tune "$tuned" ${excluded:+--exclude "$excluded"} --jobs 1 --out "$answers/$name" --quiet)
+  (cd "$answers/recordings" && "$program" diagnose "${@/%/.csv}" ${tuned:+--tune "$tuned"} ${excluded:+--exclude "$excluded"} --jobs 1 --out "$answers/$name" --quiet)
   git -C "$root" rev-parse --short HEAD >"$answers/$name/version"
 }
 lever=wrist.lever_mm,wrist.rest_length_0_mm,wrist.rest_length_1_mm
@@ -57,7 +65,8 @@ excluded=""
 diagnose bench_loop $load,force_law.bore_N,force_law.threshold_N bench_loop
 diagnose bench_loop_corrected $load,force_law.bore_N,force_law.threshold_N bench_loop_corrected
 diagnose bench_step $load bench_step
-
+for stop_mm in 72 90 120; do diagnose cavatappi_$stop_mm "" hold_$stop_mm; done
+diagnose bellows elbow.forearm_kg,elbow.forearm_inertia_kgm2,force_law.c_kgf bellows_7 bellows_9 bellows_11
 
 python3 "$root/scripts/case_studies.py" "$answers" >"$answers/case_studies.md"
 cp "$answers/case_studies.md" "$root/docs/research/case_studies.md"

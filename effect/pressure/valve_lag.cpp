@@ -11,30 +11,38 @@ EffectInfo ValveLag::info() {
       .acts_on = {ComponentKind::muscle},
       .summary = "the valve fills and vents the muscle with a lag",
       .equation =
-          "(1 - s) tau dv/dt = u - v, s tau dp/dt = v - p    u delivered, p actual, tau of filling or venting, s = second_lag_share",
+          "tau_k dp_k/dt = p_(k-1) - p_k, tau_k = tau r^k / (1 + r + r^2), k = 0, 1, 2    p_-1 = u delivered, p_2 actual, tau of filling "
+          "or venting, r = next_lag_ratio",
       .signature =
           "fast commands are attenuated, with an error in proportion to amplitude; no error remains if the measured pressure drives "
           "the model",
       .source = "first-order lag of valve and volume; 0.05 and 0.084 s, 0.126 and 0.089 s measured",
-      .parameters = {{"fill_time_constant_s", "s", 0, 0, 5, 0.01, 0.2, "tau while the pressure rises"},
-                     {"vent_time_constant_s", "s", 0, 0, 5, 0.01, 0.2, "tau while the pressure falls"},
-                     {"second_lag_share", "", 0, 0, 0.5, 0, 0.5, "s, share of tau that belongs to a second lag in series", true, {}, true}},
+      .parameters =
+          {{"fill_time_constant_s", "s", 0, 0, 5, 0.01, 0.2, "tau while the pressure rises"},
+           {"vent_time_constant_s", "s", 0, 0, 5, 0.01, 0.2, "tau while the pressure falls"},
+           {"next_lag_ratio", "", 0, 0, 1, 0, 1, "r, each of three lags in series to the one before it; 0: a single lag", true, {}, true}},
       .make = [](const EffectValues& values) {
-        return std::make_unique<ValveLag>(values["fill_time_constant_s"], values["vent_time_constant_s"], values["second_lag_share"]);
+        return std::make_unique<ValveLag>(values["fill_time_constant_s"], values["vent_time_constant_s"], values["next_lag_ratio"]);
       }};
 }
 
 double ValveLag::output(double input, const StepTime& time) {
-  constexpr double equal = 1e-6;
-  const double first_s = (1 - share_) * (input > valve_ ? fill_s_ : vent_s_);
-  const double first_left = first_s > 0 ? std::exp(-time.h_s / first_s) : 0, valve_off = valve_ - input;
-  valve_ = input + valve_off * first_left;
-  const double second_s = share_ * (valve_ > pressure_ ? fill_s_ : vent_s_);
-  if (second_s <= 0) return pressure_ = valve_;
-  const double second_left = std::exp(-time.h_s / second_s), off = pressure_ - input;
-  if (std::abs(first_s - second_s) < equal * second_s) return pressure_ = input + (off + valve_off * time.h_s / second_s) * second_left;
-  const double shared = valve_off * first_s / (first_s - second_s);
-  return pressure_ = input + shared * first_left + (off - shared) * second_left;
+  if (time.h_s <= 0) return pressures_.back();
+  double from = input, to = input, share = 1 / (1 + ratio_ + ratio_ * ratio_);
+  for (double& pressure : pressures_) {
+    const double before = pressure, lag_s = share * (to > pressure ? fill_s_ : vent_s_);
+    const double behind = (to - from) * lag_s / time.h_s;  // of an input that goes on like this
+    pressure = lag_s > 0 ? to - behind + (pressure - from + behind) * std::exp(-time.h_s / lag_s) : to;
+    from = before;
+    to = pressure;
+    share *= ratio_;
+  }
+  return pressures_.back();
+}
+
+double ValveLag::settled(double input) {
+  pressures_.fill(input);
+  return input;
 }
 
 }  // namespace musclesim

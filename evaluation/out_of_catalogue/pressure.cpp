@@ -1,7 +1,6 @@
-/// Out-of-catalogue laws of the pressure stage: three lags in series, an orifice with choked and subsonic flow (ISO 6358), a choked leak,
-/// a tank that empties, the volume of an ideal braid (Chou and Hannaford 1996), a bowed calibration.
+/// Out-of-catalogue laws of the pressure stage: a lag of a line and of a growing volume, an orifice with choked and subsonic flow (ISO
+/// 6358), a choked leak, a tank that empties, the volume of an ideal braid (Chou and Hannaford 1996), a bowed calibration.
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "laws_by_stage.h"
@@ -13,28 +12,25 @@ namespace {
 
 constexpr double atmosphere_ratio = 0.17;
 
-/// Three lags in series with a half, a third and a sixth of the time constant.
-class ThreeLags final : public MuscleRatioEffect {
+/// A line, dv/dt = 4 (u - v) / tau, before a volume that grows with the pressure, dp/dt = (v - p) / (tau (0.45 + 0.6 p)).
+class GrowingLag final : public MuscleRatioEffect {
  public:
-  explicit ThreeLags(const EffectValues& v) : fill_s_(v["fill_time_constant_s"]), vent_s_(v["vent_time_constant_s"]) {}
+  explicit GrowingLag(const EffectValues& v) : fill_s_(v["fill_time_constant_s"]), vent_s_(v["vent_time_constant_s"]) {}
 
  private:
   double output(double input, const StepTime& time) override {
-    constexpr std::array<double, 3> shares = {1.0 / 2, 1.0 / 3, 1.0 / 6};
-    for (std::size_t i = 0; i < shares.size(); ++i) {
-      const double tau_s = shares[i] * (input > lags_[i] ? fill_s_ : vent_s_);
-      lags_[i] = tau_s > 0 ? input + (lags_[i] - input) * std::exp(-time.h_s / tau_s) : input;
-      input = lags_[i];
-    }
-    return input;
+    constexpr double share_of_line = 0.25, empty_share = 0.45, growth = 0.6;
+    const auto follow = [&](double& pressure, double to, double share) {
+      const double tau_s = share * (to > pressure ? fill_s_ : vent_s_);
+      pressure = tau_s > 0 ? to + (pressure - to) * std::exp(-time.h_s / tau_s) : to;
+    };
+    follow(line_, input, share_of_line);
+    follow(muscle_, line_, empty_share + growth * muscle_);
+    return muscle_;
   }
-  double settled(double input) override {
-    lags_.fill(input);
-    return input;
-  }
+  double settled(double input) override { return line_ = muscle_ = input; }
 
-  double fill_s_, vent_s_;
-  std::array<double, 3> lags_{};
+  double fill_s_, vent_s_, line_ = 0, muscle_ = 0;
 };
 
 /// Flow through an orifice over its largest flow, as a function of the ratio of absolute pressures; choked below 0.3.
@@ -145,10 +141,10 @@ class BowedCalibration final : public MuscleRatioEffect {
 std::vector<OutOfCatalogueLaw> pressureLaws() {
   const std::vector<ComponentKind> muscle = {ComponentKind::muscle};
   return {
-      {entry("three_lags", Stage::pressure, muscle, "first-order lags of tau / 2, tau / 3 and tau / 6 in a row",
-             {{"fill_time_constant_s", "s", 0, 0, 5, 0.02, 0.2, "tau, of all together"},
-              {"vent_time_constant_s", "s", 0, 0, 5, 0.02, 0.2, "tau, of all together"}},
-             [](const EffectValues& v) { return std::make_unique<ThreeLags>(v); }),
+      {entry("growing_lag", Stage::pressure, muscle, "dv/dt = 4 (u - v) / tau, dp/dt = (v - p) / (tau (0.45 + 0.6 p))",
+             {{"fill_time_constant_s", "s", 0, 0, 5, 0.02, 0.2, "tau while the pressure rises"},
+              {"vent_time_constant_s", "s", 0, 0, 5, 0.02, 0.2, "tau while the pressure falls"}},
+             [](const EffectValues& v) { return std::make_unique<GrowingLag>(v); }),
        "valve_lag"},
       {entry("orifice", Stage::pressure, muscle, "dp/dt = rate psi(pressure ratio) sat((u - p) / 0.03), psi of ISO 6358",
              {{"fill_rate_per_s", "1/s", INFINITY, 0.01, INFINITY, 0.3, 2, "choked filling"},

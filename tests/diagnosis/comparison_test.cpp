@@ -265,7 +265,7 @@ TEST_F(Rig, CorrectedFitEndsWhereTheExactPredictionDoes) {
   EXPECT_NEAR(found.z[0], 2, 0.02);
   EXPECT_LT((found.residual - shape * (2 - found.z[0])).norm(), 1e-9) << "the residual is the exact one";
   EXPECT_LE(exact_count, 3);
-  EXPECT_GT(found.half_width[0], 0);
+  EXPECT_GT(found.certainty.half_width[0], 0);
 }
 
 /// One coordinate has no influence, two act alike, and one is independent.
@@ -282,11 +282,12 @@ TEST_F(Rig, IntervalsOfWhatTheDataDoNotDetermineAreUnbounded) {
     return both.measured() + change;
   };
   const FitResult found = fit(both, problem, 8);
-  EXPECT_TRUE(std::isinf(found.half_width[0]));
-  EXPECT_TRUE(std::isinf(found.half_width[1]));
-  EXPECT_TRUE(std::isinf(found.half_width[2]));
-  EXPECT_GT(found.half_width[3], 0);
-  EXPECT_LT(found.half_width[3], 0.1);
+  EXPECT_TRUE(std::isinf(found.certainty.half_width[0]));
+  EXPECT_TRUE(std::isinf(found.certainty.half_width[1]));
+  EXPECT_TRUE(std::isinf(found.certainty.half_width[2]));
+  EXPECT_NEAR(found.certainty.determined.sum(), 2, 1e-9) << "the sum of two coordinates, and one";
+  EXPECT_GT(found.certainty.half_width[3], 0);
+  EXPECT_LT(found.certainty.half_width[3], 0.1);
   EXPECT_NEAR(found.z[3], 1, 0.1);
 }
 
@@ -343,8 +344,8 @@ TEST_F(PriorOnARig, PullsTheFitToItsOwnLeastCost) {
 }
 
 TEST_F(PriorOnARig, NarrowsTheInterval) {
-  EXPECT_LT(fit(both, problem(1e6), 20).half_width[0], 1.97e-3) << "1.96 standard deviations of the prior";
-  EXPECT_GT(fit(both, problem(0), 20).half_width[0], 0.01);
+  EXPECT_LT(fit(both, problem(1e6), 20).certainty.half_width[0], 1.97e-3) << "1.96 standard deviations of the prior";
+  EXPECT_GT(fit(both, problem(0), 20).certainty.half_width[0], 0.01);
 }
 
 /// Derivatives that are known need no prediction; those of renewed coordinates are computed when a step gains nothing.

@@ -344,7 +344,7 @@ TEST(Diagnose, FindsASecondCauseOfItsOwn) {
 }
 
 TEST(Diagnose, TakesNoSecondCauseThatOnlyMendsTheLawOfTheFirst) {
-  const auto recordings = plant({{"foreign.three_lags", "muscle_0", {{"fill_time_constant_s", 0.1}, {"vent_time_constant_s", 0.1}}}});
+  const auto recordings = plant({{"foreign.growing_lag", "muscle_0", {{"fill_time_constant_s", 0.1}, {"vent_time_constant_s", 0.1}}}});
   const Diagnosis found = diagnose(recordings, few({"valve_lag", "transport_delay", "sensor_delay", "viscous_loss"}));
   EXPECT_EQ(found.chosen, std::vector<std::string>{"valve_lag@muscle_0"}) << diagnosisSummary(found);
 }

@@ -78,7 +78,7 @@ TEST_F(EvidenceOnARig, CountsParameters) {
 
 TEST_F(EvidenceOnARig, WhatTheDataDoNotDetermineCostsNothing) {
   Explanation half_known = fitted({threshold}, 1);
-  half_known.half_width = Eigen::Vector2d(0.1, std::numeric_limits<double>::infinity());
+  half_known.determined = Eigen::Vector2d(1, 0);
   EXPECT_NEAR(evidence_.price(half_known), prices.parameters, 1e-12);
 }
 
@@ -93,11 +93,11 @@ TEST_F(EvidenceOnARig, AFurtherEffectInTheSamePlaceCostsMore) {
   EXPECT_EQ(priceOf({gain, threshold}), priceOf({threshold, gain}));
 }
 
-TEST_F(EvidenceOnARig, AFurtherMechanismOfALawCostsLikeAnotherEffectInItsPlace) {
+TEST_F(EvidenceOnARig, AFurtherMechanismOfALawCostsLikeAnotherEffect) {
   Causes lags(plant_, on_simulation_);
   lags.hypotheses = Hypothesis(effectInfo("valve_lag"), "muscle_0", plant_).variants(plant_);
   ASSERT_EQ(lags.hypotheses.size(), 2u);
-  ASSERT_EQ(lags.hypotheses[0].furtherMechanisms(), 1) << "of the second lag";
+  ASSERT_EQ(lags.hypotheses[0].furtherMechanisms(), 1) << "of the further lags";
   ASSERT_EQ(lags.hypotheses[1].furtherMechanisms(), 0);
   const Evidence evidence(comparison_, nominal_, lags);
   const auto priceOf = [&](std::size_t variant) {
@@ -106,7 +106,7 @@ TEST_F(EvidenceOnARig, AFurtherMechanismOfALawCostsLikeAnotherEffectInItsPlace) 
     explanation.z = lags.hypotheses[variant].typical();
     return evidence.price(explanation);
   };
-  EXPECT_NEAR(priceOf(0) - priceOf(1), prices.same_place + prices.parameters, 1e-9);
+  EXPECT_NEAR(priceOf(0) - priceOf(1), prices.effects + prices.parameters, 1e-9);
 }
 
 TEST_F(EvidenceOnARig, AShapeBeyondItsUsualRangeCosts) {

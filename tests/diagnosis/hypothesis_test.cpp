@@ -59,7 +59,7 @@ TEST_F(PlantedRig, ALawWithAShareOfSomethingHasAVariantWithout) {
   EXPECT_EQ(lags[0].label(), lags[1].label());
   EXPECT_EQ(lags[1].strengths(), (std::vector<int>{0, 1}));
   const ActiveEffect simple = lags[1].at(lags[1].typical());
-  EXPECT_EQ(std::get<double>(simple.parameters.at("second_lag_share")), 0);
+  EXPECT_EQ(std::get<double>(simple.parameters.at("next_lag_ratio")), 0);
   EXPECT_EQ(hypothesis("payload", "hand").variants(plant_).size(), 1);
 }
 

@@ -46,7 +46,7 @@ inline Diagnosis sampleDiagnosis() {
       {"valve_lag",
        "muscle_1",
        0.98,
-       {{"fill_time_constant_s", {0.04, 0.038, 0.042}}, {"vent_time_constant_s", {0.07, 0.066, 0.074}}, {"second_lag_share", {0, 0, 0}}},
+       {{"fill_time_constant_s", {0.04, 0.038, 0.042}}, {"vent_time_constant_s", {0.07, 0.066, 0.074}}, {"next_lag_ratio", {0, 0, 0}}},
        70,
        45},
       {"payload", "hand", 0.9, {{"mass_kg", {0.2, 0.19, 0.21}}}, 12, 10},

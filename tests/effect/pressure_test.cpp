@@ -22,18 +22,20 @@ TEST(ValveLag, AnswersAStepExponentially) {
   }
 }
 
-/// p = u (1 - (tau1 e^(-t / tau1) - tau2 e^(-t / tau2)) / (tau1 - tau2)); equal lags: u (1 - (1 + t / tau1) e^(-t / tau1)).
-TEST(ValveLag, MayBeTwoLagsInARow) {
+/// What a step leaves: sum over k of tau_k^2 e^(-t / tau_k) / product over j != k of (tau_k - tau_j); with three equal lags of T it is
+/// (1 + t / T + (t / T)^2 / 2) e^(-t / T).
+TEST(ValveLag, MayBeThreeLagsInSeries) {
   const double tau_s = 0.12;
-  for (const double share : {0.25, 0.5}) {
+  for (const double r : {0.5, 1.0}) {
     const ReplayResult run =
-        replayWith(stepOf("rig", {0.3}, {0.5}), {{"valve_lag", "all", {{"fill_time_constant_s", tau_s}, {"second_lag_share", share}}}});
-    const double first_s = (1 - share) * tau_s, second_s = share * tau_s;
+        replayWith(stepOf("rig", {0.3}, {0.5}), {{"valve_lag", "all", {{"fill_time_constant_s", tau_s}, {"next_lag_ratio", r}}}});
+    const double a = tau_s / (1 + r + r * r), b = a * r, c = b * r;
     for (std::size_t row = 0; row < run.simulated.time_s.size(); ++row) {
       const double t = sinceStep(run.simulated.time_s[row]);
-      const double left = share == 0.5 ? (1 + t / first_s) * std::exp(-t / first_s)
-                                       : (first_s * std::exp(-t / first_s) - second_s * std::exp(-t / second_s)) / (first_s - second_s);
-      EXPECT_NEAR(valuesOf(run, "pressure_0")[row], 0.5 - 0.2 * left, 1e-12);
+      const double left = r == 1 ? (1 + t / a + t * t / (2 * a * a)) * std::exp(-t / a)
+                                 : a * a * std::exp(-t / a) / ((a - b) * (a - c)) + b * b * std::exp(-t / b) / ((b - a) * (b - c)) +
+                                       c * c * std::exp(-t / c) / ((c - a) * (c - b));
+      EXPECT_NEAR(valuesOf(run, "pressure_0")[row], 0.5 - 0.2 * left, 1e-4);
     }
   }
 }

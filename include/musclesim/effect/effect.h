@@ -37,7 +37,7 @@ struct EffectParameter {
   std::string meaning;
   bool shape = false;                     ///< says how the effect acts, not how strongly: alone it changes nothing
   std::vector<std::string> choices = {};  ///< words in place of numbers; the value is the index of the word
-  bool adds_mechanism = false;            ///< a share that is a further mechanism in series with the effect's own (a second lag)
+  bool adds_mechanism = false;            ///< a further mechanism in series with the effect's own (further lags)
 };
 
 /// Values of all parameters of one effect, in the order of its list.
