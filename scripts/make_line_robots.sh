@@ -2,7 +2,7 @@
 # Writes rig_line.toml, elbow_line.toml, wrist_line.toml and pulley_arm.toml into a folder: shipped robots with massless muscles and a damped
 # joint. A plant of such a robot takes a few seconds to make and 10 to 30 to diagnose, a tenth of what chains take, so that checks on
 # withheld causes can be large: make_blind_docs.sh SEED CASES KEYS build/release --robot "$(scripts/make_line_robots.sh FOLDER)".
-# The folder must stay: the recordings name the files in it. Prints the paths, separated by commas.
+# `blind make` copies the files. Prints the paths, separated by commas.
 # Usage: scripts/make_line_robots.sh FOLDER
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

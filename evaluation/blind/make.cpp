@@ -83,20 +83,32 @@ json sealOf(const std::string& key_name, const std::string& key_text, const fs::
   return seal;
 }
 
-/// A robot's name, or the way to its file from anywhere.
-std::string robotPath(const std::string& robot) {
-  return isRobotFile(robot) ? fs::absolute(robot).lexically_normal().string() : robot;
+/// Robots as the cases name them: by name, or by a copy of their file in the cases' folder, so that this can be moved.
+std::vector<std::string> keptRobots(const fs::path& folder, const std::vector<std::string>& robots) {
+  std::vector<std::string> result;
+  for (const std::string& robot : robots) {
+    if (!isRobotFile(robot)) {
+      result.push_back(robot);
+      continue;
+    }
+    const fs::path copy = fs::absolute(folder / "robots" / fs::path(robot).filename()).lexically_normal();
+    if (std::ranges::find(result, copy.string()) != result.end())
+      throw BadParameter("--robot", robot, "have another name than the other files");
+    fs::create_directories(copy.parent_path());
+    fs::copy_file(robot, copy, fs::copy_options::overwrite_existing);
+    result.push_back(copy.string());
+  }
+  return result;
 }
 
 /// The cases of an earlier call, or new ones. Empty if interrupted.
-std::optional<json> keptOrMade(int index, const fs::path& folder, const UnsealedCases& unsealed, const MakeOptions& options) {
+std::optional<json> keptOrMade(int index, const fs::path& folder, const std::vector<std::string>& robots, const UnsealedCases& unsealed,
+                               const MakeOptions& options) {
   const std::string name = caseName(index);
   if (auto kept = unsealed.keyOf(name)) return kept;
   fs::remove_all(folder / name);
-  const auto robotAt = [&](int i) {
-    return i < options.count ? options.robots[static_cast<std::size_t>(i) % options.robots.size()] : std::string("arm");
-  };
-  PlantRequest request{name,         robotPath(robotAt(index)), 0, options.kinds, options.causes, options.exact_numbers, options.duration_s,
+  const auto robotAt = [&](int i) { return i < options.count ? robots[static_cast<std::size_t>(i) % robots.size()] : std::string("arm"); };
+  PlantRequest request{name,         robotAt(index),     0, options.kinds, options.causes, options.exact_numbers, options.duration_s,
                        options.seed, options.interrupted};
   for (int i = 0; i < index; ++i) request.turn += robotAt(i) == robotAt(index) ? 1 : 0;
   auto key = makeCase(request, folder);
@@ -119,13 +131,14 @@ fs::path make(const fs::path& folder, const fs::path& key_folder, const MakeOpti
   if (!fs::is_empty(folder) && !unsealed.exist())
     throw BadParameter("folder", folder.string(), "be new or empty, or hold what the same call had made when it was stopped");
   unsealed.begin();
+  const std::vector<std::string> robots = keptRobots(folder, options.robots);
   const int case_count = options.count + options.arm_count;
   std::vector<std::optional<json>> keys(static_cast<std::size_t>(case_count));
   std::mutex one_at_a_time;
   int done = 0;
   parallelFor(case_count, options.job_count, [&](int i) {
     if (options.interrupted()) return;
-    keys[static_cast<std::size_t>(i)] = keptOrMade(i, folder, unsealed, options);
+    keys[static_cast<std::size_t>(i)] = keptOrMade(i, folder, robots, unsealed, options);
     const std::lock_guard lock(one_at_a_time);
     options.progress(++done, case_count);
   });

@@ -19,6 +19,7 @@
 #include "evaluation/blind/sha256.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
+#include "musclesim/robot/robot_file.h"
 #include "musclesim/simulation/simulation.h"
 #include "support/support.h"
 
@@ -121,6 +122,20 @@ TEST_F(Blind, MakesTheSameCasesFromTheSameSeed) {
   EXPECT_NE(one.filename(), two.filename());
   const fs::path other = make(cases("other"), keys("other"), tiny({"null"}, 4));
   EXPECT_NE(readSeal(cases("one"))["recordings_sha256"], readSeal(cases("other"))["recordings_sha256"]);
+}
+
+TEST_F(Blind, CasesOfARobotFromAFileCanBeMoved) {
+  const fs::path file = cases("own") / "own_rig.toml";
+  fs::create_directories(file.parent_path());
+  append(file, std::string(std::ranges::find(shippedRobots(), "rig", &ShippedRobot::name)->text));
+  MakeOptions options = tiny({"null"});
+  options.robots = {file.string()};
+  make(cases(), keys(), options);
+  fs::remove_all(file.parent_path());
+  fs::rename(cases(), cases("moved"));
+  const Recording recording = readRecording((cases("moved") / "case001" / "r1.csv").string());
+  EXPECT_EQ(recording.info.robot, (cases("moved") / "robots" / "own_rig.toml").string());
+  EXPECT_NO_THROW(Simulation().build(recording.info.robot));
 }
 
 TEST_F(Blind, SealsAKeyThatTheRecordingsDoNotTell) {
