@@ -90,7 +90,7 @@ def summary():
         gap = d[name]['gap']
         range_words = f' ({interval[0]:.1f} to {interval[1]:.1f})' if interval else ''
         print(f'| {title} | {fitted} | {measured} | {d[name]["verdict"]} | {", ".join(f"`{e}`" for e in labels)} | '
-              f'{gap["before"]["normalised"]:.1f} | {after["normalised"]:.2f} | {shrink:.1f} %{range_words} | '
+              f'{gap["before"]["normalised"]:.3g} | {after["normalised"]:.3g} | {shrink:.1f} %{range_words} | '
               f'{gap["nominal_refit_shrink_percent"]:.1f} % | {gap["sham_shrink_percent"]:.1f} % |')
 
 
