@@ -4,7 +4,8 @@
 #     scripts/check.sh          layers (direction of the includes), format of the sources, links of the documents, clang-tidy, tests under
 #                               the address and undefined-behaviour sanitizers; the sanitizers take more than half an hour
 #                               and what has threads under the thread sanitizer (scripts/thread_check.sh), which takes another half hour
-#     scripts/check.sh --sanitizers   only the tests under the address and undefined-behaviour sanitizers. ALL=1: slow tests, too, for hours
+#     scripts/check.sh --sanitizers [FOLDER ...]   only the tests, or those of folders of tests/, under the address and undefined-behaviour
+#                               sanitizers. ALL=1: slow tests, too, for hours
 #     scripts/check.sh --ci     all but the sanitizers, and clang-tidy only on sources that the last commits changed: what continuous
 #                               integration has time for
 #
@@ -15,11 +16,11 @@ root=$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")
 # shellcheck source=scripts/common.sh
 source "$root/scripts/common.sh"
 
-ci=false sanitizers_only=false
+ci=false sanitizers_only=false folders=()
 case "${1-}" in
   "") ;;
   --ci) ci=true ;;
-  --sanitizers) sanitizers_only=true ;;
+  --sanitizers) sanitizers_only=true folders=("${@:2}") ;;
   *)
     say "check: unknown argument '$1'; allowed: --ci, --sanitizers"
     exit 2
@@ -86,7 +87,18 @@ check_sources() {
 # Tests labelled "package" run only without sanitizers, those labelled "slow" only with ALL=1.
 run_sanitized_tests() {
   export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
-  build_preset asan all && ctest --preset asan --parallel "$jobs" --label-exclude "$([[ -n ${ALL-} ]] && echo package || echo 'slow|package')"
+  local folder excluded='slow|package' status=0
+  if [[ -n ${ALL-} ]]; then excluded=package; fi
+  if ((${#folders[@]} == 0)); then
+    build_preset asan all && ctest --preset asan --parallel "$jobs" --label-exclude "$excluded"
+    return
+  fi
+  for folder in "${folders[@]}"; do
+    printf '%s: ' "$folder"
+    build_preset asan "tests/$folder/all" &&
+      ctest --test-dir "build/asan/tests/$folder" --no-tests=error --output-on-failure --parallel "$jobs" --label-exclude "$excluded" || status=1
+  done
+  return "$status"
 }
 
 phase dependencies scripts/install_dependencies.sh --check || exit 1

@@ -4,8 +4,8 @@
 #     scripts/fuzz.sh [SECONDS per target = 60] [TARGET ...]
 #     RUNS=1000000 scripts/fuzz.sh 0 [TARGET ...]     so many executions per target; with SECONDS above 0 whatever ends first
 #
-# Prints executions and time per target. What breaks a target is kept in build/fuzz/found; put it into tests/fuzz/corpus/TARGET, where the
-# normal tests feed it to the target from then on. Needs clang. Exit status 1 if anything was found.
+# Prints executions and time per target, and which stayed below RUNS. What breaks a target is kept in build/fuzz/found; put it into
+# tests/fuzz/corpus/TARGET, where the normal tests feed it to the target from then on. Needs clang. Exit status 1 if anything was found.
 set -euo pipefail
 root=$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")
 # shellcheck source=scripts/common.sh
@@ -27,7 +27,8 @@ for target in "${targets[@]}"; do
   result="nothing found" start=$SECONDS
   FUZZ_TARGET=$target "$root/build/fuzz/tests/fuzz/fuzz" "$grown" "$root/tests/fuzz/corpus/$target" "${limits[@]}" \
     -artifact_prefix="$found/$target-" -print_final_stats=1 -close_fd_mask=1 >/dev/null 2>"$log" || { result="FOUND, see $log" status=1; }
-  printf '%-20s %10s executions in %6s s  %s\n' "$target" "$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")" \
-    "$((SECONDS - start))" "$result"
+  executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
+  ((${executions:-0} >= ${RUNS:-0})) || result+=", short of $RUNS"
+  printf '%-20s %10s executions in %6s s  %s\n' "$target" "$executions" "$((SECONDS - start))" "$result"
 done
 exit "$status"
