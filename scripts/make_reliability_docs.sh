@@ -41,7 +41,7 @@ rows=(
 )
 
 [[ -e $build/build.ninja ]] || { echo "make_reliability_docs: there is no build in $build; cmake --preset release makes one" >&2; exit 2; }
-cmake --build "$build" --target musclesim fuzz_tests reliability_tests robot_tests log_tests analytic_tests soak_study sweep_study second_engine_study program_tests >&2
+cmake --build "$build" --target musclesim fuzz_tests reliability_tests robot_tests log_tests analytic_tests soak_study sweep_study second_engine_study program_tests musclesim_python >&2
 mkdir -p docs/research/reliability
 # passed_some: whether a test program's output (standard input) tells of at least one test that passed; a filter may match none.
 passed_some() {
