@@ -7,6 +7,9 @@
 # Builds the preset tsan, which takes more than half an hour on two idle cores. ODE, Python and NumPy are not instrumented: races within them
 # are not seen, and their locks are, so that what lies between two calls of ours is. Exit status 1 for a finding or a failed test.
 set -euo pipefail
+# GCC 12's thread sanitizer does not know where newer kernels put programs: addresses are not drawn at random. That counts for the build,
+# too, which asks the test programs for their tests.
+if [[ -z ${MUSCLESIM_FIXED_ADDRESSES-} ]]; then MUSCLESIM_FIXED_ADDRESSES=yes exec setarch "$(uname -m)" -R "${BASH_SOURCE[0]}" "$@"; fi
 root=$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")
 # shellcheck source=scripts/common.sh
 source "$root/scripts/common.sh"
@@ -14,16 +17,14 @@ cd "$root"
 build=build/tsan
 parts=("$@")
 ((${#parts[@]})) || parts=(simulation diagnosis diagnose python)
-export TSAN_OPTIONS=halt_on_error=0:second_deadlock_stack=1:exitcode=66
-# GCC 12's thread sanitizer does not know where newer kernels put programs: addresses are not drawn at random.
-fixed=(setarch "$(uname -m)" -R)
+export TSAN_OPTIONS=halt_on_error=0:second_deadlock_stack=1:exitcode=66:suppressions=$root/scripts/thread_suppressions.txt
 status=0
 
 # part NAME COMMAND...: runs it and counts the reports.
 part() {
   local name=$1 log=$build/thread_check_$1.log ended=0
   shift
-  "${fixed[@]}" "$@" >"$log" 2>&1 || ended=$?
+  "$@" >"$log" 2>&1 || ended=$?
   local found
   found=$(grep -c '^WARNING: ThreadSanitizer' "$log" || true)
   printf '%-11s exit status %d, %d reports, %s\n' "$name" "$ended" "$found" \
@@ -47,7 +48,6 @@ for name in "${parts[@]}"; do
     python)
       # The sanitizer must be there before Python is.
       part "$name" env PYTHONPATH="$build/python" PYTHONDONTWRITEBYTECODE=1 LD_PRELOAD="$(c++ -print-file-name=libtsan.so)" \
-        TSAN_OPTIONS="$TSAN_OPTIONS:suppressions=$root/scripts/thread_suppressions.txt" \
         /usr/bin/python3 tests/python/run.py test_ensemble ;;
   esac
 done

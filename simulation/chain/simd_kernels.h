@@ -2,10 +2,10 @@
 ///
 /// Functions marked MUSCLESIM_SIMD are compiled several times; the loader selects the version that fits the processor. All versions do the
 /// same operations on the same numbers in the same order (sums across a register have a fixed order, and products and sums are not
-/// contracted), so the result does not depend on the processor to the last bit.
+/// contracted), so the result does not depend on the processor to the last bit. Sanitizers are not ready yet when the loader selects.
 #pragma once
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define MUSCLESIM_SIMD __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
 #define MUSCLESIM_SIMD
