@@ -43,8 +43,8 @@ for name in "${parts[@]}"; do
   build_preset tsan "$targets" || exit 1
   case $name in
     simulation) part "$name" "$build/tests/simulation/simulation_tests" '--gtest_filter=Ensemble.*:RunLoop.*' ;;
-    diagnosis) part "$name" "$build/tests/diagnosis/diagnosis_tests" '--gtest_filter=PredictionStore.*:ScreeningOf*' ;;
-    diagnose) part "$name" "$build/tests/diagnosis/diagnose_tests" '--gtest_filter=ResumedDiagnosis.*' ;;
+    diagnosis) part "$name" "$build/tests/diagnosis/diagnosis_tests" '--gtest_filter=PredictionStore.*' ;;
+    diagnose) part "$name" "$build/tests/diagnosis/diagnose_tests" '--gtest_filter=ResumedDiagnosis.GoesOn*' ;;
     python)
       # The sanitizer must be there before Python is.
       part "$name" env PYTHONPATH="$build/python" PYTHONDONTWRITEBYTECODE=1 LD_PRELOAD="$(c++ -print-file-name=libtsan.so)" \
