@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "../base/program_in_path.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
 
@@ -23,6 +24,8 @@ constexpr const char* png_zoom = "1.5";  ///< pixels of a PNG per pixel of the S
 
 /// Starts the converter without a shell and waits for it. Returns whether it did what it was asked to.
 bool convert(std::vector<std::string> arguments) {
+  const fs::path program = programInPath(converter);
+  if (program.empty()) return false;
   arguments.insert(arguments.begin(), converter);
   std::vector<char*> pointers;
   for (std::string& argument : arguments) pointers.push_back(argument.data());
@@ -32,7 +35,7 @@ bool convert(std::vector<std::string> arguments) {
   for (const int descriptor : {STDOUT_FILENO, STDERR_FILENO})
     posix_spawn_file_actions_addopen(&actions, descriptor, "/dev/null", O_WRONLY, 0);
   pid_t child = -1;
-  const int failure = posix_spawnp(&child, converter, &actions, nullptr, pointers.data(), environ);
+  const int failure = posix_spawn(&child, program.c_str(), &actions, nullptr, pointers.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   if (failure != 0) return false;
   int status = 0;

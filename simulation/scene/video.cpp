@@ -11,6 +11,7 @@
 #include <system_error>
 #include <vector>
 
+#include "../../base/program_in_path.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
 
@@ -19,18 +20,6 @@ namespace musclesim {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path findInPath(const std::string& program) {
-  const char* path = std::getenv("PATH");
-  const std::string folders = path ? path : "/usr/local/bin:/usr/bin:/bin";
-  for (std::size_t from = 0; from <= folders.size();) {
-    const std::size_t to = std::min(folders.find(':', from), folders.size());
-    const fs::path candidate = fs::path(folders.substr(from, to - from)) / program;
-    if (access(candidate.c_str(), X_OK) == 0 && fs::is_regular_file(candidate)) return candidate;
-    from = to + 1;
-  }
-  return {};
-}
 
 /// Checks that the file can be created, and removes an old file that could be mistaken for the new one.
 void requireWritable(const std::string& file) {
@@ -67,7 +56,7 @@ VideoWriter::VideoWriter(const std::string& file, int width, int height, double 
 /// Starts ffmpeg, which reads raw pictures from its standard input. It is started without a shell and in a process group of its own,
 /// because a terminal sends Ctrl-C to a whole group, but only the end of the pictures may end the video.
 void VideoWriter::startFfmpeg(double frames_per_s) {
-  const fs::path program = findInPath("ffmpeg");
+  const fs::path program = programInPath("ffmpeg");
   if (program.empty()) return;
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) return;
