@@ -19,8 +19,11 @@ namespace musclesim {
 
 namespace {
 
+// Sanitizers take terabytes of addresses. GCC names them by macros, clang by features.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool memory_is_limited = false;  // sanitizers take terabytes of addresses
+constexpr bool memory_is_limited = false;
+#elif defined(__has_feature)
+constexpr bool memory_is_limited = !__has_feature(address_sanitizer);
 #else
 constexpr bool memory_is_limited = true;
 #endif

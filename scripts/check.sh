@@ -5,7 +5,8 @@
 #                               the address and undefined-behaviour sanitizers; the sanitizers take more than half an hour
 #                               and what has threads under the thread sanitizer (scripts/thread_check.sh), which takes another half hour
 #     scripts/check.sh --sanitizers [FOLDER ...]   only the tests, or those of folders of tests/, under the address and undefined-behaviour
-#                               sanitizers. ALL=1: slow tests, too, for hours
+#                               sanitizers. ALL=1: slow tests, too, for hours. PRESET=fuzz: those of folders, compiled by clang for the
+#                               fuzzer, which saves a build where scripts/fuzz.sh had one
 #     scripts/check.sh --ci     all but the sanitizers, and clang-tidy only on sources that the last commits changed: what continuous
 #                               integration has time for
 #
@@ -87,7 +88,7 @@ check_sources() {
 # Tests labelled "package" run only without sanitizers, those labelled "slow" only with ALL=1.
 run_sanitized_tests() {
   export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
-  local folder excluded='slow|package' status=0
+  local folder preset=${PRESET:-asan} excluded='slow|package' status=0
   if [[ -n ${ALL-} ]]; then excluded=package; fi
   if ((${#folders[@]} == 0)); then
     build_preset asan all && ctest --preset asan --parallel "$jobs" --label-exclude "$excluded"
@@ -95,8 +96,9 @@ run_sanitized_tests() {
   fi
   for folder in "${folders[@]}"; do
     printf '%s: ' "$folder"
-    build_preset asan "tests/$folder/all" &&
-      ctest --test-dir "build/asan/tests/$folder" --no-tests=error --output-on-failure --parallel "$jobs" --label-exclude "$excluded" || status=1
+    build_preset "$preset" "tests/$folder/all" &&
+      ctest --test-dir "build/$preset/tests/$folder" --no-tests=error --output-on-failure --parallel "$jobs" \
+        --label-exclude "$excluded" || status=1
   done
   return "$status"
 }
