@@ -19,15 +19,6 @@ namespace musclesim {
 
 namespace {
 
-// Sanitizers take terabytes of addresses. GCC names them by macros, clang by features.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool memory_is_limited = false;
-#elif defined(__has_feature)
-constexpr bool memory_is_limited = !__has_feature(address_sanitizer);
-#else
-constexpr bool memory_is_limited = true;
-#endif
-
 /// First byte of the answer.
 constexpr char good = '+', refused = '-', out_of_memory = 'm';
 
@@ -44,7 +35,7 @@ void limit(const ApartLimits& limits) {
     setrlimit(resource, &both);
   };
   set(RLIMIT_CORE, 0);
-  if (!memory_is_limited) return;
+  if (!apart_is_limited) return;
   set(RLIMIT_CPU, limits.processor_s);
   set(RLIMIT_AS, addressBytes() + limits.memory_bytes);
 }

@@ -7,8 +7,17 @@
 
 namespace musclesim {
 
+/// Sanitizers take terabytes of addresses and much more time; under them there are no limits. GCC names them by macros, clang by features.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool apart_is_limited = false;
+#elif defined(__has_feature)
+inline constexpr bool apart_is_limited = !__has_feature(address_sanitizer);
+#else
+inline constexpr bool apart_is_limited = true;
+#endif
+
 struct ApartLimits {
-  std::size_t memory_bytes = std::size_t{256} << 20;  ///< beyond what this process has; not under the address sanitizer
+  std::size_t memory_bytes = std::size_t{256} << 20;  ///< beyond what this process has
   unsigned processor_s = 1;
 };
 

@@ -49,7 +49,7 @@ TEST(LinearActuator, PullsALoadUpToItsForceLaw) {
 TEST(LinearActuator, RefusesStartLengthsOutsideItsRange) {
   Simulation simulation;
   for (const auto& [low, high] : {std::pair{101.0, 140.0}, {50.0, 99.0}}) {
-    const auto message = messageOf<BadParameter>([&] {
+    const auto message = messageOf<BadParameter>([&, low = low, high = high] {
       new LinearActuator(simulation.world(), simulation.space(), {0, 0, 0}, {0, 0, 100}, low, high);
     });
     EXPECT_TRUE(contains(message, "100 mm"));
