@@ -10,8 +10,8 @@ constexpr int width = tile_width;
 
 /// Eight numbers that may be at any address. Functions that use it are inlined into the functions that are compiled for several processors.
 /// Clang takes the alignment from a typedef, but not from `using`.
-typedef double Wide
-    __attribute__((vector_size(width * sizeof(double)), aligned(sizeof(double)), may_alias));  // NOLINT(modernize-use-using)
+// NOLINTNEXTLINE(modernize-use-using)
+typedef double Wide __attribute__((vector_size(width * sizeof(double)), aligned(sizeof(double)), may_alias));
 
 [[gnu::always_inline]] inline double sumOf(const Wide& p) {
   return ((p[0] + p[1]) + (p[2] + p[3])) + ((p[4] + p[5]) + (p[6] + p[7]));
