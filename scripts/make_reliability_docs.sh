@@ -121,6 +121,7 @@ TEXT
 - `tests/faults/output_check.py` needs root, fiu-utils and faketime (apt-get install fiu-utils faketime); it names what it could not try. Several files of one command are renamed one after the other; a process that is killed within these microseconds leaves some of an earlier answer beside those of the new one.
 - `diagnose --resume` repeats the simulations of the next experiment, which are not kept. In the folder of a killed diagnosis `unfinished.dat` stays until the diagnosis is resumed or repeated.
 - The whole suite under the address and undefined-behaviour sanitizers (`scripts/check.sh --sanitizers`): the row sanitizers has three folders of tests; the other folders, simulation and diagnosis among them, have not been run under them.
+- The row sweep ran last on one processor that other work shared, so two workers were hardly faster than one; on two idle processors they had 98.5 % (2026-11-21).
 - Eight hours of random work: the row work has a quarter of an hour.
 - The Debian packages: `scripts/debian_package_check.sh DIR` installs them on a fresh Debian 12.
 TEXT
