@@ -24,7 +24,8 @@ TEST(EffectsCommand, ListsTheCatalogue) {
 TEST(EffectsCommand, DescribesOne) {
   const ProgramResult result = runProgram({"effects", "valve_lag"});
   EXPECT_EQ(result.status, 0) << result.err;
-  for (const char* part : {"tau_k dp_k/dt = p_(k-1) - p_k", "vent_time_constant_s", "pressure", "0 .. 5"}) EXPECT_TRUE(contains(result.out, part));
+  for (const char* part : {"tau_k dp_k/dt = p_(k-1) - p_k", "vent_time_constant_s", "pressure", "0 .. 5"})
+    EXPECT_TRUE(contains(result.out, part));
   const auto json = nlohmann::json::parse(runProgram({"effects", "flow_limit", "--json"}).out);
   EXPECT_EQ(json["parameters"][0]["neutral"], "inf");
 }
