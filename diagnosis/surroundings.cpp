@@ -73,7 +73,7 @@ Search::Surroundings Search::surroundingsOf(const Explanation& base) const {
 }
 
 /// The hypotheses that may be added to the base with most gain by the linear model about no effect, the nearest variant of each label, and
-/// some of each stage. Members of the base whose change was unknown there, since a simulation diverged, are not in that model.
+/// some of each stage. Members of the base that were not screened, or diverged, are not in that model.
 std::vector<std::size_t> Search::worthAdding(const Explanation& base) const {
   std::vector<std::size_t> modelled;
   for (const std::size_t member : base.members)
