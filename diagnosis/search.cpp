@@ -13,12 +13,14 @@ namespace musclesim {
 
 namespace {
 
-constexpr std::size_t single_count = 9;                    ///< single effects that are fitted
-constexpr std::size_t per_stage_count = 2;                 ///< and at least so many of every stage
-constexpr std::size_t beam_width = 5;                      ///< sets of each size that the linear search keeps
-constexpr std::size_t addition_count = 3, swap_count = 4;  ///< sets that are fitted about one explanation, besides one of each stage
-constexpr std::size_t base_counts[] = {3, 2, 2, 1, 1, 1};  ///< explanations of each size that are extended
-constexpr double hopeless = 4;                             ///< nats behind the best: sets of this size are not extended any more
+constexpr std::size_t single_count = 9;                        ///< single effects that are fitted
+constexpr std::size_t per_stage_count = 2;                     ///< and at least so many of every stage
+constexpr std::size_t beam_width = 5;                          ///< sets of each size that the linear search keeps
+constexpr std::size_t addition_count = 3, swap_count = 4;      ///< sets that are fitted about one explanation, besides one of each stage
+constexpr std::size_t base_counts[] = {3, 2, 2, 1, 1, 1};      ///< explanations of each size that are extended
+constexpr std::size_t stood_in_count = 2, stand_in_count = 4;  ///< best sets, and effects that are tried in place of each of their members
+constexpr int stand_in_passes = 4;
+constexpr double hopeless = 4;  ///< nats behind the best: sets of this size are not extended any more
 constexpr int screening_rounds = 4;
 
 }  // namespace
@@ -31,9 +33,12 @@ Search::Search(const Plant& plant, const DiagnosisOptions& options, OnSimulation
       screening_(plant, plant.screeningSegments(), Comparison::Averages::with),
       fit_(plant, plant.split().fit, Comparison::Averages::with) {}
 
-bool Search::isKnown(const std::vector<std::size_t>& members) const {
-  const std::set<std::string> labels = causes_.labelsOf(members);
-  return std::ranges::any_of(pool_, [&](const Explanation& known) { return causes_.labelsOf(known.members) == labels; });
+/// Whether the set was fitted and did not end far from what is promised now: a fit that began elsewhere may have ended in a local minimum.
+bool Search::isKnown(const Proposal& proposal) const {
+  constexpr double far = 3;  // nats; linear estimates are optimistic
+  const std::set<std::string> labels = causes_.labelsOf(proposal.start.members);
+  return std::ranges::any_of(
+      pool_, [&](const Explanation& known) { return known.score > -proposal.cost - far && causes_.labelsOf(known.members) == labels; });
 }
 
 bool Search::fitsBeside(std::size_t hypothesis, const std::vector<std::size_t>& members) const {
@@ -48,7 +53,7 @@ std::vector<Search::Proposal> Search::nearest(std::vector<Proposal> proposals, s
   std::vector<Proposal> result;
   std::size_t set_count = 0;
   for (Proposal& proposal : proposals) {
-    if (isKnown(proposal.start.members)) continue;
+    if (isKnown(proposal)) continue;
     int& time = times[causes_.labelsOf(proposal.start.members)];
     if (time >= most_variants || (time == 0 && set_count >= count)) continue;
     set_count += time == 0 ? 1 : 0;
@@ -140,13 +145,18 @@ std::vector<Search::Proposal> Search::additions(const Surroundings& around) cons
   return result;
 }
 
-std::vector<Search::Proposal> Search::swaps(const Surroundings& around) const {
-  const std::vector<std::size_t>& members = around.base.members;
+/// Each other effect in place of one member.
+std::vector<Search::Proposal> Search::swapsOf(std::size_t member, const Surroundings& around) const {
   std::vector<Proposal> result;
-  if (members.size() < 2) return result;
-  for (std::size_t m = 0; m < members.size(); ++m)
-    for (std::size_t i = 0; i < around.of_hypothesis.size(); ++i)
-      if (!around.of_hypothesis[i].empty()) result.push_back(proposed(around, allBut(m, members.size()), {i}));
+  for (std::size_t i = 0; i < around.of_hypothesis.size(); ++i)
+    if (!around.of_hypothesis[i].empty()) result.push_back(proposed(around, allBut(member, around.base.members.size()), {i}));
+  return result;
+}
+
+std::vector<Search::Proposal> Search::swaps(const Surroundings& around) const {
+  std::vector<Proposal> result;
+  const std::size_t count = around.base.members.size();
+  for (std::size_t m = 0; m < count && count > 1; ++m) std::ranges::move(swapsOf(m, around), std::back_inserter(result));
   return result;
 }
 
@@ -255,6 +265,21 @@ void Search::expand(const Explanation& base) {
   std::ranges::move(nearest(swaps(around), swap_count), std::back_inserter(proposals));
   std::ranges::move(nearest(drops(around), swap_count), std::back_inserter(proposals));
   fitOnScreening(std::move(proposals));
+}
+
+/// Tries the nearest stand-ins of every member of the best sets: what resembles one member most is seldom among the best swaps of all
+/// members, which are those of the weakest one.
+void Search::tryStandIns() {
+  for (int pass = 0; pass < stand_in_passes && !plant_.interrupted(); ++pass)
+    for (const std::size_t index : bestOnScreening(0, stood_in_count)) {
+      const Explanation base = pool_[index];  // the pool grows below
+      if (!stood_in_.insert(causes_.labelsOf(base.members)).second) continue;
+      const Surroundings around = surroundingsOf(base);
+      std::vector<Proposal> proposals;
+      for (std::size_t m = 0; m < base.members.size(); ++m)
+        std::ranges::move(nearest(swapsOf(m, around), stand_in_count), std::back_inserter(proposals));
+      fitOnScreening(std::move(proposals));
+    }
 }
 
 /// Indices of the best explanations of one size (0: of any).
@@ -376,6 +401,7 @@ void Search::decide() {
     if (fitted != pool_.end()) expand(*fitted);
   }
   extendBySize();
+  tryStandIns();
   fitFinalists();
 }
 

@@ -87,12 +87,13 @@ class Search {
   Surroundings surroundingsOf(const Explanation& base) const;
   void addOwnColumns(Surroundings& around, std::vector<LinearModel::Column>& columns) const;
   void addOtherColumns(Surroundings& around, std::vector<LinearModel::Column>& columns) const;
-  std::vector<std::size_t> worthAdding(const Explanation& base) const;
+  std::vector<std::size_t> nearestBeside(const Explanation& base, const std::vector<std::size_t>& members) const;
+  std::vector<std::size_t> worthSimulatingBeside(const Explanation& base) const;
   std::vector<Sensitivity> changesBeside(const Explanation& base) const;
   Proposal proposed(const Surroundings& around, const std::vector<std::size_t>& kept, const std::vector<std::size_t>& added) const;
 
   // search.cpp
-  bool isKnown(const std::vector<std::size_t>& members) const;
+  bool isKnown(const Proposal& proposal) const;
   bool fitsBeside(std::size_t hypothesis, const std::vector<std::size_t>& members) const;
   std::vector<Proposal> nearest(std::vector<Proposal> proposals, std::size_t count, int most_variants = 1) const;
   std::vector<Proposal> nearestOfStages(const std::vector<Proposal>& all, std::size_t count, std::size_t per_stage,
@@ -100,6 +101,7 @@ class Search {
   std::vector<Proposal> singleEffects(const Surroundings& around) const;
   std::vector<Proposal> largerSets(const Surroundings& around) const;
   std::vector<Proposal> additions(const Surroundings& around) const;
+  std::vector<Proposal> swapsOf(std::size_t member, const Surroundings& around) const;
   std::vector<Proposal> swaps(const Surroundings& around) const;
   std::vector<Proposal> drops(const Surroundings& around) const;
   std::optional<Proposal> withoutFurtherMechanisms(const Proposal& proposal) const;
@@ -110,6 +112,7 @@ class Search {
   std::vector<std::size_t> bestOnScreening(std::size_t member_count, std::size_t count) const;
   std::vector<std::size_t> unlikeOnScreening(std::size_t member_count, std::size_t count) const;
   void extendBySize();
+  void tryStandIns();
   bool changesFocus(std::size_t hypothesis) const;
   std::vector<Explanation> explainPressures();
   Explanation earlierFinding() const;
@@ -142,7 +145,7 @@ class Search {
   ScreenedCatalogue catalogue_;
   std::unique_ptr<Surroundings> about_nothing_;
   std::vector<Explanation> pool_;  ///< fitted to the screening segments
-  std::set<std::set<std::string>> expanded_;
+  std::set<std::set<std::string>> expanded_, stood_in_;
   std::vector<Explanation> explanations_;
   Explanation nothing_;
   double none_of_these_ = 0;

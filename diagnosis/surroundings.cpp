@@ -10,10 +10,11 @@ namespace musclesim {
 
 namespace {
 
-constexpr std::size_t beside_count = 30;           ///< effects that are simulated beside an explanation
-constexpr std::size_t beside_per_stage_count = 2;  ///< and at least so many of every stage
-constexpr double strength_precision = 1.0 / 9;     ///< of a normal prior: three typical strengths are usual
-constexpr double largest_change = 3;               ///< of a coordinate or a number, up to which the prediction is taken as linear
+constexpr std::size_t beside_count = 30;            ///< effects that are simulated beside an explanation
+constexpr std::size_t beside_per_stage_count = 2;   ///< and at least so many of every stage
+constexpr std::size_t beside_per_member_count = 4;  ///< and so many in place of each member
+constexpr double strength_precision = 1.0 / 9;      ///< of a normal prior: three typical strengths are usual
+constexpr double largest_change = 3;                ///< of a coordinate or a number, up to which the prediction is taken as linear
 
 }  // namespace
 
@@ -72,26 +73,34 @@ Search::Surroundings Search::surroundingsOf(const Explanation& base) const {
   return around;
 }
 
-/// The hypotheses that may be added to the base with most gain by the linear model about no effect, the nearest variant of each label, and
-/// some of each stage. Members of the base that were not screened, or diverged, are not in that model.
-std::vector<std::size_t> Search::worthAdding(const Explanation& base) const {
+/// Cost by the linear model about no effect of some members and one hypothesis more, for every hypothesis that fits beside the base, least
+/// first. Members that were not screened, or diverged, are not in that model.
+std::vector<std::size_t> Search::nearestBeside(const Explanation& base, const std::vector<std::size_t>& members) const {
   std::vector<std::size_t> modelled;
-  for (const std::size_t member : base.members)
+  for (const std::size_t member : members)
     if (!about_nothing_->of_hypothesis[member].empty()) modelled.push_back(member);
   std::vector<std::pair<double, std::size_t>> costs;
   for (std::size_t i = 0; i < causes_.hypotheses.size(); ++i)
     if (!about_nothing_->of_hypothesis[i].empty() && fitsBeside(i, base.members)) costs.emplace_back(0, i);
   parallelFor(static_cast<int>(costs.size()), options_.job_count, [&](int k) {
     auto& [cost, index] = costs[static_cast<std::size_t>(k)];
-    std::vector<std::size_t> members = modelled;
-    members.push_back(index);
-    cost = proposed(*about_nothing_, {}, members).cost;
+    std::vector<std::size_t> with = modelled;
+    with.push_back(index);
+    cost = proposed(*about_nothing_, {}, with).cost;
   });
   std::ranges::stable_sort(costs, {}, &std::pair<double, std::size_t>::first);
+  std::vector<std::size_t> order;
+  for (const auto& [cost, index] : costs) order.push_back(index);
+  return order;
+}
+
+/// The hypotheses that may be added to the base with most gain by the linear model about no effect, the nearest variant of each label, some
+/// of each stage, and those that may best stand in for each member: beside that member they gain next to nothing.
+std::vector<std::size_t> Search::worthSimulatingBeside(const Explanation& base) const {
   std::set<std::string> labels;
   std::map<Stage, std::size_t> per_stage;
   std::vector<std::size_t> result;
-  for (const auto& [cost, index] : costs) {
+  for (const std::size_t index : nearestBeside(base, base.members)) {
     const Hypothesis& hypothesis = causes_.hypotheses[index];
     std::size_t& of_stage = per_stage[hypothesis.info().stage];
     if (labels.contains(hypothesis.label()) || (result.size() >= beside_count && of_stage >= beside_per_stage_count)) continue;
@@ -99,12 +108,23 @@ std::vector<std::size_t> Search::worthAdding(const Explanation& base) const {
     ++of_stage;
     result.push_back(index);
   }
+  for (std::size_t m = 0; m < base.members.size(); ++m) {
+    std::vector<std::size_t> others = base.members;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(m));
+    std::set<std::string> stand_ins;
+    for (const std::size_t index : nearestBeside(base, others)) {
+      const std::string label = causes_.hypotheses[index].label();
+      if (stand_ins.size() == beside_per_member_count) break;
+      if (!stand_ins.insert(label).second || !labels.insert(label).second) continue;
+      result.push_back(index);
+    }
+  }
   return result;
 }
 
-/// Sensitivities beside the base of the hypotheses worth adding; the others get no changes.
+/// Sensitivities beside the base of the hypotheses worth simulating there; the others get no changes.
 std::vector<Sensitivity> Search::changesBeside(const Explanation& base) const {
-  const std::vector<std::size_t> indices = worthAdding(base);
+  const std::vector<std::size_t> indices = worthSimulatingBeside(base);
   std::vector<Hypothesis> others;
   for (const std::size_t i : indices) others.push_back(causes_.hypotheses[i]);
   std::vector<Sensitivity> beside =

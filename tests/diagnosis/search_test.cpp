@@ -74,6 +74,13 @@ TEST(Search, FindsTwoCausesThatLookAlike) {
   EXPECT_NEAR(sum, 1, 1e-9);
 }
 
+/// A leak has the lag of its regulator and stands in for the valve's lag; the set of the two true causes must be found beside it.
+TEST(Search, FindsTheStandInOfAMember) {
+  const ActiveEffect loop{"braid_hysteresis", "muscle_0", {{"relative_width", 0.06}, {"presliding_mm", 0.7}}};
+  const Searched two({loop, lag}, {"braid_hysteresis", "leak", "valve_lag", "volume_coupling"}, planted::Pressure::measured, 2);
+  EXPECT_EQ(two.best(), (Labels{"braid_hysteresis@muscle_0", "valve_lag@muscle_0"})) << two.words();
+}
+
 TEST(Search, OfOneCauseFindsOne) {
   const Searched one({lag}, late, planted::Pressure::measured, 2);
   ASSERT_EQ(one.best(), Labels{"valve_lag@muscle_0"}) << one.words();
