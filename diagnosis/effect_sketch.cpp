@@ -161,7 +161,8 @@ Sketches sensorSketches() {
           {"sensor_bias", {"time", "reading", graphOf(wave), graphOf([](double t) { return wave(t) - 0.14; })}},
           {"sensor_delay", {"time", "reading", graphOf(wave), graphOf([](double t) { return wave(t - 0.09); })}},
           {"sensor_dropout", {"time", "reading", graphOf(wave), graphOf([](double t) { return wave(std::floor(t * 9) / 9); })}},
-          {"sensor_gain", {"time", "reading", graphOf(wave), graphOf([](double t) { return 0.5 + 0.62 * (wave(t) - 0.5); })}}};
+          {"sensor_gain", {"time", "reading", graphOf(wave), graphOf([](double t) { return 0.5 + 0.62 * (wave(t) - 0.5); })}},
+          {"slow_clock", {"time", "reading", graphOf(wave), graphOf([](double t) { return wave(0.82 * t); })}}};
 }
 
 const Sketch* sketchOf(const std::string& id) {

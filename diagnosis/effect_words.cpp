@@ -246,7 +246,13 @@ const std::vector<EffectWords> effect_words = {
      "The reading of {} is too large",
      "The reading of {} is too small",
      "The sensor's scale is wrong: the error is proportional to the reading. The true motion is right.",
-     {{"gain", "factor", "a factor of {}"}}}};
+     {{"gain", "factor", "a factor of {}"}}},
+    {"slow_clock",
+     "slow clock",
+     "The reading of {} falls ever further behind",
+     nullptr,
+     "The clock that wrote this column runs slower than the one that wrote the commands. The true motion is right.",
+     {{"lag_per_s", "lag that grows with the time", "by {}", "% of the time"}}}};
 
 const EffectWords* wordsOfEffect(const std::string& id) {
   const auto found = std::ranges::find_if(effect_words, [&](const EffectWords& words) { return id == words.id; });

@@ -387,7 +387,7 @@ std::vector<Hypothesis> hypotheses(const Plant& plant, const DiagnosisOptions& o
       // Effects without relevant parameters on this component cannot act, such as play between a gauge and a pressure.
       if (!info.parameters.empty() && relevantParameters(info, component).empty()) continue;
       // Sensors fail one at a time, but a clock or a logger may fail for all at once.
-      const bool shared = info.id == "sensor_delay" || info.id == "sensor_dropout";
+      const bool shared = info.id == "sensor_delay" || info.id == "slow_clock" || info.id == "sensor_dropout";
       if (info.stage == Stage::sensor && (!plant.compares(component) || (component == "all" && !shared))) continue;
       for (Hypothesis& variant : Hypothesis(info, component, plant).variants(plant)) result.push_back(std::move(variant));
     }

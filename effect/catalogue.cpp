@@ -41,6 +41,7 @@
 #include "sensor/sensor_delay.h"
 #include "sensor/sensor_dropout.h"
 #include "sensor/sensor_gain.h"
+#include "sensor/slow_clock.h"
 
 namespace musclesim {
 
@@ -83,6 +84,7 @@ std::vector<EffectInfo> builtInEffects() {
       SensorGain::info(),
       SensorBias::info(),
       SensorDelay::info(),
+      SlowClock::info(),
       SensorDropout::info(),
   };
 }

@@ -57,6 +57,7 @@ lever=wrist.lever_mm,wrist.rest_length_0_mm,wrist.rest_length_1_mm
 load=spring_bench.load_N,spring_bench.spring_N_per_mm,spring_bench.rest_length_mm
 diagnose wrist_sweep $lever,wrist.own_inertia_kgm2 wrist_step wrist_release wrist_sweep_start wrist_step_repeat wrist_sweep
 diagnose wrist_sweep_as_published $lever,wrist.own_inertia_kgm2 wrist_step wrist_release wrist_sweep_start wrist_step_repeat wrist_sweep_as_published
+diagnose wrist_sweep_by_itself $lever,wrist.own_inertia_kgm2 wrist_sweep_as_published
 diagnose wrist_step $lever,wrist.own_inertia_kgm2 wrist_release wrist_sweep_start wrist_sweep wrist_step
 # The measured pressure stands for the command there: nothing before the force stage can be seen.
 excluded=transport_delay,command_quantisation,command_dead_band,channel_swap,valve_lag,flow_limit,leak,supply_droop,volume_coupling,pressure_calibration

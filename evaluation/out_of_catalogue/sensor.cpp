@@ -1,9 +1,10 @@
 /// Out-of-catalogue laws of the sensor stage: a bias that varies at random, a gain error that varies sinusoidally, a second-order filter
-/// instead of a dead time, play with a weak centring spring, a slower clock instead of lost samples.
+/// instead of a dead time, play with a weak centring spring, slower sampling instead of lost samples, a clock whose rate varies.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "../../effect/history.h"
 #include "laws_by_stage.h"
 #include "musclesim/robot/world.h"
 #include "wander.h"
@@ -81,9 +82,9 @@ class CentredPlay final : public SensorEffect {
 };
 
 /// Takes only every n-th sample and holds it in between.
-class SlowClock final : public SensorEffect {
+class SlowSampling final : public SensorEffect {
  public:
-  explicit SlowClock(const EffectValues& v) : every_(static_cast<long>(1 + std::lround(v["skipped_samples"]))) {}
+  explicit SlowSampling(const EffectValues& v) : every_(static_cast<long>(1 + std::lround(v["skipped_samples"]))) {}
   double reading(double value, const StepTime&, long sample) override {
     if (sample % every_ == 0) held_ = value;
     return held_;
@@ -93,6 +94,26 @@ class SlowClock final : public SensorEffect {
  private:
   long every_;
   double held_ = 0;
+};
+
+/// y'(t) = y(t - r t (1 + 0.15 w(t))),  w varies at random
+class UnsteadyClock final : public SensorEffect {
+ public:
+  explicit UnsteadyClock(const EffectValues& v) : lag_per_s_(v["lag_per_s"]) {}
+  void attach(const EffectPlace& place) override { seed_ = place.world.seed() + static_cast<std::uint64_t>(place.signal); }
+  void reset() override { history_.clear(); }
+  double reading(double value, const StepTime& time, long) override {
+    constexpr double share = 0.15, interval_s = 2;
+    const double lag_s = lag_per_s_ * std::max(0.0, time.clock_s) * (1 + share * wander(seed_, time.clock_s, interval_s));
+    return history_.empty() ? value : history_.at(time.clock_s - lag_s);
+  }
+  void track(double value, const StepTime& time) override { history_.add(time.clock_s, value); }
+  bool tracks() const override { return true; }
+
+ private:
+  double lag_per_s_;
+  std::uint64_t seed_ = 0;
+  SampledHistory history_;
 };
 
 }  // namespace
@@ -115,9 +136,12 @@ std::vector<OutOfCatalogueLaw> sensorLaws() {
              {{"width", "unit of the signal", 0, 0, 1e3, 0.5, 5, "w"}, {"centring_s", "s", 3, 0.01, 1e3, 1, 10, "T", true}},
              [](const EffectValues& v) { return std::make_unique<CentredPlay>(v); }),
        "sensor_backlash"},
-      {entry("slow_clock", Stage::sensor, signal, "every (n + 1)-th sample is taken, held in between",
-             {{"skipped_samples", "", 0, 0, 1e4, 1, 6, "n"}}, [](const EffectValues& v) { return std::make_unique<SlowClock>(v); }),
+      {entry("slow_sampling", Stage::sensor, signal, "every (n + 1)-th sample is taken, held in between",
+             {{"skipped_samples", "", 0, 0, 1e4, 1, 6, "n"}}, [](const EffectValues& v) { return std::make_unique<SlowSampling>(v); }),
        "sensor_dropout"},
+      {entry("unsteady_clock", Stage::sensor, signal, "y'(t) = y(t - r t (1 + 0.15 w(t)))",
+             {{"lag_per_s", "s/s", 0, 0, 0.5, 0.005, 0.05, "r"}}, [](const EffectValues& v) { return std::make_unique<UnsteadyClock>(v); }),
+       "slow_clock"},
   };
 }
 

@@ -62,6 +62,30 @@ TEST(SensorDelay, MayBeAFilter) {
   }
 }
 
+/// A straight line read at (1 - r) t.
+TEST(SlowClock, FallsBehindInProportionToTheTime) {
+  const EffectInfo info = effectInfo("slow_clock");
+  auto effect = info.make(EffectValues(info.parameters, {0.03}));
+  auto& sensor = dynamic_cast<SensorEffect&>(*effect);
+  sensor.reset();
+  constexpr double h_s = 1e-3, slope = 7;
+  for (int i = -500; i <= 20000; ++i) {
+    const double time_s = h_s * i;
+    sensor.track(slope * time_s, {time_s, h_s});
+    const double read_s = time_s > 0 ? 0.97 * time_s : time_s;
+    ASSERT_NEAR(sensor.reading(slope * time_s, {time_s, h_s}, 0), slope * read_s, 1e-9) << time_s;
+  }
+}
+
+TEST(SlowClock, OfOneColumnLeavesTheOthersAlone) {
+  const Recording commands = wavesFor("rig", 1);
+  const ReplayResult clean = replayWith(commands, {});
+  const ReplayResult slow = replayWith(commands, {{"slow_clock", "signal_length_0", {{"lag_per_s", 0.05}}}});
+  expectOnly("length_0_mm", slow, clean);
+  EXPECT_EQ(valuesOf(slow, "length_0_mm").front(), valuesOf(clean, "length_0_mm").front());
+  EXPECT_THROW(replayWith(commands, {{"slow_clock", "all", {{"lag_per_s", -0.01}}}}), BadParameter) << "a fast clock would read ahead";
+}
+
 TEST(SensorBacklash, IsFlatAfterAReversalForItsWidth) {
   const EffectInfo info = effectInfo("sensor_backlash");
   SimulationOptions options;
