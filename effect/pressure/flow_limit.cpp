@@ -17,7 +17,7 @@ EffectInfo FlowLimit::info() {
           .source = "choked flow through an orifice (ISO 6358); +7 and -2.7 bar/s of 6 bar measured",
           .parameters = {{"fill_rate_per_s", "1/s", unlimited, 0.01, unlimited, 0.3, 2, "largest dp/dt"},
                          {"vent_rate_per_s", "1/s", unlimited, 0.01, unlimited, 0.3, 2, "largest -dp/dt"},
-                         {"proportional_band", "1", 0, 0, 0.5, 0.01, 0.05,
+                         {"proportional_band", "1", 0, 0, 0.5, 0.01, 0.03,
                           "distance |u - p| below which the flow falls in proportion to it", true}},
           .make = [](const EffectValues& values) {
             return std::make_unique<FlowLimit>(values["fill_rate_per_s"], values["vent_rate_per_s"], values["proportional_band"]);

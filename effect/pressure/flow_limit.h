@@ -2,9 +2,10 @@
 ///     dp/dt = fill_rate_per_s sat((u - p) / proportional_band)  for u > p, with vent_rate_per_s for u < p;  sat(x) = max(-1, min(1, x))
 /// u delivered, p actual pressure, fractions of full scale. With a band of 0, p follows u at once, but no faster than -vent_rate_per_s ..
 /// fill_rate_per_s. Exact if u is constant over the step.
-/// Neutral: both rates infinite, p = u. Rates 0.01 .. infinity, usually 0.3 .. 2 per s; band 0 .. 0.5, usually 0 .. 0.1. Source: choked
-/// mass flow through an orifice does not depend on the downstream pressure; it falls to zero as the pressures become equal (ISO 6358). +7
-/// and -2.7 bar/s at a full scale of 6 bar measured on a pneumatic muscle drive.
+/// Neutral: both rates infinite, p = u. Rates 0.01 .. infinity, usually 0.3 .. 2 per s; band 0 .. 0.5, usually 0.01 .. 0.03: with a wide
+/// band the flow is a lag nearly everywhere, which is another effect (valve_lag). Source: choked mass flow through an orifice does not
+/// depend on the downstream pressure; it falls to zero as the pressures become equal (ISO 6358). +7 and -2.7 bar/s at a full scale of 6 bar
+/// measured on a pneumatic muscle drive.
 #pragma once
 
 #include "musclesim/effect/effect_info.h"
