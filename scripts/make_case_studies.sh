@@ -21,7 +21,7 @@ mkdir -p "$answers/recordings"
 real=$(readlink -f "$real") answers=$(readlink -f "$answers")
 maps=$root/docs/examples/import
 
-make_recording() { "$program" import "$real/$1" "$maps/$2.toml" "$answers/recordings/$2.csv" --quiet; }
+make_recording() { "$program" import "$real/$1" "$maps/$2.toml" "$answers/recordings/$2.csv" --quiet --overwrite; }
 make_recording porcaro-drum-arm/raw_step_response.csv wrist_step
 make_recording porcaro-drum-arm/fig1b_step_real.csv wrist_step_repeat
 make_recording porcaro-drum-arm/raw_step_response.csv wrist_release
@@ -33,9 +33,9 @@ make_recording zagreb-dmsp10-250/quasistatic_cycle1_0p1V.csv bench_loop_correcte
 make_recording zagreb-dmsp10-250/step_up_0_to_4p074V_100Hz.csv bench_step
 # The sweep as published, with the slow clock of its figure.
 sed 's/, factor = 0.9702//' "$maps/wrist_sweep.toml" >"$answers/recordings/as_published.toml"
-"$program" import "$real/porcaro-drum-arm/fig1c_sweep_real.csv" "$answers/recordings/as_published.toml" "$answers/recordings/wrist_sweep_as_published.csv" --quiet >/dev/null
+"$program" import "$real/porcaro-drum-arm/fig1c_sweep_real.csv" "$answers/recordings/as_published.toml" "$answers/recordings/wrist_sweep_as_published.csv" --quiet --overwrite >/dev/null
 for volts in 7 9 11; do
-  "$program" import "$real/bellows/1606${volts}V.txt" "$maps/bellows.toml" "$answers/recordings/bellows_$volts.csv" --quiet
+  "$program" import "$real/bellows/1606${volts}V.txt" "$maps/bellows.toml" "$answers/recordings/bellows_$volts.csv" --quiet --overwrite
 done
 # The hold of a cavatappi with its outer stop, which it never reaches, at three places.
 for stop_mm in 72 90 120; do
