@@ -168,7 +168,8 @@ std::vector<Search::Proposal> Search::drops(const Surroundings& around) const {
 }
 
 /// One effect on a single component put on all of them, in place of all members of its kind: faults of muscles of one build often are
-/// alike, and two of them on single muscles cost more than one on all.
+/// alike, and two of them on single muscles cost more than one on all. There is no estimate of what such a set costs: with 0 it promises
+/// everything, so that it is fitted from here even if it is known.
 std::vector<Search::Proposal> Search::widened(const Explanation& base) const {
   std::vector<Proposal> result;
   const Model model = causes_.modelOf(base);
@@ -267,8 +268,7 @@ void Search::expand(const Explanation& base) {
   fitOnScreening(std::move(proposals));
 }
 
-/// Tries the nearest stand-ins of every member of the best sets: what resembles one member most is seldom among the best swaps of all
-/// members, which are those of the weakest one.
+/// Tries the nearest stand-ins of every member of the best sets. The best swaps of all members are mostly those of one, weaker member.
 void Search::tryStandIns() {
   for (int pass = 0; pass < stand_in_passes && !plant_.interrupted(); ++pass)
     for (const std::size_t index : bestOnScreening(0, stood_in_count)) {

@@ -73,8 +73,8 @@ Search::Surroundings Search::surroundingsOf(const Explanation& base) const {
   return around;
 }
 
-/// Cost by the linear model about no effect of some members and one hypothesis more, for every hypothesis that fits beside the base, least
-/// first. Members that were not screened, or diverged, are not in that model.
+/// The hypotheses that fit beside the base, in the order of what each costs together with some of the members by the linear model about no
+/// effect, least first. Members that were not screened, or diverged, are not in that model.
 std::vector<std::size_t> Search::nearestBeside(const Explanation& base, const std::vector<std::size_t>& members) const {
   std::vector<std::size_t> modelled;
   for (const std::size_t member : members)
