@@ -820,6 +820,11 @@ def main():
             os.chdir(folder)
             write()
             status, text, time_s, memory_mb = run(program, arguments)
+            # Another program on the same core makes even the processor time longer: the least of three counts. What ended well wrote
+            # files, which a second call may refuse to replace, so it is not called again.
+            for _ in range(2):
+                if time_s > limit_s and status != 0:
+                    time_s = min(time_s, run(program, arguments)[2])
             slowest_s, largest_mb = max(slowest_s, time_s), max(largest_mb, memory_mb)
             problems = []
             if status not in statuses:
