@@ -177,7 +177,7 @@ std::string tableOf(const std::string& file, const std::string& variable, std::v
 /// A file of a few kilobytes can stand for gigabytes of zeros. Reading takes about 8 times the bytes of a file that is not compressed; the
 /// rest is for compression, up to 5 : 1 in large files and any in small ones.
 ApartLimits limitsFor(std::size_t file_bytes) {
-  constexpr std::size_t least_bytes = std::size_t{128} << 20, per_byte = 40, bytes_per_s = std::size_t{1} << 20;
+  constexpr std::size_t least_bytes = std::size_t{64} << 20, per_byte = 40, bytes_per_s = std::size_t{1} << 20;
   return {least_bytes + per_byte * file_bytes, static_cast<unsigned>(1 + file_bytes / bytes_per_s)};
 }
 
