@@ -13,14 +13,14 @@ namespace musclesim {
 
 namespace {
 
-constexpr std::size_t single_count = 9;                        ///< single effects that are fitted
-constexpr std::size_t per_stage_count = 2;                     ///< and at least so many of every stage
-constexpr std::size_t beam_width = 5;                          ///< sets of each size that the linear search keeps
-constexpr std::size_t addition_count = 3, swap_count = 4;      ///< sets that are fitted about one explanation, besides one of each stage
-constexpr std::size_t base_counts[] = {3, 2, 2, 1, 1, 1};      ///< explanations of each size that are extended
-constexpr std::size_t stood_in_count = 2, stand_in_count = 4;  ///< best sets, and effects that are tried in place of each of their members
-constexpr int stand_in_passes = 4;
-constexpr double hopeless = 4;  ///< nats behind the best: sets of this size are not extended any more
+constexpr std::size_t single_count = 9;                    ///< single effects that are fitted
+constexpr std::size_t per_stage_count = 2;                 ///< and at least so many of every stage
+constexpr std::size_t beam_width = 5;                      ///< sets of each size that the linear search keeps
+constexpr std::size_t addition_count = 3, swap_count = 4;  ///< sets that are fitted about one explanation, besides one of each stage
+constexpr std::size_t base_counts[] = {3, 2, 2, 1, 1, 1};  ///< explanations of each size that are extended
+constexpr std::size_t stood_in_count = 2;                  ///< best sets whose members are replaced by stand_in_count effects each
+constexpr int stand_in_passes = 4;                         ///< how often the sets that are best then are taken
+constexpr double hopeless = 4;                             ///< nats behind the best: sets of this size are not extended any more
 constexpr int screening_rounds = 4;
 
 }  // namespace

@@ -56,6 +56,8 @@ class Search {
   Rival rival(const Explanation& explanation, const std::string& label) const;
 
  private:
+  static constexpr std::size_t stand_in_count = 4;  ///< effects that are simulated and fitted in place of each member of a set
+
   /// A set whose fit has not begun, and the linear estimate of what it will cost.
   struct Proposal {
     Explanation start;

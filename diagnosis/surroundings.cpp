@@ -10,11 +10,10 @@ namespace musclesim {
 
 namespace {
 
-constexpr std::size_t beside_count = 30;            ///< effects that are simulated beside an explanation
-constexpr std::size_t beside_per_stage_count = 2;   ///< and at least so many of every stage
-constexpr std::size_t beside_per_member_count = 4;  ///< and so many in place of each member
-constexpr double strength_precision = 1.0 / 9;      ///< of a normal prior: three typical strengths are usual
-constexpr double largest_change = 3;                ///< of a coordinate or a number, up to which the prediction is taken as linear
+constexpr std::size_t beside_count = 30;           ///< effects that are simulated beside an explanation
+constexpr std::size_t beside_per_stage_count = 2;  ///< and at least so many of every stage
+constexpr double strength_precision = 1.0 / 9;     ///< of a normal prior: three typical strengths are usual
+constexpr double largest_change = 3;               ///< of a coordinate or a number, up to which the prediction is taken as linear
 
 }  // namespace
 
@@ -95,7 +94,8 @@ std::vector<std::size_t> Search::nearestBeside(const Explanation& base, const st
 }
 
 /// The hypotheses that may be added to the base with most gain by the linear model about no effect, the nearest variant of each label, some
-/// of each stage, and those that may best stand in for each member: beside that member they gain next to nothing.
+/// of each stage, and for each member those that cost least in its place. These need a search of their own: what acts like a member gains
+/// next to nothing beside that member.
 std::vector<std::size_t> Search::worthSimulatingBeside(const Explanation& base) const {
   std::set<std::string> labels;
   std::map<Stage, std::size_t> per_stage;
@@ -114,7 +114,7 @@ std::vector<std::size_t> Search::worthSimulatingBeside(const Explanation& base) 
     std::set<std::string> stand_ins;
     for (const std::size_t index : nearestBeside(base, others)) {
       const std::string label = causes_.hypotheses[index].label();
-      if (stand_ins.size() == beside_per_member_count) break;
+      if (stand_ins.size() == stand_in_count) break;
       if (!stand_ins.insert(label).second || !labels.insert(label).second) continue;
       result.push_back(index);
     }

@@ -59,19 +59,41 @@ double (*elementReader(matio_types type))(const void*, std::size_t) {
   }
 }
 
+std::unique_ptr<mat_t, int (*)(mat_t*)> opened(const std::string& file) {
+  std::unique_ptr<mat_t, int (*)(mat_t*)> mat(Mat_Open(file.c_str(), MAT_ACC_RDONLY), Mat_Close);
+  if (!mat) throw BadFile(file, "is not a MATLAB file of version 5 to 7.3 (an older one, a damaged one, or another format?)");
+  return mat;
+}
+
+using Variable = std::unique_ptr<matvar_t, void (*)(matvar_t*)>;
+
+/// Refuses a file whose arrays would need more memory by their heads alone, before any of them is inflated. Fields of structures have no
+/// heads here.
+void requireRoom(const std::string& file, std::size_t memory_bytes) {
+  constexpr double bytes_per_element = 2 * sizeof(double);  // as libmatio reads it, and as a column
+  const auto mat = opened(file);
+  double bytes = 0;
+  while (const Variable head{Mat_VarReadNextInfo(mat.get()), Mat_VarFree}) {
+    double elements = 1;
+    for (int i = 0; i < head->rank; ++i) elements *= static_cast<double>(head->dims[i]);
+    bytes += head->class_type == MAT_C_STRUCT || head->class_type == MAT_C_CELL ? 0 : bytes_per_element * elements;
+  }
+  if (bytes > static_cast<double>(memory_bytes))
+    throw BadFile(file,
+                  fmt::format("says that its arrays need {:.3g} MB of memory, more than a file of its size should", bytes / (1 << 20)));
+}
+
 /// Collects the columns of all arrays of numbers of a file.
 class Columns {
  public:
   explicit Columns(const std::string& file) : file_(file) {
-    const std::unique_ptr<mat_t, int (*)(mat_t*)> mat(Mat_Open(file.c_str(), MAT_ACC_RDONLY), Mat_Close);
-    if (!mat) throw BadFile(file, "is not a MATLAB file of version 5 to 7.3 (an older one, a damaged one, or another format?)");
+    const auto mat = opened(file);
     while (const auto variable = next(mat.get())) add(variable->name ? variable->name : "", *variable);
   }
   std::vector<MatlabColumn> columns;
   std::vector<std::string> unreadable;  ///< names of what holds no real numbers
 
  private:
-  using Variable = std::unique_ptr<matvar_t, void (*)(matvar_t*)>;
   std::string file_;
   static Variable next(mat_t* mat) { return {Mat_VarReadNext(mat), Mat_VarFree}; }
 
@@ -110,6 +132,7 @@ class Columns {
     for (std::size_t c = 0; c < count; ++c) {
       MatlabColumn column{name, {}};
       if (count > 1) column.name = is_upright ? fmt::format("{}(:,{})", name, c + 1) : fmt::format("{}({},:)", name, c + 1);
+      column.values.reserve(length);
       for (std::size_t i = 0; i < length; ++i) column.values.push_back(read(is_upright ? c * rows + i : i * rows + c));
       columns.push_back(std::move(column));
     }
@@ -177,7 +200,7 @@ std::string tableOf(const std::string& file, const std::string& variable, std::v
 /// A file of a few kilobytes can stand for gigabytes of zeros. Reading takes about 8 times the bytes of a file that is not compressed; the
 /// rest is for compression, up to 5 : 1 in large files and any in small ones.
 ApartLimits limitsFor(std::size_t file_bytes) {
-  constexpr std::size_t least_bytes = std::size_t{64} << 20, per_byte = 40, bytes_per_s = std::size_t{1} << 20;
+  constexpr std::size_t least_bytes = std::size_t{128} << 20, per_byte = 40, bytes_per_s = std::size_t{1} << 20;
   return {least_bytes + per_byte * file_bytes, static_cast<unsigned>(1 + file_bytes / bytes_per_s)};
 }
 
@@ -186,7 +209,9 @@ ApartLimits limitsFor(std::size_t file_bytes) {
 std::string matlabTable(const std::string& file, const std::string& variable, std::vector<std::string>& notes) {
   const std::size_t file_bytes = readTextFile(file, CsvLimits().file_bytes).size();  // says why a file cannot be read
   // The notes come first, each ended by a zero byte, and one more ends them.
-  const std::string answer = doApart(file, limitsFor(file_bytes), [&] {
+  const ApartLimits limits = limitsFor(file_bytes);
+  const std::string answer = doApart(file, limits, [&] {
+    requireRoom(file, limits.memory_bytes);
     std::vector<std::string> own_notes;
     const std::string table = tableOf(file, variable, own_notes);
     std::string all;
