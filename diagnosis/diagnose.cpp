@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <mutex>
 #include <variant>
 
@@ -73,10 +74,11 @@ class Monitor {
 
 class Run {
  public:
-  Run(std::vector<Recording> recordings, const DiagnosisOptions& options)
+  /// `given` as for Plant.
+  Run(std::vector<Recording> recordings, const DiagnosisOptions& options, const std::map<std::string, double>& given = {})
       : options_(options),
         monitor_(options),
-        plant_(std::move(recordings), options),
+        plant_(std::move(recordings), options, given),
         held_out_(plant_, plant_.split().held_out),
         search_(plant_, options, [this] { monitor_.count(); }) {}
 
@@ -237,7 +239,9 @@ Diagnosis diagnose(std::vector<Recording> recordings, const DiagnosisOptions& op
   const auto start = std::chrono::steady_clock::now();
   DiagnosisOptions with_tuned = options;
   const Tuning tuning = tune(recordings, with_tuned);
-  Diagnosis diagnosis = Run(std::move(recordings), with_tuned).diagnose();
+  std::map<std::string, double> given;
+  for (const TunedParameter& parameter : tuning.parameters) given[parameter.name] = parameter.start;
+  Diagnosis diagnosis = Run(std::move(recordings), with_tuned, given).diagnose();
   std::vector<TunedParameter> with_all;
   for (std::size_t i = 0; i < tuning.parameters.size(); ++i) {
     const Estimate with_effects = diagnosis.tuned.empty() ? tuning.parameters[i].fitted : diagnosis.tuned[i].with_effects;

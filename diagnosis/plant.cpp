@@ -113,7 +113,7 @@ bool hasNumbers(const Signal& signal) {
 
 }  // namespace
 
-Plant::Plant(std::vector<Recording> recordings, const DiagnosisOptions& options)
+Plant::Plant(std::vector<Recording> recordings, const DiagnosisOptions& options, const std::map<std::string, double>& given)
     : recordings_(std::move(recordings)), options_(options), store_(options.kept) {
   for (Recording& recording : recordings_) replaceRobot(recording.info, options.model.robot);
   requireDiagnosable(recordings_);
@@ -125,9 +125,9 @@ Plant::Plant(std::vector<Recording> recordings, const DiagnosisOptions& options)
   reference_->build(info.robot);
   reference_->parameters().requireAllKnown();
   if (std::string note = otherDescriptionNote(info, reference_->robot()); !note.empty()) notes_.push_back(std::move(note));
-  findNumbers();
-  for (const UncertainNumber& number : numbers_)
-    if (number.is_tuned) key_of_tuned_ += fmt::format("{:a},", std::get<double>(number.parameter.value));
+  findNumbers(given);
+  for (Eigen::Index i = 0; i < numberCount(); ++i)
+    if (numbers_[static_cast<std::size_t>(i)].is_tuned) key_of_tuned_ += fmt::format("{:a},", numberAt(i, numbers_in_force_[i]));
   const bool has_hinges =
       std::ranges::any_of(reference_->world().actuators(), [](const auto& actuator) { return !actuator->hinges().empty(); });
   for (const Parameter& parameter : reference_->parameters().declared())
@@ -255,7 +255,7 @@ Plant::MuscleRange Plant::muscleRange(int muscle) const {
   return {actuator.minimumLengthMm(), actuator.maximumLengthMm()};
 }
 
-void Plant::findNumbers() {
+void Plant::findNumbers(const std::map<std::string, double>& given) {
   constexpr double of_tuned = 1;  // an e-fold: nobody measured it
   const std::vector<std::string> varying = allThatVaries(recordings_);
   const auto varies = [&](const std::string& name) {
@@ -274,13 +274,21 @@ void Plant::findNumbers() {
     });
   });
   for (const Recording& recording : recordings_)
-    for (const auto& given : recording.info.parameter_tolerance) {
-      const auto meant = std::ranges::find_if(declared, [&](const Parameter& parameter) { return means(given.first, parameter.name); });
-      by_name[meant == declared.end() ? given.first : meant->name] = given.second;
+    for (const auto& [name, tolerance] : recording.info.parameter_tolerance) {
+      const auto meant = std::ranges::find_if(declared, [&, &wanted = name](const Parameter& each) { return means(wanted, each.name); });
+      by_name[meant == declared.end() ? name : meant->name] = tolerance;
     }
   for (const auto& [name, tolerance] : by_name)
     if (!varies(name) && std::ranges::find(options_.tune, name) == options_.tune.end())
       numbers_.push_back({numberNamed("parameter_tolerance", name), tolerance, false});
+  numbers_in_force_ = Eigen::VectorXd::Zero(numberCount());
+  for (Eigen::Index i = 0; i < numberCount(); ++i) {
+    UncertainNumber& number = numbers_[static_cast<std::size_t>(i)];
+    const auto by_user = given.find(number.parameter.name);
+    if (by_user == given.end()) continue;
+    numbers_in_force_[i] = std::log(std::get<double>(number.parameter.value) / by_user->second) / number.tolerance;
+    number.parameter.value = by_user->second;
+  }
 }
 
 /// Throws BadParameter, with the nearest name, if the model has no such number, and for a number that a factor cannot change.
@@ -306,7 +314,7 @@ double Plant::numberAt(Eigen::Index index, double eta) const {
 std::vector<std::pair<std::string, double>> Plant::numbersAt(const Eigen::VectorXd& eta) const {
   std::vector<std::pair<std::string, double>> values;
   for (Eigen::Index i = 0; i < eta.size(); ++i)
-    if (eta[i] != 0) values.emplace_back(numbers_[static_cast<std::size_t>(i)].parameter.name, numberAt(i, eta[i]));
+    if (eta[i] != numbers_in_force_[i]) values.emplace_back(numbers_[static_cast<std::size_t>(i)].parameter.name, numberAt(i, eta[i]));
   return values;
 }
 

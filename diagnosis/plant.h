@@ -51,17 +51,17 @@ struct Model {
   std::vector<std::pair<std::string, double>> parameters;
 };
 
-/// A number of the model whose true value differs from the value in force by a factor exp(tolerance * eta), eta standard normal.
+/// A number of the model whose true value differs from the one the user gave by a factor exp(tolerance * eta), eta standard normal.
 struct UncertainNumber {
-  Parameter parameter;
+  Parameter parameter;  ///< with the value that the user gave
   double tolerance;  ///< standard deviation of ln(true value / value in force)
   bool is_tuned;     ///< named by DiagnosisOptions::tune
 };
 
 class Plant {
  public:
-  /// Throws as diagnose().
-  Plant(std::vector<Recording> recordings, const DiagnosisOptions& options);
+  /// `given`: what the user gave for the numbers that options.model has fitted values of since. Throws as diagnose().
+  Plant(std::vector<Recording> recordings, const DiagnosisOptions& options, const std::map<std::string, double>& given = {});
 
   const std::vector<Recording>& recordings() const { return recordings_; }
   const std::vector<ComparedSignal>& signals() const { return signals_; }
@@ -94,12 +94,15 @@ class Plant {
   /// Every explanation fits them along with its effects.
   const std::vector<UncertainNumber>& numbers() const { return numbers_; }
   Eigen::Index numberCount() const { return static_cast<Eigen::Index>(numbers_.size()); }
-  /// The numbers at coordinates eta: value in force * exp(tolerance * eta), within the range; none for an empty eta.
+  /// Coordinates at which the numbers have the values in force: 0, except for tuned ones.
+  const Eigen::VectorXd& numbersInForce() const { return numbers_in_force_; }
+  /// The numbers at coordinates eta that differ from those in force: given value * exp(tolerance * eta), within the range; none for an
+  /// empty eta.
   std::vector<std::pair<std::string, double>> numbersAt(const Eigen::VectorXd& eta) const;
   double numberAt(Eigen::Index index, double eta) const;
   /// The coordinates within four tolerances and such that the robot can be built. Where it cannot, one number after the other goes as far
   /// as those before it allow, for example a moment of inertia that a mass needs. `margin`: how far each number alone may still change
-  /// from there; 0 if the values in force do not allow that.
+  /// from there; 0 if the given values do not allow that.
   Eigen::VectorXd clampedNumbers(const Eigen::VectorXd& eta, double margin = 0) const;
   /// Tension of a muscle by the model's force law at a pressure and a length, N.
   double tensionN(int muscle, double pressure_ratio, double length_mm) const;
@@ -131,7 +134,7 @@ class Plant {
   void compareSignals();
   void requireNumbers(const std::vector<Segment>& part) const;
   Parameter numberNamed(const std::string& option, const std::string& name) const;
-  void findNumbers();
+  void findNumbers(const std::map<std::string, double>& given);
   Fidelity possible(Fidelity fidelity) const;
   std::string simulationKey(int recording, std::size_t rows, Fidelity fidelity) const;
   void count(double simulated_s) const;
@@ -151,6 +154,7 @@ class Plant {
   std::unique_ptr<Simulation> reference_;  ///< the model as built, never stepped
   std::vector<std::pair<std::string, double>> nominal_;
   std::vector<UncertainNumber> numbers_;
+  Eigen::VectorXd numbers_in_force_;
   mutable std::atomic<long> simulation_count_{0}, simulated_ms_{0};
   std::string key_of_tuned_;  ///< the values in force of the tuned numbers
   mutable PredictionStore store_;

@@ -373,8 +373,8 @@ std::vector<Explanation> Search::explainPressures() {
   const std::vector<char> allowed = catalogue_.allowed;
   for (std::size_t i = 0; i < allowed.size(); ++i)
     if (!changesFocus(i)) catalogue_.allowed[i] = false;
-  about_nothing_ = std::make_unique<Surroundings>(surroundingsOf(nothing_));
-  fitOnScreening(singleEffects(*about_nothing_));
+  about_nothing_ = surroundingsOfNothing();
+  for (const Surroundings& around : about_nothing_) fitOnScreening(singleEffects(around));
   extendBySize();
   std::vector<Explanation> found;
   for (const std::size_t index : bestOnScreening(0, kept))
@@ -387,12 +387,15 @@ std::vector<Explanation> Search::explainPressures() {
 }
 
 void Search::decide() {
-  nothing_.numbers = Eigen::VectorXd::Zero(plant_.numberCount());
+  nothing_.numbers = plant_.numbersInForce();
   nothing_.residual = screening_residual_;
   const std::vector<Explanation> of_pressures = explainPressures();
-  about_nothing_ = std::make_unique<Surroundings>(surroundingsOf(nothing_));
-  std::vector<Proposal> proposals = singleEffects(*about_nothing_);
-  std::ranges::move(largerSets(*about_nothing_), std::back_inserter(proposals));
+  about_nothing_ = surroundingsOfNothing();
+  std::vector<Proposal> proposals;
+  for (const Surroundings& around : about_nothing_) {
+    std::ranges::move(singleEffects(around), std::back_inserter(proposals));
+    std::ranges::move(largerSets(around), std::back_inserter(proposals));
+  }
   for (const Explanation& one : of_pressures) proposals.push_back({one, 0});
   if (!options_.earlier.empty()) proposals.push_back({earlierFinding(), 0});
   fitOnScreening(std::move(proposals));

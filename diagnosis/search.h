@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -86,12 +85,15 @@ class Search {
   void checkExcitation(const std::vector<Hypothesis>& typical);
 
   // surroundings.cpp
+  Surroundings surroundingsOf(const Explanation& base, std::vector<Sensitivity> sensitivities) const;
   Surroundings surroundingsOf(const Explanation& base) const;
+  std::vector<Surroundings> surroundingsOfNothing() const;
+  const Surroundings& aboutNothingNear(const Explanation& base) const;
   void addOwnColumns(Surroundings& around, std::vector<LinearModel::Column>& columns) const;
   void addOtherColumns(Surroundings& around, std::vector<LinearModel::Column>& columns) const;
   std::vector<std::size_t> nearestBeside(const Explanation& base, const std::vector<std::size_t>& members) const;
   std::vector<std::size_t> worthSimulatingBeside(const Explanation& base) const;
-  std::vector<Sensitivity> changesBeside(const Explanation& base) const;
+  std::vector<Sensitivity> changesBeside(const Explanation& base, const std::vector<std::size_t>& indices) const;
   Proposal proposed(const Surroundings& around, const std::vector<std::size_t>& kept, const std::vector<std::size_t>& added) const;
 
   // search.cpp
@@ -145,7 +147,7 @@ class Search {
   Comparison screening_, fit_;
   Eigen::VectorXd screening_residual_, nominal_residual_;
   ScreenedCatalogue catalogue_;
-  std::unique_ptr<Surroundings> about_nothing_;
+  std::vector<Surroundings> about_nothing_;  ///< with the numbers in force and, if any were tuned, with those that the user gave
   std::vector<Explanation> pool_;  ///< fitted to the screening segments
   std::set<std::set<std::string>> expanded_, stood_in_;
   std::vector<Explanation> explanations_;

@@ -62,9 +62,9 @@ void Search::addOtherColumns(Surroundings& around, std::vector<LinearModel::Colu
   }
 }
 
-/// Simulates the hypotheses worth adding beside the base, and every change of the base itself.
-Search::Surroundings Search::surroundingsOf(const Explanation& base) const {
-  Surroundings around{base, {}, {}, {}, {}, {}, {}, base.members.empty() ? catalogue_.sensitivities : changesBeside(base)};
+/// Simulates every change of the base itself. `sensitivities`: of the hypotheses beside the base.
+Search::Surroundings Search::surroundingsOf(const Explanation& base, std::vector<Sensitivity> sensitivities) const {
+  Surroundings around{base, {}, {}, {}, {}, {}, {}, std::move(sensitivities)};
   std::vector<LinearModel::Column> columns;
   addOwnColumns(around, columns);
   addOtherColumns(around, columns);
@@ -72,20 +72,51 @@ Search::Surroundings Search::surroundingsOf(const Explanation& base) const {
   return around;
 }
 
+/// Simulates the hypotheses worth adding beside the base, too.
+Search::Surroundings Search::surroundingsOf(const Explanation& base) const {
+  return surroundingsOf(base, changesBeside(base, worthSimulatingBeside(base)));
+}
+
+/// No effect, with the numbers in force, and if some of these were tuned, with those that the user gave. Tuned without effects, a number
+/// takes in what effects make: the mass of a forearm whose joint has a spring may nearly double. From there the search hardly comes back.
+std::vector<Search::Surroundings> Search::surroundingsOfNothing() const {
+  std::vector<Surroundings> result;
+  result.push_back(surroundingsOf(nothing_, catalogue_.sensitivities));
+  if (nothing_.numbers.isZero(0)) return result;
+  Explanation as_given = nothing_;
+  as_given.numbers.setZero();
+  const Eigen::VectorXd predicted = screening_.predicted(causes_.modelOf(as_given));
+  on_simulation_();
+  if (predicted.size() != screening_.size() || plant_.interrupted()) return result;
+  as_given.residual = screening_.measured() - predicted;
+  std::vector<std::size_t> screened;
+  for (std::size_t i = 0; i < causes_.hypotheses.size(); ++i)
+    if (!result.front().of_hypothesis[i].empty()) screened.push_back(i);
+  result.push_back(surroundingsOf(as_given, changesBeside(as_given, screened)));
+  return result;
+}
+
+/// Those of no effect whose numbers are nearest to an explanation's.
+const Search::Surroundings& Search::aboutNothingNear(const Explanation& base) const {
+  return *std::ranges::min_element(about_nothing_, {},
+                                   [&](const Surroundings& around) { return (around.base.numbers - base.numbers).squaredNorm(); });
+}
+
 /// The hypotheses that fit beside the base, in the order of what each costs together with some of the members by the linear model about no
 /// effect, least first. Members that were not screened, or diverged, are not in that model.
 std::vector<std::size_t> Search::nearestBeside(const Explanation& base, const std::vector<std::size_t>& members) const {
+  const Surroundings& about_nothing = aboutNothingNear(base);
   std::vector<std::size_t> modelled;
   for (const std::size_t member : members)
-    if (!about_nothing_->of_hypothesis[member].empty()) modelled.push_back(member);
+    if (!about_nothing.of_hypothesis[member].empty()) modelled.push_back(member);
   std::vector<std::pair<double, std::size_t>> costs;
   for (std::size_t i = 0; i < causes_.hypotheses.size(); ++i)
-    if (!about_nothing_->of_hypothesis[i].empty() && fitsBeside(i, base.members)) costs.emplace_back(0, i);
+    if (!about_nothing.of_hypothesis[i].empty() && fitsBeside(i, base.members)) costs.emplace_back(0, i);
   parallelFor(static_cast<int>(costs.size()), options_.job_count, [&](int k) {
     auto& [cost, index] = costs[static_cast<std::size_t>(k)];
     std::vector<std::size_t> with = modelled;
     with.push_back(index);
-    cost = proposed(*about_nothing_, {}, with).cost;
+    cost = proposed(about_nothing, {}, with).cost;
   });
   std::ranges::stable_sort(costs, {}, &std::pair<double, std::size_t>::first);
   std::vector<std::size_t> order;
@@ -122,9 +153,8 @@ std::vector<std::size_t> Search::worthSimulatingBeside(const Explanation& base) 
   return result;
 }
 
-/// Sensitivities beside the base of the hypotheses worth simulating there; the others get no changes.
-std::vector<Sensitivity> Search::changesBeside(const Explanation& base) const {
-  const std::vector<std::size_t> indices = worthSimulatingBeside(base);
+/// Sensitivities beside the base of some hypotheses; the others get no changes.
+std::vector<Sensitivity> Search::changesBeside(const Explanation& base, const std::vector<std::size_t>& indices) const {
   std::vector<Hypothesis> others;
   for (const std::size_t i : indices) others.push_back(causes_.hypotheses[i]);
   std::vector<Sensitivity> beside =

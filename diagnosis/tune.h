@@ -19,7 +19,7 @@ struct Tuning {
 /// options.model.parameters and returns them. Throws BadParameter for a name that is no number of the model, or whose value is 0.
 Tuning tune(const std::vector<Recording>& recordings, DiagnosisOptions& options);
 
-/// The plant's tuned parameters at coordinates eta, with 95 % intervals from the half widths; `start` is the value in force.
+/// The plant's tuned parameters at coordinates eta, with 95 % intervals from the half widths; `start` is the value that the user gave.
 std::vector<TunedParameter> tunedParameters(const Plant& plant, const Eigen::VectorXd& eta, const Eigen::VectorXd& half_width);
 
 }  // namespace musclesim
