@@ -124,18 +124,6 @@ std::vector<Search::Proposal> Search::largerSets(const Surroundings& around) con
   return result;
 }
 
-namespace {
-
-/// 0, 1, ... count - 1 without one of them.
-std::vector<std::size_t> allBut(std::size_t left_out, std::size_t count) {
-  std::vector<std::size_t> result;
-  for (std::size_t i = 0; i < count; ++i)
-    if (i != left_out) result.push_back(i);
-  return result;
-}
-
-}  // namespace
-
 std::vector<Search::Proposal> Search::additions(const Surroundings& around) const {
   const std::vector<std::size_t>& members = around.base.members;
   std::vector<Proposal> result;
@@ -268,7 +256,8 @@ void Search::expand(const Explanation& base) {
   fitOnScreening(std::move(proposals));
 }
 
-/// Tries the nearest stand-ins of every member of the best sets. The best swaps of all members are mostly those of one, weaker member.
+/// Tries the nearest stand-ins of every member of the best sets, and their widened forms. The best swaps of all members are mostly those of
+/// one, weaker member.
 void Search::tryStandIns() {
   for (int pass = 0; pass < stand_in_passes && !plant_.interrupted(); ++pass)
     for (const std::size_t index : bestOnScreening(0, stood_in_count)) {
@@ -278,6 +267,7 @@ void Search::tryStandIns() {
       std::vector<Proposal> proposals;
       for (std::size_t m = 0; m < base.members.size(); ++m)
         std::ranges::move(nearest(swapsOf(m, around), stand_in_count), std::back_inserter(proposals));
+      std::ranges::move(nearest(widened(base), swap_count, 2), std::back_inserter(proposals));
       fitOnScreening(std::move(proposals));
     }
 }

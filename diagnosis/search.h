@@ -25,6 +25,9 @@ struct ScreenedCatalogue {
   std::size_t screened_count = 0;          ///< hypotheses that were screened on all screening segments
 };
 
+/// 0, 1, ... count - 1 without one of them; all of them if left_out is count.
+std::vector<std::size_t> allBut(std::size_t left_out, std::size_t count);
+
 class Search {
  public:
   Search(const Plant& plant, const DiagnosisOptions& options, OnSimulation on_simulation);
@@ -85,14 +88,13 @@ class Search {
   void checkExcitation(const std::vector<Hypothesis>& typical);
 
   // surroundings.cpp
-  Surroundings surroundingsOf(const Explanation& base, std::vector<Sensitivity> sensitivities) const;
-  Surroundings surroundingsOf(const Explanation& base) const;
+  Surroundings surroundingsOf(const Explanation& base, std::optional<std::vector<Sensitivity>> sensitivities = {}) const;
   std::vector<Surroundings> surroundingsOfNothing() const;
   const Surroundings& aboutNothingNear(const Explanation& base) const;
   void addOwnColumns(Surroundings& around, std::vector<LinearModel::Column>& columns) const;
   void addOtherColumns(Surroundings& around, std::vector<LinearModel::Column>& columns) const;
-  std::vector<std::size_t> nearestBeside(const Explanation& base, const std::vector<std::size_t>& members) const;
-  std::vector<std::size_t> worthSimulatingBeside(const Explanation& base) const;
+  std::vector<std::size_t> nearestBeside(const Surroundings& around, const std::vector<std::size_t>& kept) const;
+  std::vector<std::size_t> worthSimulatingBeside(Surroundings around, std::vector<LinearModel::Column> columns) const;
   std::vector<Sensitivity> changesBeside(const Explanation& base, const std::vector<std::size_t>& indices) const;
   Proposal proposed(const Surroundings& around, const std::vector<std::size_t>& kept, const std::vector<std::size_t>& added) const;
 

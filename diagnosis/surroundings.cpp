@@ -17,6 +17,13 @@ constexpr double largest_change = 3;               ///< of a coordinate or a num
 
 }  // namespace
 
+std::vector<std::size_t> allBut(std::size_t left_out, std::size_t count) {
+  std::vector<std::size_t> result;
+  for (std::size_t i = 0; i < count; ++i)
+    if (i != left_out) result.push_back(i);
+  return result;
+}
+
 /// Columns of the base's own coordinates, of the removal of each effect, and of the numbers.
 void Search::addOwnColumns(Surroundings& around, std::vector<LinearModel::Column>& columns) const {
   const Explanation& base = around.base;
@@ -62,19 +69,15 @@ void Search::addOtherColumns(Surroundings& around, std::vector<LinearModel::Colu
   }
 }
 
-/// Simulates every change of the base itself. `sensitivities`: of the hypotheses beside the base.
-Search::Surroundings Search::surroundingsOf(const Explanation& base, std::vector<Sensitivity> sensitivities) const {
-  Surroundings around{base, {}, {}, {}, {}, {}, {}, std::move(sensitivities)};
+/// Simulates every change of the base itself, and of the hypotheses beside it those worth it, unless their sensitivities are given.
+Search::Surroundings Search::surroundingsOf(const Explanation& base, std::optional<std::vector<Sensitivity>> sensitivities) const {
+  Surroundings around{base, {}, {}, {}, {}, {}, {}, {}};
   std::vector<LinearModel::Column> columns;
   addOwnColumns(around, columns);
+  around.sensitivities = sensitivities ? std::move(*sensitivities) : changesBeside(base, worthSimulatingBeside(around, columns));
   addOtherColumns(around, columns);
   around.model.emplace(screening_, base.residual, std::move(columns));
   return around;
-}
-
-/// Simulates the hypotheses worth adding beside the base, too.
-Search::Surroundings Search::surroundingsOf(const Explanation& base) const {
-  return surroundingsOf(base, changesBeside(base, worthSimulatingBeside(base)));
 }
 
 /// No effect, with the numbers in force, and if some of these were tuned, with those that the user gave. Tuned without effects, a number
@@ -102,21 +105,14 @@ const Search::Surroundings& Search::aboutNothingNear(const Explanation& base) co
                                    [&](const Surroundings& around) { return (around.base.numbers - base.numbers).squaredNorm(); });
 }
 
-/// The hypotheses that fit beside the base, in the order of what each costs together with some of the members by the linear model about no
-/// effect, least first. Members that were not screened, or diverged, are not in that model.
-std::vector<std::size_t> Search::nearestBeside(const Explanation& base, const std::vector<std::size_t>& members) const {
-  const Surroundings& about_nothing = aboutNothingNear(base);
-  std::vector<std::size_t> modelled;
-  for (const std::size_t member : members)
-    if (!about_nothing.of_hypothesis[member].empty()) modelled.push_back(member);
+/// The hypotheses that can be added, in the order of what each costs beside some members of the base, least first.
+std::vector<std::size_t> Search::nearestBeside(const Surroundings& around, const std::vector<std::size_t>& kept) const {
   std::vector<std::pair<double, std::size_t>> costs;
   for (std::size_t i = 0; i < causes_.hypotheses.size(); ++i)
-    if (!about_nothing.of_hypothesis[i].empty() && fitsBeside(i, base.members)) costs.emplace_back(0, i);
+    if (!around.of_hypothesis[i].empty()) costs.emplace_back(0, i);
   parallelFor(static_cast<int>(costs.size()), options_.job_count, [&](int k) {
     auto& [cost, index] = costs[static_cast<std::size_t>(k)];
-    std::vector<std::size_t> with = modelled;
-    with.push_back(index);
-    cost = proposed(about_nothing, {}, with).cost;
+    cost = proposed(around, kept, {index}).cost;
   });
   std::ranges::stable_sort(costs, {}, &std::pair<double, std::size_t>::first);
   std::vector<std::size_t> order;
@@ -124,14 +120,18 @@ std::vector<std::size_t> Search::nearestBeside(const Explanation& base, const st
   return order;
 }
 
-/// The hypotheses that may be added to the base with most gain by the linear model about no effect, the nearest variant of each label, some
-/// of each stage, and for each member those that cost least in its place. These need a search of their own: what acts like a member gains
-/// next to nothing beside that member.
-std::vector<std::size_t> Search::worthSimulatingBeside(const Explanation& base) const {
+/// The hypotheses that are worth simulating beside the base: those with most gain beside it, the nearest variant of each label, some of each
+/// stage, and for each member those that cost least in its place. These need a search of their own: what acts like a member gains next to
+/// nothing beside that member. `around` has the base's own columns; what the hypotheses change is taken from beside no effect.
+std::vector<std::size_t> Search::worthSimulatingBeside(Surroundings around, std::vector<LinearModel::Column> columns) const {
+  around.sensitivities = aboutNothingNear(around.base).sensitivities;
+  addOtherColumns(around, columns);
+  around.model.emplace(screening_, around.base.residual, std::move(columns));
+  const std::size_t member_count = around.base.members.size();
   std::set<std::string> labels;
   std::map<Stage, std::size_t> per_stage;
   std::vector<std::size_t> result;
-  for (const std::size_t index : nearestBeside(base, base.members)) {
+  for (const std::size_t index : nearestBeside(around, allBut(member_count, member_count))) {
     const Hypothesis& hypothesis = causes_.hypotheses[index];
     std::size_t& of_stage = per_stage[hypothesis.info().stage];
     if (labels.contains(hypothesis.label()) || (result.size() >= beside_count && of_stage >= beside_per_stage_count)) continue;
@@ -139,11 +139,9 @@ std::vector<std::size_t> Search::worthSimulatingBeside(const Explanation& base) 
     ++of_stage;
     result.push_back(index);
   }
-  for (std::size_t m = 0; m < base.members.size(); ++m) {
-    std::vector<std::size_t> others = base.members;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(m));
+  for (std::size_t m = 0; m < member_count; ++m) {
     std::set<std::string> stand_ins;
-    for (const std::size_t index : nearestBeside(base, others)) {
+    for (const std::size_t index : nearestBeside(around, allBut(m, member_count))) {
       const std::string label = causes_.hypotheses[index].label();
       if (stand_ins.size() == stand_in_count) break;
       if (!stand_ins.insert(label).second || !labels.insert(label).second) continue;
