@@ -54,8 +54,8 @@ struct Model {
 /// A number of the model whose true value differs from the one the user gave by a factor exp(tolerance * eta), eta standard normal.
 struct UncertainNumber {
   Parameter parameter;  ///< with the value that the user gave
-  double tolerance;  ///< standard deviation of ln(true value / value in force)
-  bool is_tuned;     ///< named by DiagnosisOptions::tune
+  double tolerance;     ///< standard deviation of ln(true value / given value)
+  bool is_tuned;        ///< named by DiagnosisOptions::tune
 };
 
 class Plant {

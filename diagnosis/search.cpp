@@ -363,8 +363,9 @@ std::vector<Explanation> Search::explainPressures() {
   const std::vector<char> allowed = catalogue_.allowed;
   for (std::size_t i = 0; i < allowed.size(); ++i)
     if (!changesFocus(i)) catalogue_.allowed[i] = false;
-  about_nothing_ = surroundingsOfNothing();
-  for (const Surroundings& around : about_nothing_) fitOnScreening(singleEffects(around));
+  about_nothing_.clear();
+  about_nothing_.push_back(surroundingsOf(nothing_, catalogue_.sensitivities));
+  fitOnScreening(singleEffects(about_nothing_.front()));
   extendBySize();
   std::vector<Explanation> found;
   for (const std::size_t index : bestOnScreening(0, kept))

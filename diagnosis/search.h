@@ -150,7 +150,7 @@ class Search {
   Eigen::VectorXd screening_residual_, nominal_residual_;
   ScreenedCatalogue catalogue_;
   std::vector<Surroundings> about_nothing_;  ///< with the numbers in force and, if any were tuned, with those that the user gave
-  std::vector<Explanation> pool_;  ///< fitted to the screening segments
+  std::vector<Explanation> pool_;            ///< fitted to the screening segments
   std::set<std::set<std::string>> expanded_, stood_in_;
   std::vector<Explanation> explanations_;
   Explanation nothing_;

@@ -120,9 +120,9 @@ std::vector<std::size_t> Search::nearestBeside(const Surroundings& around, const
   return order;
 }
 
-/// The hypotheses that are worth simulating beside the base: those with most gain beside it, the nearest variant of each label, some of each
-/// stage, and for each member those that cost least in its place. These need a search of their own: what acts like a member gains next to
-/// nothing beside that member. `around` has the base's own columns; what the hypotheses change is taken from beside no effect.
+/// The hypotheses that are worth simulating beside the base: those with most gain beside it, the nearest variant of each label, some of
+/// each stage, and for each member those that cost least in its place. These need a search of their own: what acts like a member gains next
+/// to nothing beside that member. `around` has the base's own columns; what the hypotheses change is taken from beside no effect.
 std::vector<std::size_t> Search::worthSimulatingBeside(Surroundings around, std::vector<LinearModel::Column> columns) const {
   around.sensitivities = aboutNothingNear(around.base).sensitivities;
   addOtherColumns(around, columns);

@@ -145,6 +145,21 @@ TEST_F(NumbersOfAPlant, ThatAreTunedMayBeOffByAFoldAndComeFirst) {
   EXPECT_EQ(std::ranges::count(plant.numbers(), "rig.load_kg", [](const UncertainNumber& number) { return number.parameter.name; }), 1);
 }
 
+/// The prior of a number stands about what the user gave, not about what a fit without effects made of it.
+TEST_F(NumbersOfAPlant, ThatWereTunedKeepTheGivenValueAsTheirOrigin) {
+  options.tune = {"rig.load_kg"};
+  options.model.parameters.set("rig.load_kg", 3.0, "--tune");
+  const Plant plant(recordings, options, {{"rig.load_kg", 2.0}});
+  EXPECT_EQ(std::get<double>(plant.numbers().front().parameter.value), 2);
+  Eigen::VectorXd eta = plant.numbersInForce();
+  EXPECT_NEAR(eta[0], std::log(1.5), 1e-12);
+  EXPECT_TRUE(eta.tail(eta.size() - 1).isZero(0));
+  EXPECT_TRUE(plant.numbersAt(eta).empty()) << "the model has this value";
+  eta.setZero();
+  ASSERT_EQ(plant.numbersAt(eta).size(), 1U);
+  EXPECT_EQ(plant.numbersAt(eta).front().second, 2);
+}
+
 TEST_F(NumbersOfAPlant, ThatVaryBetweenRecordingsAreKnown) {
   for (Recording& recording : recordings) recording.info.varies = {"rig.load_kg"};
   recordings.front().info.robot_parameters["rig.load_kg"] = 2.0;
