@@ -310,49 +310,6 @@ TEST(Diagnose, FitsNumbersNobodyMeasuredTogetherWithTheEffect) {
   EXPECT_FALSE(contains(found.model_options, "rig.load_kg")) << "nominal.toml holds that";
 }
 
-/// Two antagonists on a hinge under steps and a wave, 4 s, with a spring in the joint and a dead time.
-Recording springyElbow(double amplitude, std::uint64_t seed, const DiagnosisOptions& options) {
-  ReplayOptions replay;
-  replay.effects = options.model.effects;
-  replay.effects.push_back({"joint_stiffness", "joint_elbow", {{"stiffness_Nm_per_rad", 0.67}, {"rest_deg", 7.0}}});
-  replay.effects.push_back({"transport_delay", "all", {{"delay_s", 0.05}}});
-  replay.parameters = options.model.parameters;
-  Recording plan;
-  plan.info.robot = "elbow";
-  plan.signals = {{"command_0", {}}, {"command_1", {}}};
-  for (int row = 0; row < 400; ++row) {
-    const double t = 0.01 * row, wave = t < 2 ? (std::fmod(t, 1.0) < 0.5 ? 1 : -1) : std::sin(2 * std::numbers::pi * t);
-    plan.time_s.push_back(t);
-    plan.signals[0].values.push_back(0.45 + amplitude * wave);
-    plan.signals[1].values.push_back(0.45 - amplitude * wave);
-  }
-  Recording recording = replayRecording(plan, replay).simulated;
-  recording.file = "elbow_" + std::to_string(seed) + ".csv";
-  recording.info.active_effects.clear();
-  recording.info.noise_std = {{"angle_elbow_deg", 0.09}};
-  std::erase_if(recording.signals, [](const Signal& s) { return !s.name.starts_with("command_") && s.name != "angle_elbow_deg"; });
-  RandomStream random(seed, "elbow");
-  for (double& value : recording.signals.back().values) value += 0.09 * random.normal();
-  return recording;
-}
-
-/// Without effects the mass of the forearm takes in what the spring does. The search does not have to come back from there.
-TEST(Diagnose, LooksForCausesFromTheGivenValuesOfTunedNumbersToo) {
-  DiagnosisOptions options = few({"joint_stiffness", "transport_delay", "length_offset", "base_tilt"});
-  options.tune = {"elbow.forearm_kg", "elbow.forearm_inertia_kgm2"};
-  options.model.parameters.set("muscle.model", std::string("line"), "test");
-  options.model.effects = {{"joint_viscous_friction", "joint_elbow", {{"damping_Nms_per_rad", 0.06}}}};
-  const Diagnosis found =
-      diagnose({springyElbow(0.1, 1, options), springyElbow(0.15, 2, options), springyElbow(0.12, 3, options)}, options);
-  EXPECT_EQ(std::set<std::string>(found.chosen.begin(), found.chosen.end()),
-            (std::set<std::string>{"joint_stiffness@joint_elbow", "transport_delay@all"}))
-      << diagnosisSummary(found);
-  ASSERT_EQ(found.tuned.size(), 2U);
-  EXPECT_EQ(found.tuned[0].start, 0.6);
-  EXPECT_GT(found.tuned[0].fitted.value, 0.8) << "or nothing is tested";
-  EXPECT_NEAR(found.tuned[0].with_effects.value, 0.6, 0.08);
-}
-
 TEST(Diagnose, RefusesToTuneWhatIsNoNumberOfTheModel) {
   DiagnosisOptions options = few({"payload"});
   options.tune = {"rig.load"};

@@ -106,6 +106,20 @@ TEST(Search, TakesALoadThatIsOffForNoEffect) {
     }
 }
 
+/// A fit without effects made 12 kg of a load of 2 kg.
+TEST(Search, ComesBackToTheGivenValueOfATunedNumber) {
+  DiagnosisOptions options = planted::few({"valve_lag", "force_gain"});
+  options.tune = {"rig.load_kg"};
+  options.model.parameters.set("rig.load_kg", 12.0, "--tune");
+  const Plant plant(planted::withExactModel(planted::plant({lag})), options, {{"rig.load_kg", 2.0}});
+  Search search(plant, options, [] {});
+  search.screen();
+  search.decide();
+  const Explanation& best = search.explanations().front();
+  EXPECT_EQ(search.causes().labelsOf(best.members), Labels{"valve_lag@muscle_0"});
+  EXPECT_NEAR(plant.numberAt(0, best.numbers[0]), 2, 0.02);
+}
+
 TEST(Search, GivesTheSameBitsWithOneAndTwoThreads) {
   const std::vector<std::string> few = {"transport_delay", "valve_lag"};
   const Searched one({delay, lag}, few, planted::Pressure::left_out, 1), two({delay, lag}, few, planted::Pressure::left_out, 2);
