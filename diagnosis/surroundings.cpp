@@ -81,7 +81,7 @@ Search::Surroundings Search::surroundingsOf(const Explanation& base, std::option
 }
 
 /// No effect, with the numbers in force, and if some of these were tuned, with those that the user gave. Tuned without effects, a number
-/// takes in what effects make: the mass of a forearm whose joint has a spring may nearly double. From there the search hardly comes back.
+/// takes in what effects make: the mass of a forearm whose joint has a spring may nearly double.
 std::vector<Search::Surroundings> Search::surroundingsOfNothing() const {
   std::vector<Surroundings> result;
   result.push_back(surroundingsOf(nothing_, catalogue_.sensitivities));
