@@ -149,8 +149,9 @@ class Search {
   Comparison screening_, fit_;
   Eigen::VectorXd screening_residual_, nominal_residual_;
   ScreenedCatalogue catalogue_;
-  std::vector<Surroundings> about_nothing_;  ///< with the numbers in force and, if any were tuned, with those that the user gave
-  std::vector<Explanation> pool_;            ///< fitted to the screening segments
+  /// About no effect. The first has the numbers in force. If some of them were tuned, the second has the values that the user gave.
+  std::vector<Surroundings> about_nothing_;
+  std::vector<Explanation> pool_;  ///< fitted to the screening segments
   std::set<std::set<std::string>> expanded_, stood_in_;
   std::vector<Explanation> explanations_;
   Explanation nothing_;

@@ -80,8 +80,8 @@ Search::Surroundings Search::surroundingsOf(const Explanation& base, std::option
   return around;
 }
 
-/// No effect, with the numbers in force, and if some of these were tuned, with those that the user gave. Tuned without effects, a number
-/// takes in what effects make: the mass of a forearm whose joint has a spring may nearly double.
+/// Makes about_nothing_. A fit of numbers without effects explains by them what effects make: for a forearm whose joint has a spring it
+/// finds nearly twice the mass. Therefore the search begins at the values that the user gave, too.
 std::vector<Search::Surroundings> Search::surroundingsOfNothing() const {
   std::vector<Surroundings> result;
   result.push_back(surroundingsOf(nothing_, catalogue_.sensitivities));
@@ -99,7 +99,7 @@ std::vector<Search::Surroundings> Search::surroundingsOfNothing() const {
   return result;
 }
 
-/// Those of no effect whose numbers are nearest to an explanation's.
+/// That one of about_nothing_ whose numbers are nearest to the base's.
 const Search::Surroundings& Search::aboutNothingNear(const Explanation& base) const {
   return *std::ranges::min_element(about_nothing_, {},
                                    [&](const Surroundings& around) { return (around.base.numbers - base.numbers).squaredNorm(); });
@@ -120,9 +120,10 @@ std::vector<std::size_t> Search::nearestBeside(const Surroundings& around, const
   return order;
 }
 
-/// The hypotheses that are worth simulating beside the base: those with most gain beside it, the nearest variant of each label, some of
-/// each stage, and for each member those that cost least in its place. These need a search of their own: what acts like a member gains next
-/// to nothing beside that member. `around` has the base's own columns; what the hypotheses change is taken from beside no effect.
+/// The hypotheses that are worth simulating beside the base: those with most gain beside it (the nearest variant of each label), some of
+/// each stage, and for each member those that cost least in its place. An effect that acts like a member gains next to nothing beside it,
+/// so that the first list does not have it. `around` and `columns` hold the base's own columns; the changes by the hypotheses are those
+/// beside no effect.
 std::vector<std::size_t> Search::worthSimulatingBeside(Surroundings around, std::vector<LinearModel::Column> columns) const {
   around.sensitivities = aboutNothingNear(around.base).sensitivities;
   addOtherColumns(around, columns);
