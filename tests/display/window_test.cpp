@@ -331,7 +331,8 @@ TEST_F(WindowTest, TargetIsMovedByKeysAndByTheMouse) {
   EXPECT_GT(session.press("0")["target_mm"][1], 20.0);
   session.press("q");
   ASSERT_EQ(session.exitStatus(), 0);
-  const auto& recorded = readRecording((folder_ / "run" / "run.csv").string()).find("target_y_mm")->values;
+  const Recording recording = readRecording((folder_ / "run" / "run.csv").string());
+  const auto& recorded = recording.find("target_y_mm")->values;
   EXPECT_EQ(recorded.front(), 0);
   EXPECT_GT(recorded.back(), 20);
 }
