@@ -69,7 +69,7 @@ void Comparison::addAverages() {
 /// A pressure or a tension is a channel of power 1 per segment. Signals of motion are functions of each other, so n of them are one
 /// channel, but their sensors fail one by one: it has the power sqrt(n). Blocks of a channel share its power. A single recording, or two,
 /// count as three: they hold as many motions.
-void Comparison::shareEvidence(Focus focus) {
+void Comparison::shareEvidence() {
   constexpr double usual_recordings = 3;
   const auto channelOf = [this](const Block& block) {
     const std::string& name = plant_.signals()[static_cast<std::size_t>(block.signal)].name;
@@ -88,13 +88,17 @@ void Comparison::shareEvidence(Focus focus) {
   const double per_segment = std::max(1.0, usual_recordings / static_cast<double>(segments_.size()));
   for (Block& block : blocks_) {
     const Channel& channel = channels[{block.segment, channelOf(block)}];
-    const bool counts = focus == Focus::all_signals || channelOf(block).starts_with("pressure_");
-    block.power = counts ? per_segment * std::sqrt(static_cast<double>(channel.signals.size())) / channel.blocks : 0;
+    block.power = counts(block) ? per_segment * std::sqrt(static_cast<double>(channel.signals.size())) / channel.blocks : 0;
   }
 }
 
+bool Comparison::counts(const Block& block) const {
+  return focus_ == Focus::all_signals || plant_.signals()[static_cast<std::size_t>(block.signal)].name.starts_with("pressure_");
+}
+
 void Comparison::focusOn(Focus focus) {
-  shareEvidence(focus);
+  focus_ = focus;
+  shareEvidence();
 }
 
 void Comparison::average(Eigen::VectorXd& values) const {
@@ -107,6 +111,7 @@ void Comparison::average(Eigen::VectorXd& values) const {
 void Comparison::goCoarse(const Eigen::VectorXd& nominal, Purpose purpose) {
   constexpr double few_sigmas = 5, share_of_gap = 0.1;
   if (nominal.size() != size_) return;
+  nominal_ = nominal;
   const bool screening = purpose == Purpose::screening;
   const Eigen::VectorXd residual = measured_ - nominal;
   for (const Fidelity fidelity : {Fidelity::coarsest, Fidelity::coarse, Fidelity::medium}) {
@@ -144,16 +149,24 @@ Eigen::VectorXd Comparison::predicted(const Model& model) const {
   if (fidelity_ == Fidelity::fine) return predicted(model, Fidelity::fine);
   const Eigen::VectorXd coarse = predicted(model, fidelity_);
   if (!coarse.size() || !coarse.allFinite()) return predicted(model, Fidelity::fine);
-  return coarse + correction_;
+  return withNominal(coarse + correction_);
 }
 
 Eigen::VectorXd Comparison::predicted(const Model& model, Fidelity fidelity) const {
   std::vector<Prediction> predictions(segments_.size());
   parallelFor(static_cast<int>(segments_.size()), plant_.jobCount(), [&](int i) {
     const Segment& segment = segments_[static_cast<std::size_t>(i)];
-    predictions[static_cast<std::size_t>(i)] = plant_.predict(segment.recording, model, segment.end_row, fidelity);
+    predictions[static_cast<std::size_t>(i)] = plant_.predict(segment.recording, model, segment.end_row, fidelity, focus_);
   });
-  return gathered(predictions);
+  return withNominal(gathered(predictions));
+}
+
+/// A prediction with the values of the model without effects in all blocks that do not count.
+Eigen::VectorXd Comparison::withNominal(Eigen::VectorXd prediction) const {
+  if (prediction.size() && nominal_.size())
+    for (const Block& block : blocks_)
+      if (!counts(block)) prediction.segment(block.first, block.count()) = nominal_.segment(block.first, block.count());
+  return prediction;
 }
 
 Eigen::VectorXd Comparison::predicted(const std::vector<Prediction>& per_segment, Fidelity fidelity) const {

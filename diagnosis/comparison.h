@@ -73,8 +73,8 @@ class Comparison {
   Eigen::VectorXd predicted(const std::vector<Prediction>& per_segment, Fidelity fidelity) const;
   const Eigen::VectorXd& measured() const { return measured_; }
 
-  enum class Focus { pressures, all_signals };
-  /// Which signals count in misfits and weights from here on; the others get no power.
+  /// Which signals count in misfits and weights from here on; the others get no power, and predictions have the values of the model
+  /// without effects for them.
   void focusOn(Focus focus);
 
   /// Mean square of the part of a vector that belongs to one block.
@@ -102,14 +102,18 @@ class Comparison {
 
  private:
   void addAverages();
-  void shareEvidence(Focus focus = Focus::all_signals);
+  void shareEvidence();
+  bool counts(const Block& block) const;
   void average(Eigen::VectorXd& values) const;
   Unsteady unsteadiness(const Eigen::VectorXd& change, const Eigen::VectorXd& residual) const;
+  Eigen::VectorXd withNominal(Eigen::VectorXd prediction) const;
   Eigen::VectorXd gathered(const std::vector<Prediction>& per_segment) const;
 
   const Plant& plant_;
   Fidelity fidelity_ = Fidelity::fine;
   Unsteady unsteady_;
+  Focus focus_ = Focus::all_signals;
+  Eigen::VectorXd nominal_;     ///< prediction of the model without effects, in fine steps; empty before goCoarse
   Eigen::VectorXd correction_;  ///< fine minus coarse prediction of the model without effects
   std::vector<Segment> segments_;
   std::vector<Block> blocks_;

@@ -395,14 +395,26 @@ std::string Plant::simulationKey(int recording, std::size_t rows, Fidelity fidel
   return fmt::format("{} {} {} {}", recording, rows, ratioOf(possible(fidelity)), key_of_tuned_);
 }
 
-Prediction Plant::predict(int recording, const Model& model, int end_row, Fidelity fidelity) const {
+/// Whether the pressures under a model depend on the muscles' lengths.
+bool Plant::pressuresNeedMotion(const Model& model) const {
+  const auto needsMotion = [](const ActiveEffect& effect) {
+    const EffectInfo info = effectInfo(effect.id);
+    return (info.stage == Stage::command || info.stage == Stage::pressure) && !info.ignores_motion;
+  };
+  return std::ranges::any_of(model.effects, needsMotion) || std::ranges::any_of(options_.model.effects, needsMotion) ||
+         std::ranges::any_of(recordings_, [&](const Recording& one) { return std::ranges::any_of(one.info.active_effects, needsMotion); });
+}
+
+Prediction Plant::predict(int recording, const Model& model, int end_row, Fidelity fidelity, Focus focus) const {
+  if (focus == Focus::pressures && pressuresNeedMotion(model)) focus = Focus::all_signals;
   const Recording& recorded = recordings_[static_cast<std::size_t>(recording)];
   const std::size_t all_rows = recorded.time_s.size();
   const std::size_t rows = end_row > 0 ? std::min(static_cast<std::size_t>(end_row), all_rows) : all_rows;
-  const std::string key = simulationKey(recording, rows, fidelity) + modelKey(model);
+  std::string key = simulationKey(recording, rows, fidelity) + modelKey(model);
+  if (focus == Focus::pressures) key += " pressures";
   const bool is_new = store_.isNew(key);
-  Prediction prediction = store_.get(key, [&] { return replay(recorded, model, end_row, fidelity); });
-  if (is_new && !prediction.refused) count(recorded.time_s[rows - 1] - recorded.time_s.front());
+  Prediction prediction = store_.get(key, [&] { return replay(recorded, model, end_row, fidelity, focus); });
+  if (is_new && !prediction.refused && focus == Focus::all_signals) count(recorded.time_s[rows - 1] - recorded.time_s.front());
   holdSamples(recording, model, prediction);
   return prediction;
 }
@@ -424,27 +436,21 @@ Prediction Plant::predict(int recording, const Model& model, const std::vector<s
   return store_.get(key, [&] { return replay(changed, model, end_row, fidelity); });
 }
 
-/// Whether changed parameters need far more internal steps than the model, for example a force that grows a millionfold towards full
-/// length.
-bool Plant::takesForEver(const Recording& recording, const ReplayOptions& options) const {
-  constexpr int most_ratio = 20;
-  Simulation changed(simulationOptionsFor(recording.info, sidecarPath(recording.file), options));
-  changed.build(recording.info.robot);
-  return changed.substeps() > most_ratio * reference_->substeps();
-}
-
 /// Empty if such an effect cannot act on this plant (a payload that removes more mass than there is), or if the simulation would take too
-/// long.
-std::optional<ReplayResult> Plant::simulated(const Recording& recording, const Model& model, Fidelity fidelity, HeldSamples held) const {
+/// long, for example with a force that grows a millionfold towards full length.
+std::optional<ReplayResult> Plant::simulated(const Recording& recording, const Model& model, Fidelity fidelity, HeldSamples held,
+                                             Focus focus) const {
+  constexpr int most_ratio = 20;  // of internal steps, over those of the model
   ReplayOptions options = options_.model;
+  options.body_moves = focus != Focus::pressures;
   const bool unchanged = model.effects.empty() && model.parameters.empty();
   if (!unchanged) options.interrupted = options_.interrupted;  // a partial report also compares with the unchanged model
   if (const int ratio = ratioOf(possible(fidelity)); ratio > 1) options.substeps = (reference_->substeps() + ratio - 1) / ratio;
   for (const ActiveEffect& effect : model.effects)
     if (effect.id != held_effect || held == HeldSamples::drawn) options.effects.push_back(effect);
   for (const auto& [name, value] : model.parameters) options.parameters.set(name, value, "diagnosis");
+  if (!model.parameters.empty()) options.most_substeps = most_ratio * reference_->substeps();
   try {
-    if (!model.parameters.empty() && takesForEver(recording, options)) return std::nullopt;
     return replayRecording(recording, options);
   } catch (const BadParameter&) {
     if (unchanged) throw;
@@ -454,13 +460,13 @@ std::optional<ReplayResult> Plant::simulated(const Recording& recording, const M
   return std::nullopt;
 }
 
-Prediction Plant::replay(Recording recording, const Model& model, int end_row, Fidelity fidelity) const {
+Prediction Plant::replay(Recording recording, const Model& model, int end_row, Fidelity fidelity, Focus focus) const {
   const std::size_t all_rows = recording.time_s.size();
   if (end_row > 0 && static_cast<std::size_t>(end_row) < all_rows) {
     recording.time_s.resize(static_cast<std::size_t>(end_row));
     for (Signal& signal : recording.signals) signal.values.resize(static_cast<std::size_t>(end_row));
   }
-  const std::optional<ReplayResult> result = simulated(recording, model, fidelity, HeldSamples::as_measured);
+  const std::optional<ReplayResult> result = simulated(recording, model, fidelity, HeldSamples::as_measured, focus);
   if (!result) return {std::vector<std::vector<double>>(signals_.size(), std::vector<double>(all_rows, nan)), true, true};
   Prediction prediction;
   prediction.diverged = result->divergence.has_value() || result->interrupted;

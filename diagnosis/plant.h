@@ -45,6 +45,9 @@ struct Split {
 /// of one plant, so differences between coarse predictions are valid (Comparison corrects for the rest).
 enum class Fidelity { fine, medium, coarse, coarsest };
 
+/// Which signals of a prediction are asked for. Pressures alone need no simulation of the body.
+enum class Focus { pressures, all_signals };
+
 /// A model: effects and changed parameters added to the user's own.
 struct Model {
   std::vector<ActiveEffect> effects;
@@ -107,8 +110,10 @@ class Plant {
   /// Tension of a muscle by the model's force law at a pressure and a length, N.
   double tensionN(int muscle, double pressure_ratio, double length_mm) const;
 
-  /// Simulates a recording up to `end_row` (0: all rows). Thread-safe. Repeated requests are not simulated again.
-  Prediction predict(int recording, const Model& model, int end_row = 0, Fidelity fidelity = Fidelity::fine) const;
+  /// Simulates a recording up to `end_row` (0: all rows). Thread-safe. Repeated requests are not simulated again. With the focus on
+  /// pressures the values of all other signals may be anything.
+  Prediction predict(int recording, const Model& model, int end_row = 0, Fidelity fidelity = Fidelity::fine,
+                     Focus focus = Focus::all_signals) const;
   /// The same with other commands in place of the recorded ones; `commands[row][muscle]`.
   Prediction predict(int recording, const Model& model, const std::vector<std::vector<double>>& commands, int end_row,
                      Fidelity fidelity) const;
@@ -122,7 +127,7 @@ class Plant {
   RobotDrawing drawing() const;
   bool hasHand() const;
 
-  /// Number of distinct simulations, and the seconds simulated.
+  /// Number of distinct simulations of the robot, and the seconds simulated; those of pressures alone do not count.
   long simulationCount() const { return simulation_count_; }
   double simulatedS() const { return static_cast<double>(simulated_ms_) / ms_per_s; }
   /// Threads to use; 0: one per core.
@@ -140,9 +145,10 @@ class Plant {
   void count(double simulated_s) const;
   enum class HeldSamples { as_measured, drawn };
   bool canBeBuilt(const Eigen::VectorXd& eta, double margin) const;
-  std::optional<ReplayResult> simulated(const Recording& recording, const Model& model, Fidelity fidelity, HeldSamples held) const;
-  Prediction replay(Recording recording, const Model& model, int end_row, Fidelity fidelity) const;
-  bool takesForEver(const Recording& recording, const ReplayOptions& options) const;
+  bool pressuresNeedMotion(const Model& model) const;
+  std::optional<ReplayResult> simulated(const Recording& recording, const Model& model, Fidelity fidelity, HeldSamples held,
+                                        Focus focus = Focus::all_signals) const;
+  Prediction replay(Recording recording, const Model& model, int end_row, Fidelity fidelity, Focus focus = Focus::all_signals) const;
   void holdSamples(int recording, const Model& model, Prediction& prediction) const;
 
   std::vector<Recording> recordings_;

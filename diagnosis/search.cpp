@@ -355,9 +355,9 @@ bool Search::changesFocus(std::size_t hypothesis) const {
 std::vector<Explanation> Search::explainPressures() {
   constexpr std::size_t kept = 2;
   constexpr double too_small = 1;  // nats: less than a parameter costs
-  screening_.focusOn(Comparison::Focus::pressures);
+  screening_.focusOn(Focus::pressures);
   if (screening_.misfit(screening_residual_) < too_small) {
-    screening_.focusOn(Comparison::Focus::all_signals);
+    screening_.focusOn(Focus::all_signals);
     return {};
   }
   const std::vector<char> allowed = catalogue_.allowed;
@@ -373,7 +373,7 @@ std::vector<Explanation> Search::explainPressures() {
   pool_.clear();
   expanded_.clear();
   catalogue_.allowed = allowed;
-  screening_.focusOn(Comparison::Focus::all_signals);
+  screening_.focusOn(Focus::all_signals);
   return found;
 }
 

@@ -162,6 +162,7 @@ SimulationOptions simulationOptionsFor(const RecordingInfo& info, const std::str
   result.plane = options.plane || info.robot_parameters.contains(plane_height);
   result.seed = options.seed.value_or(info.seed.value_or(1));
   result.interrupted = options.interrupted;
+  result.body_moves = options.body_moves;
   const std::string group = isRobotFile(info.robot) ? nameOfRobotFile(info.robot) : info.robot;
   for (const auto& [name, value] : info.robot_parameters)
     result.parameters.setFromFile(name.find('.') == std::string::npos ? group + "." + name : name, value, source);
@@ -190,6 +191,8 @@ ReplayResult replayRecording(const Recording& recording, const ReplayOptions& op
   Simulation simulation(simulationOptionsFor(info, sidecarPath(recording.file), drawn));
   Robot& robot = simulation.build(info.robot);
   simulation.parameters().requireAllKnown();
+  if (options.most_substeps > 0 && simulation.substeps() > options.most_substeps)
+    throw BadParameter("substeps", std::to_string(simulation.substeps()), fmt::format("be at most {}", options.most_substeps));
   ReplayController commands(recording, robot.actuatorCount());
   Pulls pulls(recording.info, sidecarPath(recording.file), info.robot == recording.info.robot);
 

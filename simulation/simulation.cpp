@@ -52,7 +52,8 @@ double requireStep(double step_s) {
 Simulation::Simulation(SimulationOptions options)
     : world_(std::make_unique<World>(
           WorldOptions{options.physics, options.plane, options.seed, requireStep(options.step_s), std::move(options.parameters)})),
-      interrupted_(std::move(options.interrupted)) {
+      interrupted_(std::move(options.interrupted)),
+      body_moves_(options.body_moves) {
   if (options.substeps < 0 || options.substeps > 1000000)
     throw BadParameter("substeps", fmt::format("{}", options.substeps), "be a whole number in 1 .. 1000000, or 0 for automatic");
   substeps_given_ = options.substeps > 0;
@@ -136,6 +137,7 @@ Controller& Simulation::control(std::unique_ptr<Controller> controller) {
 
 void Simulation::settle(const Action& command) {
   effects_->settlePressures(command);
+  if (!body_moves_) return;
   robot().settle();
   robot().countTurns(true);
   stop();
@@ -212,6 +214,11 @@ void Simulation::internalStep(double h_s) {
   // A sample's way: command -> pressure -> force -> body -> sensor. (Robot::getState takes the readings.)
   effects_->command(values, h_s);
   effects_->pressure(values, h_s);
+  if (!body_moves_) {
+    effects_->track(h_s);
+    world_->clock().countInternalStep(h_s);
+    return;
+  }
   effects_->force(values, h_s);
   const double now_s = world_->clock().now_s();
   for (const Actuator* actuator : world_->actuators()) {
@@ -281,6 +288,7 @@ BodyBounds Simulation::bodyBounds() const {
 }
 
 void Simulation::requireWhole() {
+  if (!body_moves_) return;
   const std::optional<TornJoint> known = stepper_->largestGap();
   const TornJoint torn = known ? *known : tornMost();
   if (!(torn.gap_mm <= worst_gap_.gap_mm)) worst_gap_ = torn;

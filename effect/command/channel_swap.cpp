@@ -11,7 +11,8 @@ EffectInfo ChannelSwap::info() {
           .signature = "the two muscles respond to each other's commands; antagonists move in the wrong direction",
           .source = "definition",
           .parameters = {},
-          .make = [](const EffectValues&) { return std::make_unique<ChannelSwap>(); }};
+          .make = [](const EffectValues&) { return std::make_unique<ChannelSwap>(); },
+          .ignores_motion = true};
 }
 
 void ChannelSwap::attach(const EffectPlace& place) {

@@ -14,7 +14,8 @@ EffectInfo CommandDeadBand::info() {
           .source = "definition; 0.056 of full scale measured on a pneumatic muscle drive; a sticking spool opens later than it closes",
           .parameters = {{"threshold", "", 0, 0, 1, 0.02, 0.1, "u_t, fraction of full scale"},
                          {"hysteresis", "", 0, 0, 1, 0, 0.5, "h, the valve closes at (1 - h) u_t", true}},
-          .make = [](const EffectValues& values) { return std::make_unique<CommandDeadBand>(values["threshold"], values["hysteresis"]); }};
+          .make = [](const EffectValues& values) { return std::make_unique<CommandDeadBand>(values["threshold"], values["hysteresis"]); },
+          .ignores_motion = true};
 }
 
 }  // namespace musclesim

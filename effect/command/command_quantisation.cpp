@@ -25,7 +25,8 @@ EffectInfo CommandQuantisation::info() {
                       "r, point within an interval from which values go to the next level; 0.5: rounds, 1: truncates", true},
                      {"top_level", "", 1, 0, 1, 0, 1, "1: the highest level is full scale; 0: full scale would be one level above it",
                       true}},
-      .make = [](const EffectValues& v) { return std::make_unique<CommandQuantisation>(v["bits"], v["rounding_point"], v["top_level"]); }};
+      .make = [](const EffectValues& v) { return std::make_unique<CommandQuantisation>(v["bits"], v["rounding_point"], v["top_level"]); },
+      .ignores_motion = true};
 }
 
 CommandQuantisation::CommandQuantisation(double bits, double rounding_point, double top_level)

@@ -11,7 +11,8 @@ EffectInfo TransportDelay::info() {
           .signature = "phase lag in proportion to frequency, amplitude unchanged",
           .source = "dead time of tubes and electronics; 44 to 96 ms measured on a pneumatic muscle drive",
           .parameters = {{"delay_s", "s", 0, 0, 2, 0.003, 0.1, "dead time"}},
-          .make = [](const EffectValues& values) { return std::make_unique<TransportDelay>(values["delay_s"]); }};
+          .make = [](const EffectValues& values) { return std::make_unique<TransportDelay>(values["delay_s"]); },
+          .ignores_motion = true};
 }
 
 double TransportDelay::output(double input, const StepTime& time) {

@@ -19,9 +19,11 @@ EffectInfo Leak::info() {
                      {"regulator_time_constant_s", "s", 0.05, 1e-3, 5, 0.02, 0.15, "tau_r", true},
                      {"flow_exponent", "", 1, 0.3, 1.5, 0.5, 1,
                       "n; 1: laminar or choked flow, 0.5: turbulent flow through a hole at low pressure", true}},
-      .make = [](const EffectValues& values) {
-        return std::make_unique<Leak>(values["leak_per_s"], values["regulator_time_constant_s"], values["flow_exponent"]);
-      }};
+      .make =
+          [](const EffectValues& values) {
+            return std::make_unique<Leak>(values["leak_per_s"], values["regulator_time_constant_s"], values["flow_exponent"]);
+          },
+      .ignores_motion = true};
 }
 
 double Leak::lossPerS(double pressure) const {

@@ -11,7 +11,8 @@ EffectInfo PressureCalibration::info() {
           .signature = "the error is present at rest and the same in both directions",
           .source = "definition",
           .parameters = {{"gain", "", 1, 0, 5, 0.9, 1.1, "gain"}, {"offset", "", 0, -1, 1, -0.05, 0.05, "offset, fraction of full scale"}},
-          .make = [](const EffectValues& values) { return std::make_unique<PressureCalibration>(values["gain"], values["offset"]); }};
+          .make = [](const EffectValues& values) { return std::make_unique<PressureCalibration>(values["gain"], values["offset"]); },
+          .ignores_motion = true};
 }
 
 }  // namespace musclesim

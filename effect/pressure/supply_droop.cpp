@@ -22,7 +22,8 @@ EffectInfo SupplyDroop::info() {
       .signature = "the error of one muscle follows the demand of the others",
       .source = "pressure drop over the supply's resistance; 0.04 to 0.12 of the supply measured",
       .parameters = {{"droop", "", 0, 0, 1, 0.02, 0.2, "drop of the supply per unit of demand"}},
-      .make = [](const EffectValues& values) { return std::make_unique<SupplyDroop>(values["droop"]); }};
+      .make = [](const EffectValues& values) { return std::make_unique<SupplyDroop>(values["droop"]); },
+      .ignores_motion = true};
 }
 
 void SupplyDroop::settle(std::vector<double>& ratios) {

@@ -21,9 +21,11 @@ EffectInfo ValveLag::info() {
           {{"fill_time_constant_s", "s", 0, 0, 5, 0.01, 0.2, "tau while the pressure rises"},
            {"vent_time_constant_s", "s", 0, 0, 5, 0.01, 0.2, "tau while the pressure falls"},
            {"next_lag_ratio", "", 0, 0, 1, 0, 1, "r, each of three lags in series to the one before it; 0: a single lag", true, {}, true}},
-      .make = [](const EffectValues& values) {
-        return std::make_unique<ValveLag>(values["fill_time_constant_s"], values["vent_time_constant_s"], values["next_lag_ratio"]);
-      }};
+      .make =
+          [](const EffectValues& values) {
+            return std::make_unique<ValveLag>(values["fill_time_constant_s"], values["vent_time_constant_s"], values["next_lag_ratio"]);
+          },
+      .ignores_motion = true};
 }
 
 double ValveLag::output(double input, const StepTime& time) {

@@ -94,6 +94,25 @@ TEST(Plant, AnEffectWithWhichARobotFileCannotBeBuiltDiverges) {
   EXPECT_TRUE(with(3));
 }
 
+/// The same bits, and a body is simulated only where the pressures depend on it.
+TEST(Plant, PredictsPressuresAloneWithoutTheBody) {
+  const DiagnosisOptions options;
+  const Plant plant(planted::plant({}, planted::Pressure::measured), options);
+  const auto pressures = std::ranges::find(plant.signals(), "pressure_0", &ComparedSignal::name) - plant.signals().begin();
+  ASSERT_LT(pressures, std::ssize(plant.signals()));
+  const ActiveEffect lag = {"valve_lag", "all", {{"fill_time_constant_s", 0.1}, {"vent_time_constant_s", 0.06}}},
+                     coupling = {"volume_coupling", "all", {{"polytropic_exponent", 1.4}}};
+  for (const auto& [effects, simulation_count] :
+       {std::pair{std::vector{lag}, 0L}, std::pair{std::vector{lag, coupling}, 1L}, std::pair{std::vector<ActiveEffect>{}, 0L}}) {
+    const long before = plant.simulationCount();
+    const Prediction alone = plant.predict(0, Model{effects, {}}, 0, Fidelity::fine, Focus::pressures);
+    EXPECT_EQ(plant.simulationCount() - before, simulation_count);
+    const Prediction whole = plant.predict(0, Model{effects, {}});
+    EXPECT_EQ(alone.values[static_cast<std::size_t>(pressures)], whole.values[static_cast<std::size_t>(pressures)]);
+    EXPECT_FALSE(alone.diverged);
+  }
+}
+
 TEST(Plant, KnowsTheStagesOfWhatTheModelHoldsBeforehand) {
   std::vector<Recording> recordings = planted::plant({});
   DiagnosisOptions options;

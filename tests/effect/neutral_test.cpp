@@ -108,6 +108,31 @@ TEST_P(EveryEffect, IsRefusedOnAComponentThatTheRobotDoesNotHave) {
   EXPECT_TRUE(contains(message, "component of " + info.id));
 }
 
+/// An effect that asks the muscles for their lengths would show: the body that stands still keeps those as built.
+TEST(EffectsThatIgnoreMotion, MakeTheSamePressuresInABodyThatStandsStill) {
+  ReplayOptions still;
+  still.body_moves = false;
+  int compared_count = 0;
+  for (const EffectInfo& info : effectCatalogue()) {
+    if (!info.ignores_motion) continue;
+    EXPECT_TRUE(info.stage == Stage::command || info.stage == Stage::pressure);
+    for (const char* robot : {"rig", "elbow", "arm"}) {
+      SCOPED_TRACE(info.id + " on " + robot);
+      const std::vector<std::string> components = componentsOf(info, robot);
+      if (components.empty()) continue;
+      const Recording commands = wavesFor(robot, durationFor(robot));
+      const std::vector<ActiveEffect> effects = {usualEffect(info, components.front())};
+      const ReplayResult moving = replayWith(commands, effects), standing = replayWith(commands, effects, still);
+      ASSERT_FALSE(standing.divergence);
+      for (const Signal& signal : moving.simulated.signals)
+        if (signal.name.starts_with("pressure_")) EXPECT_EQ(signal.values, valuesOf(standing, signal.name)) << signal.name;
+      EXPECT_NE(valuesOf(moving, "length_0_mm"), valuesOf(standing, "length_0_mm"));
+      ++compared_count;
+    }
+  }
+  EXPECT_GE(compared_count, 20);
+}
+
 std::vector<std::string> allIds() {
   std::vector<std::string> ids;
   for (const EffectInfo& info : effectCatalogue()) ids.push_back(info.id);

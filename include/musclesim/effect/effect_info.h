@@ -29,6 +29,9 @@ struct EffectInfo {
   std::function<std::unique_ptr<Effect>(const EffectValues&)> make;
   /// Given: how far beside its place the robot builds an end of the muscle, along the lever arm and upward.
   std::function<Eigen::Vector2d(const EffectValues&, MuscleEnd)> mount_offset_mm = {};
+  /// Whether an effect of the command or pressure stage never asks for lengths, forces or poses. Then pressures can be predicted with a
+  /// body that stands still (SimulationOptions::body_moves).
+  bool ignores_motion = false;
   /// Whether effectCatalogue() lists the effect, so that `musclesim effects` shows it and a diagnosis looks for it.
   bool listed = true;
 };

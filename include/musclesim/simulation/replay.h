@@ -26,6 +26,8 @@ struct ReplayOptions {
   using Watcher = std::function<void(const State&)>;
   std::function<Watcher(Simulation&)> watch;
   std::function<bool()> interrupted;  ///< polled during the replay; returning true ends it soon
+  int most_substeps = 0;              ///< a robot that needs more internal steps per control step is refused; 0: none is
+  bool body_moves = true;             ///< false: only commands and pressures are right (SimulationOptions::body_moves)
 };
 
 /// Error of one signal, simulated minus recorded, over the samples where both are numbers.
@@ -73,7 +75,7 @@ void holdWhereMeasured(std::vector<double>& predicted, const std::vector<double>
 /// the options; the simulated recording names both. If the options contain held_effect, it loses the samples that the recording lost; in
 /// signals that the recording does not have, lost samples are drawn at random. Each call builds its own simulation, so calls may run in
 /// parallel threads. Throws BadFile if the robot is not registered or its number of muscles differs from the recording's number of
-/// commands, BadParameter for parameters that the model does not know.
+/// commands, BadParameter for parameters that the model does not know, and for a robot that needs more than most_substeps.
 ReplayResult replayRecording(const Recording& recording, const ReplayOptions& options = {});
 
 /// Error of every signal of `simulated` that `measured` also has, row by row; commands are not compared.

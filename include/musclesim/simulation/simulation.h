@@ -34,6 +34,9 @@ struct SimulationOptions {
   Parameters parameters;              ///< overrides by name
   std::vector<ActiveEffect> effects;  ///< what the clean model leaves out
   std::function<bool()> interrupted;  ///< asked before every internal step; true ends the step in Interrupted
+  /// False: the bodies stay where they are built, and only commands, pressures and what sensors make of them go on. The pressures are
+  /// those of a moving body, to the bit, if all effects of the command and pressure stages ignore motion (EffectInfo::ignores_motion).
+  bool body_moves = true;
 };
 
 /// The largest distance by which a joint is torn.
@@ -147,6 +150,7 @@ class Simulation {
   bool faulted_ = false;
   std::optional<Diverged> divergence_;
   std::function<bool()> interrupted_;
+  bool body_moves_;
   long solver_message_count_ = 0;
   TornJoint worst_gap_;
   std::optional<Pull> pull_;
