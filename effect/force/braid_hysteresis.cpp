@@ -13,16 +13,18 @@ EffectInfo BraidHysteresis::info() {
           .acts_on = {ComponentKind::muscle},
           .summary = "the threads of the braid rub against each other",
           .equation =
-              "F' = F - w ((1 - c) |F| + c p F_0) z, dz = -dl / s within -1 <= z <= 1    F tension, p pressure, F_0 tension at full "
-              "pressure and rest length, l length, w = relative_width, s = presliding_mm, c = pressure_share",
+              "F' = F - w ((1 - c) |F| + c p F_0) z, dz = -(1 + z sgn(dl))^i dl / s    F tension, p pressure, F_0 tension at full "
+              "pressure and rest length, l length, w = relative_width, s = presliding_mm, c = pressure_share, i = presliding_exponent",
           .signature = "loop of pressure over length whose width grows with pressure and does not depend on speed",
-          .source = "Maxwell slip element, Iwan 1966; friction between threads, Tondu and Lopez 2000",
+          .source = "Maxwell slip element, Iwan 1966; Dahl 1968; friction between threads, Tondu and Lopez 2000",
           .parameters = {{"relative_width", "", 0, 0, 1, 0.01, 0.12,
                           "w, half the loop's width as a share of the tension (c = 0) or of p F_0 (c = 1)"},
                          {"presliding_mm", "mm", 1, 0.01, 50, 0.5, 3, "s, displacement until the threads slide", true},
-                         {"pressure_share", "", 0, 0, 1, 0, 1, "c; 0: friction in proportion to the tension, 1: to the pressure", true}},
+                         {"pressure_share", "", 0, 0, 1, 0, 1, "c; 0: friction in proportion to the tension, 1: to the pressure", true},
+                         {"presliding_exponent", "", 0, 0, 1, 0, 1, "i; 0: all threads slide at once, 1: ever more of them", true}},
           .make = [](const EffectValues& values) {
-            return std::make_unique<BraidHysteresis>(values["relative_width"], values["presliding_mm"], values["pressure_share"]);
+            return std::make_unique<BraidHysteresis>(values["relative_width"], values["presliding_mm"], values["pressure_share"],
+                                                     values["presliding_exponent"]);
           }};
 }
 
@@ -32,7 +34,14 @@ void BraidHysteresis::attach(const EffectPlace& place) {
 }
 
 double BraidHysteresis::playAt(double length_mm) const {
-  return std::clamp(play_ - (length_mm - length_mm_) / presliding_mm_, -1.0, 1.0);
+  const double shortening = (length_mm_ - length_mm) / presliding_mm_;
+  if (exponent_ == 0) return std::clamp(play_ + shortening, -1.0, 1.0);
+  // g = 1 - z sgn(dz) obeys dg = -g^i |dl| / s.
+  const double direction = shortening < 0 ? -1 : 1, way = std::abs(shortening), before = std::max(0.0, 1 - direction * play_);
+  const double left = exponent_ == 1
+                          ? before * std::exp(-way)
+                          : std::pow(std::max(0.0, std::pow(before, 1 - exponent_) - (1 - exponent_) * way), 1 / (1 - exponent_));
+  return direction * (1 - left);
 }
 
 double BraidHysteresis::tensionN(const MuscleInput& input, const ForceBelow& below) const {

@@ -3,15 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "atmosphere.h"
 #include "musclesim/robot/actuator.h"
 
 namespace musclesim {
-
-namespace {
-
-constexpr double atmosphere_ratio = 0.17;
-
-}  // namespace
 
 EffectInfo VolumeCoupling::info() {
   return {.id = "volume_coupling",

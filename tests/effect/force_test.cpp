@@ -102,6 +102,21 @@ TEST(BraidHysteresis, DoesNotPush) {
   EXPECT_EQ(machine.tensionAt(200), 0);
 }
 
+/// 1 + z after a reversal from z = -1, way x in units of the presliding: 2 (1 - e^-x) for i = 1, 2 - (sqrt(2) - x / 2)^2 for i = 1/2.
+TEST(BraidHysteresis, MaySlideLittleByLittle) {
+  for (const double exponent : {0.5, 1.0})
+    for (const double way_mm : {0.6, 1.5, 3.0}) {
+      LengthMachine machine(
+          {{"braid_hysteresis", "all", {{"relative_width", 0.1}, {"presliding_mm", 1.5}, {"presliding_exponent", exponent}}}}, 0.5, 200);
+      machine.moveTo(240, 50, h_s);
+      EXPECT_NEAR(machine.tensionAt(240), 1.1 * machine.lawN(0.5, 240), 1e-3);
+      machine.moveTo(240 - way_mm, 50, h_s);
+      const double x = way_mm / 1.5, z = exponent == 1 ? 1 - 2 * std::exp(-x) : 1 - std::pow(std::sqrt(2) - x / 2, 2);
+      const double length_mm = machine.lengthMm();
+      EXPECT_NEAR(machine.tensionAt(length_mm), machine.lawN(0.5, length_mm) * (1 - 0.1 * z), 1e-3) << exponent << " " << way_mm;
+    }
+}
+
 TEST(BraidHysteresis, ReversesOverTwicePresliding) {
   LengthMachine machine({{"braid_hysteresis", "all", {{"relative_width", 0.1}, {"presliding_mm", 1.5}}}}, 0.5, 210);
   machine.moveTo(225, 50, h_s);

@@ -78,6 +78,27 @@ TEST(FlowLimit, IsALagWithinItsBand) {
   }
 }
 
+/// p + p_atm falls exponentially with the time constant (1 + p_atm) / vent_rate until the command is reached.
+TEST(FlowLimit, MayVentInProportionToTheAbsolutePressure) {
+  const double atmosphere = 0.17, rate_per_s = 0.8;
+  const auto largestError = [&](int substeps) {
+    ReplayOptions options;
+    options.substeps = substeps;
+    const ReplayResult run = replayWith(stepOf("rig", {0.6}, {0.1}),
+                                        {{"flow_limit", "all", {{"vent_rate_per_s", rate_per_s}, {"vent_pressure_share", 1.0}}}}, options);
+    double largest = 0;
+    for (std::size_t row = 0; row < run.simulated.time_s.size(); ++row) {
+      const double t = sinceStep(run.simulated.time_s[row]);
+      const double expected = (0.6 + atmosphere) * std::exp(-rate_per_s * t / (1 + atmosphere)) - atmosphere;
+      largest = std::max(largest, std::abs(valuesOf(run, "pressure_0")[row] - expected));
+    }
+    return largest;
+  };
+  const double error = largestError(20);
+  EXPECT_LT(error, 1e-4) << "internal steps of 0.5 ms";
+  EXPECT_NEAR(error / largestError(40), 2, 0.05) << "of first order";
+}
+
 TEST(Leak, KnowsOtherRegulators) {
   const ReplayResult run =
       replayWith(stepOf("rig", {0.3}, {0.3}), {{"leak", "all", {{"leak_per_s", 2.0}, {"regulator_time_constant_s", 0.1}}}});
