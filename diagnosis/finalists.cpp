@@ -13,7 +13,9 @@ namespace {
 constexpr double far_behind = 8;  ///< nats behind the best on the screening segments: not fitted to all recordings
 constexpr std::size_t finalist_count = 10;
 constexpr std::size_t always_count = 2;  ///< of each size
-constexpr std::size_t varied_count = 2;  ///< explanations of which other variants are tried
+constexpr std::size_t varied_count = 5;  ///< explanations of which other variants are tried,
+constexpr double near_best = 4;          ///< if they are not so many nats behind the best
+constexpr int variant_passes = 3;        ///< changes of one effect's variant each
 constexpr double worth_polishing = 2;    ///< nats that fine steps may give a variant
 constexpr int coarse_rounds = 6, fine_rounds = 4;
 
@@ -110,14 +112,19 @@ void Search::polish() {
   });
 }
 
-/// Replaces the best explanations by other variants of themselves that are better.
+/// Replaces the best explanations by other variants of themselves that are better, one effect's variant after the other.
 void Search::tryVariants() {
+  const double least = explanations_.empty() ? 0 : explanations_.front().score - near_best;
   for (std::size_t rank = 0; rank < std::min(explanations_.size(), varied_count); ++rank) {
-    std::vector<Explanation> others = otherVariants(explanations_[rank]);
-    fitAll(others, [this](Explanation& other) { fitRoughly(other); });
-    std::erase_if(others, [&](const Explanation& other) { return other.score < explanations_[rank].score - worth_polishing; });
-    fitAll(others, [this](Explanation& other) { fitFinely(other); });
-    if (!others.empty() && others.front().score > explanations_[rank].score) explanations_[rank] = std::move(others.front());
+    Explanation& one = explanations_[rank];
+    for (int pass = 0; pass < variant_passes && one.score >= least && !plant_.interrupted(); ++pass) {
+      std::vector<Explanation> others = otherVariants(one);
+      fitAll(others, [this](Explanation& other) { fitRoughly(other); });
+      std::erase_if(others, [&](const Explanation& other) { return other.score < one.score - worth_polishing; });
+      fitAll(others, [this](Explanation& other) { fitFinely(other); });
+      if (others.empty() || others.front().score <= one.score) break;
+      one = std::move(others.front());
+    }
   }
 }
 
