@@ -128,7 +128,7 @@ std::string digits(double value, double half) {
   if (!(half > 0)) return fmt::format("{:.3g}", value);
   const int power = static_cast<int>(std::floor(std::log10(half)));
   const int decimals = (half < 2 * std::pow(10, power) ? 1 : 0) - power;
-  return decimals > most_decimals ? fmt::format("{:.3g}", value) : fmt::format("{:.{}f}", value, std::max(0, decimals));
+  return decimals > most_decimals ? fmt::format("{:.3g}", value) : roundedWords(value, std::max(0, decimals));
 }
 
 /// At most three digits, fewer if the interval justifies no more.
@@ -142,19 +142,20 @@ std::string fewDigits(double value, double half) {
   return fmt::format("{:.{}g}", value, count);
 }
 
-double usualWidth(const EffectParameter& parameter) {
-  const double width = parameter.usual_high - parameter.usual_low;
-  return std::isfinite(width) ? width : 0;
+/// What is known of a number without any recording: the middle of a usual range of positive numbers by factors, which may span orders of
+/// magnitude; else half of the range. 0 if there is none.
+double usualScale(const EffectParameter& parameter) {
+  const double low = parameter.usual_low, high = parameter.usual_high, scale = low > 0 ? std::sqrt(low * high) : (high - low) / 2;
+  return std::isfinite(scale) ? scale : 0;
 }
 
-/// An interval says something if it is narrower than what is known without any recording; of a parameter that only says how something
-/// acts, clearly narrower.
+/// An interval says something if it is no wider than the usual scale or than plus and minus the value; of a parameter that only says how
+/// something acts, than the value.
 bool saysSomething(const Estimate& estimate, const EffectParameter& parameter) {
-  constexpr double clearly = 0.8;
   if (!estimate.is_determined || !std::isfinite(estimate.low) || !std::isfinite(estimate.high) || estimate.low >= estimate.high)
     return false;
-  const double known = std::max(usualWidth(parameter), std::abs(estimate.value));
-  return estimate.high - estimate.low <= (parameter.shape ? clearly * known : known);
+  const double value = std::abs(estimate.value);
+  return estimate.high - estimate.low <= std::max(usualScale(parameter), parameter.shape ? value : 2 * value);
 }
 
 /// Whether the parameter changes nothing, or only says how something acts and is not known.

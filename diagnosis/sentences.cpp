@@ -33,6 +33,12 @@ bool isLeftOut(const Estimate& estimate) {
   return estimate.value == 0 && (!estimate.is_determined || (estimate.low == 0 && estimate.high == 0));
 }
 
+std::string roundedWords(double value, int decimals) {
+  std::string words = fmt::format("{:.{}f}", value, decimals);
+  const bool is_zero = words.find_first_of("123456789") == std::string::npos;
+  return is_zero && words.front() == '-' ? words.substr(1) : words;
+}
+
 std::string estimateWords(const Estimate& estimate) {
   constexpr int most_decimals = 8;
   if (!estimate.is_determined) return fmt::format("{:.3g} (these recordings do not determine it)", estimate.value);
@@ -43,7 +49,7 @@ std::string estimateWords(const Estimate& estimate) {
   const int decimals = (begins_with_one ? 1 : 0) - power;
   auto words = [&](double value) {
     if (value == 0) return std::string("0");
-    return decimals > most_decimals ? fmt::format("{:.4g}", value) : fmt::format("{:.{}f}", value, std::max(0, decimals));
+    return decimals > most_decimals ? fmt::format("{:.4g}", value) : roundedWords(value, std::max(0, decimals));
   };
   return fmt::format("{} ({} to {})", words(estimate.value), words(estimate.low), words(estimate.high));
 }

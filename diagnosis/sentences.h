@@ -36,6 +36,8 @@ std::string componentWords(const std::string& component);
 /// "valve_lag@muscle_1: vent_time_constant_s = 0.081 (0.077 to 0.085)".
 std::string effectSentence(const FoundEffect& effect);
 
+/// With so many decimals; what rounds to zero has no sign.
+std::string roundedWords(double value, int decimals);
 /// "0.081 (0.077 to 0.085)": as many decimals as the interval justifies. "8" without an interval; a remark if the recordings do not
 /// determine the value.
 std::string estimateWords(const Estimate& estimate);

@@ -71,6 +71,18 @@ TEST(EffectWords, LeavesOutWhatDoesNothingAndSaysWhatIsNotKnown) {
             "The pressure of muscle 0 rises or falls too slowly: at most 42 % of full scale per second (venting).");
 }
 
+/// The usual range of this damping is 20 to 3000 N s/m, so 245 N s/m is the middle by factors.
+TEST(EffectWords, GivesNoNumberThatMayBeAnything) {
+  const auto damping = [](double value, double low, double high) {
+    return FoundEffect{"viscous_loss", "all", 1, {{"damping_Ns_per_m", {value, low, high}}}};
+  };
+  const auto isSaid = [&](const FoundEffect& effect) { return claimSentences({effect}, {}).front().find(':') != std::string::npos; };
+  EXPECT_FALSE(isSaid(damping(49, 0, 1267)));
+  EXPECT_EQ(parameterLines(damping(49, 0, 1267), {}).front().remark, "these recordings hardly determine it");
+  EXPECT_TRUE(isSaid(damping(49, 0, 200)));
+  EXPECT_TRUE(isSaid(damping(1400, 800, 2000)));
+}
+
 TEST(EffectWords, NamesSignalsAsAReaderWould) {
   EXPECT_EQ(signalTitle("length_0_mm"), "length of muscle 0");
   EXPECT_EQ(signalTitle("force_11_N"), "tension of muscle 11");

@@ -105,6 +105,7 @@ TEST(Words, AnEstimateHasTheDecimalsThatItsIntervalBears) {
   EXPECT_EQ(estimateWords({-12.92, -13.1, -12.74}), "-12.92 (-13.10 to -12.74)");
   EXPECT_EQ(estimateWords({5400, 5000, 5800}), "5400 (5000 to 5800)");
   EXPECT_EQ(estimateWords({8, 8, 8}), "8");
+  EXPECT_EQ(estimateWords({-0.004, -0.07, 0.06}), "0.00 (-0.07 to 0.06)") << "a zero has no sign";
   EXPECT_EQ(estimateWords({0, 0, 0.00162}), "0 (0 to 0.0016)");
   EXPECT_EQ(estimateWords({1e-12, 0, 2e-12}), "1e-12 (0 to 2e-12)");
 }
