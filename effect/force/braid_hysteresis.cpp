@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../presliding.h"
 #include "musclesim/robot/actuator.h"
 
 namespace musclesim {
@@ -34,14 +35,7 @@ void BraidHysteresis::attach(const EffectPlace& place) {
 }
 
 double BraidHysteresis::playAt(double length_mm) const {
-  const double shortening = (length_mm_ - length_mm) / presliding_mm_;
-  if (exponent_ == 0) return std::clamp(play_ + shortening, -1.0, 1.0);
-  // g = 1 - z sgn(dz) obeys dg = -g^i |dl| / s.
-  const double direction = shortening < 0 ? -1 : 1, way = std::abs(shortening), before = std::max(0.0, 1 - direction * play_);
-  const double left = exponent_ == 1
-                          ? before * std::exp(-way)
-                          : std::pow(std::max(0.0, std::pow(before, 1 - exponent_) - (1 - exponent_) * way), 1 / (1 - exponent_));
-  return direction * (1 - left);
+  return slid(play_, (length_mm_ - length_mm) / presliding_mm_, exponent_);
 }
 
 double BraidHysteresis::tensionN(const MuscleInput& input, const ForceBelow& below) const {
