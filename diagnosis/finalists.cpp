@@ -12,11 +12,13 @@ namespace {
 
 constexpr double far_behind = 8;  ///< nats behind the best on the screening segments: not fitted to all recordings
 constexpr std::size_t finalist_count = 10;
-constexpr std::size_t always_count = 2;  ///< of each size
-constexpr std::size_t varied_count = 5;  ///< explanations of which other variants are tried,
-constexpr double near_best = 4;          ///< if they are not so many nats behind the best
-constexpr int variant_passes = 3;        ///< changes of one effect's variant each
-constexpr double worth_polishing = 2;    ///< nats that fine steps may give a variant
+constexpr std::size_t always_count = 2;     ///< of each size
+constexpr std::size_t varied_count = 5;     ///< explanations of which other variants are tried,
+constexpr double near_best = 4;             ///< if they are not so many nats behind the best
+constexpr std::size_t restarted_count = 4;  ///< explanations near the best that are fitted from other strengths,
+constexpr std::size_t start_count = 2;      ///< from so many starts each
+constexpr int variant_passes = 3;           ///< changes of one effect's variant each
+constexpr double worth_polishing = 2;       ///< nats that fine steps may give a variant
 constexpr int coarse_rounds = 6, fine_rounds = 4;
 
 }  // namespace
@@ -84,6 +86,7 @@ void Search::fitFinalists() {
   fitAll(explanations_, [this](Explanation& explanation) { fitRoughly(explanation); });
   dropHopeless();
   fitAll(explanations_, [this](Explanation& explanation) { fitFinely(explanation); });
+  tryOtherStrengths();
   tryVariants();
   tryWithoutOne();
   weigh();
@@ -110,6 +113,42 @@ void Search::polish() {
     takeFromCounterparts(explanation);
     explanation.score = evidence().score(explanation);
   });
+}
+
+/// The same effects with one of them half or twice as strong, and the numbers of the model as they were given.
+std::vector<Explanation> Search::otherStrengths(const Explanation& explanation) const {
+  std::vector<Explanation> result;
+  for (std::size_t m = 0; m < explanation.members.size(); ++m)
+    for (const double factor : {0.5, 2.0}) {
+      Explanation other = explanation;
+      for (const int strength : causes_.hypotheses[explanation.members[m]].strengths())
+        other.z[causes_.firstCoordinate(explanation, m) + strength] *= factor;
+      other.z = causes_.clamped(other.members, other.z);
+      other.numbers.setZero();
+      setCertainty(other, {});
+      result.push_back(std::move(other));
+    }
+  return result;
+}
+
+/// Fits the best explanations again from where one of their effects is weaker or stronger, and keeps what is better: plays, thresholds and
+/// dry friction make several minima.
+void Search::tryOtherStrengths() {
+  const double least = explanations_.empty() ? 0 : explanations_.front().score - near_best;
+  for (std::size_t rank = 0; rank < std::min(explanations_.size(), restarted_count); ++rank) {
+    Explanation& one = explanations_[rank];
+    if (one.score < least || plant_.interrupted()) break;
+    std::vector<Explanation> others = otherStrengths(one);
+    fitAll(others, [this](Explanation& other) {
+      causes_.refit(other, fit_, 0, Fidelity::coarse, Accuracy::ranking);
+      if (other.residual.size() == fit_.size()) other.score = evidence().score(other);
+    });
+    if (others.size() > start_count) others.resize(start_count);
+    fitAll(others, [this](Explanation& other) { fitRoughly(other); });
+    std::erase_if(others, [&](const Explanation& other) { return other.score < one.score - worth_polishing; });
+    fitAll(others, [this](Explanation& other) { fitFinely(other); });
+    if (!others.empty() && others.front().score > one.score) one = std::move(others.front());
+  }
 }
 
 /// Replaces the best explanations by other variants of themselves that are better, one effect's variant after the other.

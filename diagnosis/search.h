@@ -135,6 +135,8 @@ class Search {
   void takeFromCounterparts(Explanation& explanation) const;
   bool hasInactiveEffect(const Explanation& explanation) const;
   std::vector<Explanation> otherVariants(const Explanation& explanation) const;
+  std::vector<Explanation> otherStrengths(const Explanation& explanation) const;
+  void tryOtherStrengths();
   void tryVariants();
   void tryWithoutOne();
   void keepIfBetter(Explanation one);
