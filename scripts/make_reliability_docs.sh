@@ -34,7 +34,7 @@ rows=(
   "soak|1e6 steps: memory grows by less than 1 MB, open files not at all|$build/tests/bench/soak_study"
   "work|random work (runs, replays, diagnoses, sweeps, reruns; ensembles, steps and diagnoses in one long process of Python; a window with random keys): the same bytes whenever work is drawn again; memory and open files of long processes do not grow; a quarter of an hour here, eight hours for a release (--hours 8)|/usr/bin/python3 tests/reliability/soak.py --hours 0.25 --figure docs/developer/figures/soak.svg"
   "threads|ensembles, the store of predictions, a small diagnosis that is interrupted and resumed, and ensembles in Python under the thread sanitizer: no report|scripts/thread_check.sh"
-  "sanitizers|the tests of files, basic parts, robots, effects and controllers, without slow ones, under the address and undefined-behaviour sanitizers, compiled by clang; a release needs the whole suite (scripts/check.sh --sanitizers)|env PRESET=fuzz scripts/check.sh --sanitizers log base robot effect controller"
+  "sanitizers|the tests of files, basic parts and robots, without slow ones, under the address and undefined-behaviour sanitizers, compiled by clang; a release needs the whole suite (scripts/check.sh --sanitizers)|env PRESET=fuzz scripts/check.sh --sanitizers log base robot"
   "continuous_integration|the corpora and the short forms of the rows above that continuous integration runs with the other tests: together within five minutes|timeout 300 ctest --test-dir $build -R ^Of/FuzzCorpus|^faults|^reliability|^RerunCommand|^ResumedDiagnosis|^NonFinite|^RandomRobots|Determinism|^Recorder.Killed|AFault"
   "security|no network, no shell: what the program imports; the reader's limits|scripts/security_check.sh $build/musclesim"
   "sweep|500 runs on two workers, a tenth of the runs and one worker killed: the table of the undisturbed sweep|$build/tests/bench/sweep_study $build/musclesim 500"
@@ -121,7 +121,7 @@ TEXT
 - MATLAB files are read in a process of their own, so a crash of libmatio is an answer and no finding. With large files the memory allowed grows: 128 MB and 40 times the file.
 - `tests/faults/output_check.py` needs root, fiu-utils and faketime (apt-get install fiu-utils faketime); it names what it could not try. Several files of one command are renamed one after the other; a process that is killed within these microseconds leaves some of an earlier answer beside those of the new one.
 - `diagnose --resume` repeats the simulations of the next experiment, which are not kept. In the folder of a killed diagnosis `unfinished.dat` stays until the diagnosis is resumed or repeated.
-- The whole suite under the address and undefined-behaviour sanitizers (`scripts/check.sh --sanitizers`): the row sanitizers has five folders of tests; the other folders, simulation and diagnosis among them, have not been run under them.
+- The whole suite under the address and undefined-behaviour sanitizers (`scripts/check.sh --sanitizers`): the row sanitizers has three folders of tests; the other folders, simulation and diagnosis among them, have not been run under them.
 - The row sweep ran last on one processor that other work shared, so two workers were hardly faster than one; on two idle processors they had 98.5 % (2026-11-21).
 - Eight hours of random work: the row work has a quarter of an hour.
 - The Debian packages: `scripts/debian_package_check.sh DIR` installs them on a fresh Debian 12.
