@@ -20,6 +20,9 @@ std::string nameOf(Stage stage) {
 
 EffectValues::EffectValues(const std::vector<EffectParameter>& parameters, std::vector<double> values) : values_(std::move(values)) {
   for (const EffectParameter& parameter : parameters) names_.push_back(parameter.name);
+  if (values_.size() != names_.size())
+    throw std::logic_error("an effect has " + std::to_string(names_.size()) + " parameters, but " + std::to_string(values_.size()) +
+                           " values were given");
 }
 
 double EffectValues::operator[](const std::string& name) const {

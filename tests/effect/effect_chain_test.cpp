@@ -81,6 +81,12 @@ TEST(EffectChain, EffectsNeedARobot) {
   EXPECT_THROW(simulation.step(), BadParameter);
 }
 
+TEST(EffectValues, HaveOneValueForEachParameter) {
+  const std::vector<EffectParameter> parameters = effectInfo("valve_lag").parameters;
+  EXPECT_EQ(EffectValues(parameters, std::vector(parameters.size(), 0.1))["vent_time_constant_s"], 0.1);
+  EXPECT_THROW(EffectValues(parameters, {0.1, 0.1}), std::logic_error);
+}
+
 TEST(EffectChain, AClassOfAnotherStageIsRefused) {
   registerEffect({.id = "misplaced",
                   .stage = Stage::force,
@@ -91,7 +97,7 @@ TEST(EffectChain, AClassOfAnotherStageIsRefused) {
                   .source = "",
                   .parameters = {{"strength", "", 0, 0, 1, 0, 1, "strength"}},
                   .make = [](const EffectValues&) {
-                    return effectInfo("valve_lag").make(EffectValues(effectInfo("valve_lag").parameters, {0.1, 0.1}));
+                    return effectInfo("valve_lag").make(EffectValues(effectInfo("valve_lag").parameters, {0.1, 0.1, 0}));
                   }});
   const std::string message = messageOf<BadParameter>([] {
     replayWith(wavesFor("rig", 0.1), {{"misplaced", "all", {{"strength", 1.0}}}});

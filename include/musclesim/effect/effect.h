@@ -43,6 +43,7 @@ struct EffectParameter {
 /// Values of all parameters of one effect, in the order of its list.
 class EffectValues {
  public:
+  /// Throws std::logic_error unless there is one value for each parameter.
   EffectValues(const std::vector<EffectParameter>& parameters, std::vector<double> values);
   /// Throws std::logic_error for a name that is not in the list.
   double operator[](const std::string& name) const;
