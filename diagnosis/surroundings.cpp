@@ -99,7 +99,7 @@ std::vector<Search::Surroundings> Search::surroundingsOfNothing() const {
   return result;
 }
 
-/// That one of about_nothing_ whose numbers are nearest to the base's.
+/// about_nothing_ has one or two entries. Returns the one whose numbers are nearest to those of the base.
 const Search::Surroundings& Search::aboutNothingNear(const Explanation& base) const {
   return *std::ranges::min_element(about_nothing_, {},
                                    [&](const Surroundings& around) { return (around.base.numbers - base.numbers).squaredNorm(); });
@@ -120,10 +120,10 @@ std::vector<std::size_t> Search::nearestBeside(const Surroundings& around, const
   return order;
 }
 
-/// The hypotheses that are worth simulating beside the base: those with most gain beside it (the nearest variant of each label), some of
-/// each stage, and for each member those that cost least in its place. An effect that acts like a member gains next to nothing beside it,
-/// so that the first list does not have it. `around` and `columns` hold the base's own columns; the changes by the hypotheses are those
-/// beside no effect.
+/// Chooses the hypotheses that are simulated beside the base. Those are the ones that lower the cost most if they are added (the nearest
+/// variant of each label), some of each stage, and for each member the ones that cost least if they replace it. A hypothesis that acts like
+/// a member lowers the cost by next to nothing if it is added, so it can only come in as a replacement. `around` and `columns` hold the
+/// base's own columns; what each hypothesis changes is taken from simulations without effects.
 std::vector<std::size_t> Search::worthSimulatingBeside(Surroundings around, std::vector<LinearModel::Column> columns) const {
   around.sensitivities = aboutNothingNear(around.base).sensitivities;
   addOtherColumns(around, columns);

@@ -4,9 +4,9 @@
 /// s = presliding_mm, c = pressure_share, i = presliding_exponent. The threads rub at any speed in the same way. For i = 0 they slide all
 /// at once (one Maxwell slip element): z reaches +1 after the muscle has shortened by 2 s and -1 after it has lengthened by 2 s. For i = 1
 /// ever more of them slide (Dahl's model): z approaches +1 and -1 exponentially. For c = 0 the loop of tension over length is 2 w F wide;
-/// for c = 1 its width depends on the pressure alone. Friction cannot push: F' >= 0 wherever F >= 0. At the start z = 0. Neutral: w = 0.
-/// Range 0 .. 1, usually 0.01 .. 0.12; of s 0.01 .. 50 mm, usually 0.5 .. 3; of c and i 0 .. 1. Source: Maxwell slip, Iwan 1966; Dahl 1968;
-/// friction between threads in proportion to pressure, Tondu and Lopez 2000.
+/// for c = 1 its width depends on the pressure alone. Friction cannot push: F' >= 0 wherever F >= 0. At the start z = 0.
+/// Neutral: w = 0. Range 0 .. 1, usually 0.01 .. 0.12; of s 0.01 .. 50 mm, usually 0.5 .. 3; of c and i 0 .. 1. Source: Maxwell slip, Iwan
+/// 1966; Dahl 1968; friction between threads in proportion to pressure, Tondu and Lopez 2000.
 #pragma once
 
 #include "musclesim/effect/effect_info.h"
