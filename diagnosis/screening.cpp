@@ -84,7 +84,8 @@ std::vector<std::size_t> Search::worthScreening() const {
   std::vector<std::size_t> chosen;
   for (std::size_t rank = 0; rank < order.size(); ++rank) {
     const bool among_first_of_effect = per_effect[all[order[rank]].info().id]++ < per_effect_count;
-    if (rank < nearest_count || among_first_of_effect) chosen.push_back(order[rank]);
+    const bool on_all = all[order[rank]].component() == "all";
+    if (rank < nearest_count || among_first_of_effect || on_all) chosen.push_back(order[rank]);
   }
   std::ranges::sort(chosen);
   return chosen;

@@ -18,8 +18,9 @@ constexpr std::size_t per_stage_count = 2;                 ///< and at least so 
 constexpr std::size_t beam_width = 5;                      ///< sets of each size that the linear search keeps
 constexpr std::size_t addition_count = 3, swap_count = 4;  ///< sets that are fitted about one explanation, besides one of each stage
 constexpr std::size_t base_counts[] = {3, 2, 2, 1, 1, 1};  ///< explanations of each size that are extended
-constexpr std::size_t stood_in_count = 2;                  ///< best sets whose members are replaced by stand_in_count effects each
-constexpr int stand_in_passes = 4;                         ///< how often the sets that are best then are taken
+constexpr std::size_t stood_in_count = 6;                  ///< best sets whose members are replaced by stand_in_count effects each
+constexpr std::size_t pair_count = 2;                      ///< pairs of effects that are fitted in place of each of these members
+constexpr std::size_t pair_base_count = 8;                 ///< effects that do best alone, one of which every such pair has
 constexpr double hopeless = 4;                             ///< nats behind the best: sets of this size are not extended any more
 constexpr int screening_rounds = 4;
 
@@ -148,6 +149,28 @@ std::vector<Search::Proposal> Search::swaps(const Surroundings& around) const {
   return result;
 }
 
+/// Two other effects in place of one member, or beside all members if `member` is their number: one effect often takes in what two make.
+/// The first of the two is one of those that do best alone there.
+std::vector<Search::Proposal> Search::pairsInPlaceOf(std::size_t member, const Surroundings& around) const {
+  const std::size_t count = around.base.members.size();
+  const std::vector<std::size_t> kept = allBut(member, count);
+  if (static_cast<int>(kept.size()) + 2 > options_.max_effects) return {};
+  std::vector<std::size_t> order;
+  std::set<std::string> labels;
+  for (const std::size_t index : nearestBeside(around, kept))
+    if (labels.insert(causes_.hypotheses[index].label()).second) order.push_back(index);
+  std::vector<std::vector<std::size_t>> pairs;
+  for (std::size_t i = 0; i < std::min(pair_base_count, order.size()); ++i)
+    for (std::size_t k = i + 1; k < order.size(); ++k)
+      if (!causes_.clash(order[i], order[k])) pairs.push_back({order[i], order[k]});
+  std::vector<Proposal> result(pairs.size());
+  parallelFor(static_cast<int>(pairs.size()), options_.job_count, [&](int i) {
+    const auto index = static_cast<std::size_t>(i);
+    result[index] = proposed(around, kept, pairs[index]);
+  });
+  return result;
+}
+
 std::vector<Search::Proposal> Search::drops(const Surroundings& around) const {
   const std::vector<std::size_t>& members = around.base.members;
   std::vector<Proposal> result;
@@ -256,20 +279,39 @@ void Search::expand(const Explanation& base) {
   fitOnScreening(std::move(proposals));
 }
 
+/// Whether two effects act on the same place at the same stage. Kin resemble each other most, but a linear estimate, which takes the other
+/// members' large changes as proportional, may put any of them last.
+bool Search::areKin(std::size_t hypothesis, std::size_t member) const {
+  const Hypothesis &one = causes_.hypotheses[hypothesis], &other = causes_.hypotheses[member];
+  return one.info().stage == other.info().stage && one.component() == other.component() && one.label() != other.label();
+}
+
 /// Tries the nearest stand-ins of every member of the best sets, and their widened forms. The best swaps of all members are mostly those of
 /// one, weaker member.
 void Search::tryStandIns() {
-  for (int pass = 0; pass < stand_in_passes && !plant_.interrupted(); ++pass)
-    for (const std::size_t index : bestOnScreening(0, stood_in_count)) {
-      const Explanation base = pool_[index];  // the pool grows below
-      if (!stood_in_.insert(causes_.labelsOf(base.members)).second) continue;
-      const Surroundings around = surroundingsOf(base);
-      std::vector<Proposal> proposals;
-      for (std::size_t m = 0; m < base.members.size(); ++m)
-        std::ranges::move(nearest(swapsOf(m, around), stand_in_count), std::back_inserter(proposals));
-      std::ranges::move(nearest(widened(base), swap_count, 2), std::back_inserter(proposals));
-      fitOnScreening(std::move(proposals));
+  for (std::size_t count = 0; count < stood_in_count && !plant_.interrupted(); ++count) {
+    const std::vector<std::size_t> order = bestOnScreening(0, pool_.size());
+    const auto next = std::ranges::find_if(order, [&](std::size_t i) { return !stood_in_.contains(causes_.labelsOf(pool_[i].members)); });
+    if (next == order.end() || pool_[*next].score < pool_[order.front()].score - hopeless) return;
+    const Explanation base = pool_[*next];  // the pool grows below
+    stood_in_.insert(causes_.labelsOf(base.members));
+    const Surroundings around = surroundingsOf(base, {}, Kin::with);
+    std::vector<Proposal> proposals;
+    for (std::size_t m = 0; m < base.members.size(); ++m) {
+      const std::vector<Proposal> all = swapsOf(m, around);
+      std::vector<Proposal> kin;
+      std::ranges::copy_if(all, std::back_inserter(kin),
+                           [&](const Proposal& one) { return areKin(one.start.members.back(), base.members[m]); });
+      std::ranges::move(nearest(all, stand_in_count), std::back_inserter(proposals));
+      for (Proposal& one : nearest(std::move(kin), all.size()))
+        if (std::ranges::none_of(proposals, [&](const Proposal& other) { return other.start.members == one.start.members; }))
+          proposals.push_back(std::move(one));
     }
+    for (std::size_t m = 0; m <= base.members.size(); ++m)
+      std::ranges::move(nearest(pairsInPlaceOf(m, around), pair_count), std::back_inserter(proposals));
+    std::ranges::move(nearest(widened(base), swap_count, 2), std::back_inserter(proposals));
+    fitOnScreening(std::move(proposals));
+  }
 }
 
 /// Indices of the best explanations of one size (0: of any).

@@ -88,13 +88,16 @@ class Search {
   void checkExcitation(const std::vector<Hypothesis>& typical);
 
   // surroundings.cpp
-  Surroundings surroundingsOf(const Explanation& base, std::optional<std::vector<Sensitivity>> sensitivities = {}) const;
+  enum class Kin { without, with };  ///< whether the kin of members are simulated beside a base
+  Surroundings surroundingsOf(const Explanation& base, std::optional<std::vector<Sensitivity>> sensitivities = {},
+                              Kin kin = Kin::without) const;
+  bool areKin(std::size_t hypothesis, std::size_t member) const;
   std::vector<Surroundings> surroundingsOfNothing() const;
   const Surroundings& aboutNothingNear(const Explanation& base) const;
   void addOwnColumns(Surroundings& around, std::vector<LinearModel::Column>& columns) const;
   void addOtherColumns(Surroundings& around, std::vector<LinearModel::Column>& columns) const;
   std::vector<std::size_t> nearestBeside(const Surroundings& around, const std::vector<std::size_t>& kept) const;
-  std::vector<std::size_t> worthSimulatingBeside(Surroundings around, std::vector<LinearModel::Column> columns) const;
+  std::vector<std::size_t> worthSimulatingBeside(Surroundings around, std::vector<LinearModel::Column> columns, Kin kin) const;
   std::vector<Sensitivity> changesBeside(const Explanation& base, const std::vector<std::size_t>& indices) const;
   Proposal proposed(const Surroundings& around, const std::vector<std::size_t>& kept, const std::vector<std::size_t>& added) const;
 
@@ -108,6 +111,7 @@ class Search {
   std::vector<Proposal> largerSets(const Surroundings& around) const;
   std::vector<Proposal> additions(const Surroundings& around) const;
   std::vector<Proposal> swapsOf(std::size_t member, const Surroundings& around) const;
+  std::vector<Proposal> pairsInPlaceOf(std::size_t member, const Surroundings& around) const;
   std::vector<Proposal> swaps(const Surroundings& around) const;
   std::vector<Proposal> drops(const Surroundings& around) const;
   std::optional<Proposal> withoutFurtherMechanisms(const Proposal& proposal) const;

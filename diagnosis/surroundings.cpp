@@ -70,11 +70,12 @@ void Search::addOtherColumns(Surroundings& around, std::vector<LinearModel::Colu
 }
 
 /// Simulates every change of the base itself, and of the hypotheses beside it those worth it, unless their sensitivities are given.
-Search::Surroundings Search::surroundingsOf(const Explanation& base, std::optional<std::vector<Sensitivity>> sensitivities) const {
+Search::Surroundings Search::surroundingsOf(const Explanation& base, std::optional<std::vector<Sensitivity>> sensitivities,
+                                            Kin kin) const {
   Surroundings around{base, {}, {}, {}, {}, {}, {}, {}};
   std::vector<LinearModel::Column> columns;
   addOwnColumns(around, columns);
-  around.sensitivities = sensitivities ? std::move(*sensitivities) : changesBeside(base, worthSimulatingBeside(around, columns));
+  around.sensitivities = sensitivities ? std::move(*sensitivities) : changesBeside(base, worthSimulatingBeside(around, columns, kin));
   addOtherColumns(around, columns);
   around.model.emplace(screening_, base.residual, std::move(columns));
   return around;
@@ -123,8 +124,8 @@ std::vector<std::size_t> Search::nearestBeside(const Surroundings& around, const
 /// Chooses the hypotheses that are simulated beside the base. Those are the ones that lower the cost most if they are added (the nearest
 /// variant of each label), some of each stage, and for each member the ones that cost least if they replace it. A hypothesis that acts like
 /// a member lowers the cost by next to nothing if it is added, so it can only come in as a replacement. `around` and `columns` hold the
-/// base's own columns; what each hypothesis changes is taken from simulations without effects.
-std::vector<std::size_t> Search::worthSimulatingBeside(Surroundings around, std::vector<LinearModel::Column> columns) const {
+/// base's own columns; what each hypothesis changes is taken from simulations without effects. With `kin`, also the kin of every member.
+std::vector<std::size_t> Search::worthSimulatingBeside(Surroundings around, std::vector<LinearModel::Column> columns, Kin kin) const {
   around.sensitivities = aboutNothingNear(around.base).sensitivities;
   addOtherColumns(around, columns);
   around.model.emplace(screening_, around.base.residual, std::move(columns));
@@ -144,7 +145,8 @@ std::vector<std::size_t> Search::worthSimulatingBeside(Surroundings around, std:
     std::set<std::string> stand_ins;
     for (const std::size_t index : nearestBeside(around, allBut(m, member_count))) {
       const std::string label = causes_.hypotheses[index].label();
-      if (stand_ins.size() == stand_in_count) break;
+      const bool is_kin = kin == Kin::with && areKin(index, around.base.members[m]);
+      if (stand_ins.size() >= stand_in_count && !is_kin) continue;
       if (!stand_ins.insert(label).second || !labels.insert(label).second) continue;
       result.push_back(index);
     }
