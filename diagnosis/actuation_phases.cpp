@@ -33,7 +33,7 @@ double PhaseSums::meanSquare(ActuationPhase phase) const {
 PhaseSums phaseSums(const Comparison& comparison, const Eigen::VectorXd& residual) {
   PhaseSums sums;
   for (const Comparison::Block& block : comparison.blocks()) {
-    if (block.averaged_rows > 0) continue;
+    if (!block.isReading()) continue;
     const Recording& recording = comparison.plant().recordings()[static_cast<std::size_t>(comparison.segments()[block.segment].recording)];
     std::size_t before = 0;
     for (std::size_t i = 0; i < block.rows.size(); ++i) {

@@ -22,15 +22,21 @@ Comparison::Comparison(const Plant& plant, std::vector<Segment> segments, Averag
       size_ += static_cast<Eigen::Index>(block.rows.size());
       blocks_.push_back(std::move(block));
     }
-  if (averages == Averages::with) addAverages();
+  if (averages == Averages::with) {
+    addParity();
+    addAverages();
+  }
   shareEvidence();
   measured_.resize(size_);
   for (const Block& block : blocks_) {
-    if (block.averaged_rows > 0) continue;
+    if (!block.isReading()) continue;
     const std::vector<double>& y = plant.measured(segments_[block.segment].recording, block.signal);
     for (std::size_t i = 0; i < block.rows.size(); ++i)
       measured_[block.first + static_cast<Eigen::Index>(i)] = y[static_cast<std::size_t>(block.rows[i])];
   }
+  fillParity(measured_, [this](const Block& block, int signal) -> const std::vector<double>& {
+    return plant_.measured(segments_[block.segment].recording, signal);
+  });
   average(measured_);
 }
 
@@ -48,6 +54,48 @@ double averagedShareOfSigma(const std::vector<double>& values) {
   return std::sqrt(1.0 / per_block + steady_share * steady_share);
 }
 
+/// Adds a block of parity for each signal of motion of which other signals tell something.
+void Comparison::addParity() {
+  constexpr double least_share = 0.05;  // of the noise's variance; below it, nothing of the signal remains beside the pose it determines
+  for (std::size_t k = 0; k < segments_.size(); ++k) {
+    const ParityRelations& parity = plant_.parity(segments_[k].recording);
+    if (parity.count() == 0) continue;
+    std::vector<int> rows;
+    for (int row = segments_[k].first_row; row < segments_[k].end_row; row += segments_[k].every)
+      if (std::ranges::all_of(parity.signals(), [&](int signal) {
+            return std::isfinite(plant_.measured(segments_[k].recording, signal)[static_cast<std::size_t>(row)]);
+          }))
+        rows.push_back(row);
+    if (rows.size() < fewest_compared_rows) continue;
+    for (std::size_t s = 0; s < parity.signals().size(); ++s) {
+      double share = 0;
+      for (const int row : rows) share += parity.shareOfVariance(row, static_cast<Eigen::Index>(s)) / static_cast<double>(rows.size());
+      if (share < least_share) continue;
+      const double sigma = plant_.signals()[static_cast<std::size_t>(parity.signals()[s])].sigma.value;
+      Block block{k, parity.signals()[s], rows, size_, sigma * std::sqrt(share)};
+      block.is_parity = true;
+      size_ += block.count();
+      blocks_.push_back(std::move(block));
+    }
+  }
+}
+
+/// Computes all blocks of parity from series of all rows; `seriesOf` gives that of a signal in the segment of a block.
+void Comparison::fillParity(Eigen::VectorXd& values, const std::function<const std::vector<double>&(const Block&, int)>& seriesOf) const {
+  for (const Block& block : blocks_) {
+    if (!block.is_parity || block.averaged_rows > 0) continue;
+    const ParityRelations& parity = plant_.parity(segments_[block.segment].recording);
+    const auto position = std::ranges::find(parity.signals(), block.signal) - parity.signals().begin();
+    values.segment(block.first, block.count()).setZero();
+    for (std::size_t s = 0; s < parity.signals().size(); ++s) {
+      const std::vector<double>& y = seriesOf(block, parity.signals()[s]);
+      for (std::size_t i = 0; i < block.rows.size(); ++i)
+        values[block.first + static_cast<Eigen::Index>(i)] +=
+            parity.at(block.rows[i])(position, static_cast<Eigen::Index>(s)) * y[static_cast<std::size_t>(block.rows[i])];
+    }
+  }
+}
+
 /// Adds averaged blocks, except for signals whose sigma comes from repeats: their differences need not be white noise.
 void Comparison::addAverages() {
   const std::size_t plain_count = blocks_.size();
@@ -60,20 +108,23 @@ void Comparison::addAverages() {
     for (const int row : plain.rows) values.push_back(y[static_cast<std::size_t>(row)]);
     Block block{plain.segment, plain.signal, {}, size_, plain.sigma * averagedShareOfSigma(values), averaging_rows};
     block.first_averaged = plain.first;
+    block.is_parity = plain.is_parity;
     for (std::size_t row = 0; row + averaging_rows <= plain.rows.size(); row += averaging_rows) block.rows.push_back(plain.rows[row]);
     size_ += block.count();
     blocks_.push_back(std::move(block));
   }
 }
 
-/// A pressure or a tension is a channel of power 1 per segment. Signals of motion are functions of each other, so n of them are one
-/// channel, but their sensors fail one by one: it has the power sqrt(n). Blocks of a channel share its power. A single recording, or two,
-/// count as three: they hold as many motions.
+/// A pressure or a tension is a channel of power 1 per segment. The n signals of motion are one channel: they hold d independent motions,
+/// the robot's free coordinates, and that is its power; what they contradict each other by is another one, of the power n - d. Where no
+/// parity is known, n signals of motion have the power sqrt(n), because their sensors fail one by one. Blocks of a channel share its power.
+/// A single recording, or two, count as three: they hold as many motions.
 void Comparison::shareEvidence() {
   constexpr double usual_recordings = 3;
   const auto channelOf = [this](const Block& block) {
     const std::string& name = plant_.signals()[static_cast<std::size_t>(block.signal)].name;
-    return name.starts_with("pressure_") || name.starts_with("force_") ? name : std::string("motion");
+    if (block.is_parity) return std::string("parity");
+    return isMotion(name) ? std::string("motion") : name;
   };
   struct Channel {
     double blocks = 0;
@@ -86,9 +137,16 @@ void Comparison::shareEvidence() {
     channel.signals.insert(block.signal);
   }
   const double per_segment = std::max(1.0, usual_recordings / static_cast<double>(segments_.size()));
+  const auto powerOf = [&](const Block& block, const Channel& channel) {
+    const ParityRelations& parity = plant_.parity(segments_[block.segment].recording);
+    const auto signal_count = static_cast<double>(channel.signals.size());
+    if (block.is_parity) return static_cast<double>(parity.count());
+    return channels.contains({block.segment, "parity"}) && channelOf(block) == "motion" ? signal_count - parity.count()
+                                                                                        : std::sqrt(signal_count);
+  };
   for (Block& block : blocks_) {
     const Channel& channel = channels[{block.segment, channelOf(block)}];
-    block.power = counts(block) ? per_segment * std::sqrt(static_cast<double>(channel.signals.size())) / channel.blocks : 0;
+    block.power = counts(block) ? per_segment * powerOf(block, channel) / channel.blocks : 0;
   }
 }
 
@@ -138,7 +196,7 @@ Unsteady Comparison::unsteadiness(const Eigen::VectorXd& change, const Eigen::Ve
   Unsteady worst;
   for (const Block& block : blocks_) {
     const double in_sigmas = std::sqrt(meanSquare(block, change)) / block.sigma;
-    if (block.averaged_rows > 0 || in_sigmas <= worst.in_sigmas) continue;
+    if (!block.isReading() || in_sigmas <= worst.in_sigmas) continue;
     worst = {plant_.signals()[static_cast<std::size_t>(block.signal)].name, in_sigmas,
              std::sqrt(meanSquare(block, change) / std::max(1e-300, meanSquare(block, residual)))};
   }
@@ -179,12 +237,16 @@ Eigen::VectorXd Comparison::gathered(const std::vector<Prediction>& per_segment)
   for (const Prediction& prediction : per_segment)
     if (prediction.diverged) return {};
   Eigen::VectorXd result(size_);
+  const auto seriesOf = [&](const Block& block, int signal) -> const std::vector<double>& {
+    return per_segment[block.segment].values[static_cast<std::size_t>(signal)];
+  };
   for (const Block& block : blocks_) {
-    if (block.averaged_rows > 0) continue;
-    const std::vector<double>& y = per_segment[block.segment].values[static_cast<std::size_t>(block.signal)];
+    if (!block.isReading()) continue;
+    const std::vector<double>& y = seriesOf(block, block.signal);
     for (std::size_t i = 0; i < block.rows.size(); ++i)
       result[block.first + static_cast<Eigen::Index>(i)] = y[static_cast<std::size_t>(block.rows[i])];
   }
+  fillParity(result, seriesOf);
   average(result);
   return result;
 }
@@ -259,7 +321,7 @@ Gap Comparison::gap(const Eigen::VectorXd& residual) const {
   };
   std::map<int, Sum> sums;
   for (const Block& block : blocks_) {
-    if (block.averaged_rows > 0) continue;
+    if (!block.isReading()) continue;
     Sum& sum = sums[block.signal];
     sum.squares += meanSquare(block, residual) * static_cast<double>(block.rows.size());
     sum.count += block.rows.size();
@@ -287,7 +349,7 @@ bool isWithinNoise(const Comparison& comparison, const Eigen::VectorXd& residual
   return all && std::ranges::all_of(comparison.blocks(), [&](const Comparison::Block& block) {
            const bool is_estimated = signals[static_cast<std::size_t>(block.signal)].sigma.isEstimated();
            const double rms = std::sqrt(comparison.meanSquare(block, residual));
-           return block.count() < enough_rows || rms < (is_estimated ? estimated_in_one : known_in_one) * block.sigma;
+           return block.is_parity || block.count() < enough_rows || rms < (is_estimated ? estimated_in_one : known_in_one) * block.sigma;
          });
 }
 

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "plant.h"
@@ -30,7 +31,8 @@ struct Tolerance {
 inline constexpr std::array<Tolerance, 3> tolerances = {{{0.1, 1.3}, {0.03, 0.9}, {0.01, 0.9}}};
 
 /// The compared rows of some segments. A residual block is one signal in one segment, either row by row or averaged over blocks of rows:
-/// averages have less noise, so weak but slow differences stand out.
+/// averages have less noise, so weak but slow differences stand out. Blocks of parity hold by what signals of motion contradict each other:
+/// there a fault of one sensor stands out, however well the motion itself is explained.
 class Comparison {
  public:
   struct Block {
@@ -40,12 +42,15 @@ class Comparison {
     Eigen::Index first;     ///< index of its first row in the vectors
     double sigma;
     std::size_t averaged_rows = 0;    ///< rows per average; 0: not averaged
+    bool is_parity = false;           ///< not the signal itself, but what of it no pose of the robot explains (ParityRelations)
     double power = 1;                 ///< of its evidence: a channel's share, see shareEvidence
     double gap = 0;                   ///< RMS of the gap
     Eigen::Index first_averaged = 0;  ///< index of the first row that is averaged
     Eigen::Index count() const { return static_cast<Eigen::Index>(rows.size()); }
+    /// Whether its values are readings: neither averages nor parity, which are computed from readings.
+    bool isReading() const { return averaged_rows == 0 && !is_parity; }
   };
-  enum class Averages { without, with };
+  enum class Averages { without, with };  ///< with: also averages, and parity of the signals of motion
 
   Comparison(const Plant& plant, std::vector<Segment> segments, Averages averages = Averages::without);
 
@@ -101,6 +106,8 @@ class Comparison {
   Gap gap(const Eigen::VectorXd& residual) const;
 
  private:
+  void addParity();
+  void fillParity(Eigen::VectorXd& values, const std::function<const std::vector<double>&(const Block&, int)>& seriesOf) const;
   void addAverages();
   void shareEvidence();
   bool counts(const Block& block) const;

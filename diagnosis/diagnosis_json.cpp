@@ -108,7 +108,8 @@ Json fittedJson(const Diagnosis& d) {
                              {"signal", block.signal},
                              {"floor", block.sigma},
                              {"rms_before", block.rms_before},
-                             {"averaged_rows", block.averaged_rows}});
+                             {"averaged_rows", block.averaged_rows},
+                             {"parity", block.is_parity}});
   for (const Trial& trial : d.trials)
     json["trials"].push_back({{"effects", trial.effects},
                               {"parameters", trial.parameter_count},

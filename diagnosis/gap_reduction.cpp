@@ -70,7 +70,7 @@ constexpr double noise_alone = 0.07;
 std::vector<double> logRests(const BeforeAndAfter& both) {
   std::map<int, std::map<int, std::array<double, 3>>> sums;  // recording, signal: before, after, rows
   for (const Comparison::Block& block : both.comparison.blocks()) {
-    if (block.averaged_rows > 0) continue;
+    if (!block.isReading()) continue;
     auto& sum = sums[both.comparison.segments()[block.segment].recording][block.signal];
     const auto rows = static_cast<double>(block.count());
     sum[0] += rows * both.comparison.meanSquare(block, both.before);

@@ -189,7 +189,7 @@ void listTrials(const Search& search, Diagnosis& diagnosis) {
     const Comparison::Block& block = comparison.blocks()[i];
     const auto recording = static_cast<std::size_t>(comparison.segments()[block.segment].recording);
     diagnosis.blocks.push_back({plant.recordings()[recording].file, plant.signals()[static_cast<std::size_t>(block.signal)].name,
-                                block.sigma, before[i], static_cast<int>(block.averaged_rows)});
+                                block.sigma, before[i], static_cast<int>(block.averaged_rows), block.is_parity});
   }
   std::vector<Explanation> all = search.explanations();
   all.push_back(search.nothing());

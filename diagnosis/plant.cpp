@@ -207,6 +207,23 @@ const std::vector<double>& Plant::measured(int recording, int signal) const {
   return measured_[static_cast<std::size_t>(recording)][static_cast<std::size_t>(signal)];
 }
 
+const ParityRelations& Plant::parity(int recording) const {
+  const std::scoped_lock lock(access_to_parity_);
+  if (const auto known = parity_.find(recording); known != parity_.end()) return known->second;
+  std::vector<int> motions;
+  std::vector<std::string> names;
+  std::vector<double> sigmas;
+  for (const ComparedSignal& signal : signals_) {
+    const auto& values = measured(recording, static_cast<int>(names.size()));
+    if (isMotion(signal.name) && std::ranges::any_of(values, [](double value) { return std::isfinite(value); }))
+      motions.push_back(static_cast<int>(names.size()));
+    names.push_back(signal.name);
+    sigmas.push_back(signal.sigma.value);
+  }
+  ParityRelations relations(recordings_[static_cast<std::size_t>(recording)], options_.model, std::move(motions), names, sigmas);
+  return parity_.emplace(recording, std::move(relations)).first->second;
+}
+
 std::vector<Segment> Plant::screeningSegments() const {
   constexpr std::size_t most_recordings = 3;
   constexpr int row_count = 1200;

@@ -15,6 +15,7 @@
 #include "musclesim/effect/catalogue.h"
 #include "musclesim/simulation/replay.h"
 #include "noise_sigma.h"
+#include "parity.h"
 #include "prediction_store.h"
 
 namespace musclesim {
@@ -81,6 +82,8 @@ class Plant {
   bool holds(Stage stage) const;
   /// The measured values of a compared signal; empty if this recording does not have it.
   const std::vector<double>& measured(int recording, int signal) const;
+  /// How the signals of motion of a recording must agree with each other. Thread-safe.
+  const ParityRelations& parity(int recording) const;
   /// All components of the robot on which an effect can act.
   std::vector<std::string> componentsFor(const EffectInfo& info) const;
   /// Whether a component "signal_<stem>" (or "all") names a compared signal.
@@ -164,6 +167,8 @@ class Plant {
   mutable std::atomic<long> simulation_count_{0}, simulated_ms_{0};
   std::string key_of_tuned_;  ///< the values in force of the tuned numbers
   mutable PredictionStore store_;
+  mutable std::mutex access_to_parity_;
+  mutable std::map<int, ParityRelations> parity_;  ///< by recording, where asked for
   mutable std::mutex access_to_built_;
   mutable std::map<std::vector<double>, bool> built_;  ///< canBeBuilt() by coordinates
 };

@@ -60,12 +60,12 @@ Eigen::MatrixXd derivatives(const Comparison& comparison, const FitProblem& prob
   return jacobian;
 }
 
-/// 1 / max(sigma, RMS) of each row's block; 0 for averages, which repeat the rows.
+/// 1 / max(sigma, RMS) of each row's block; 0 for averages and parity, which repeat the readings.
 Eigen::VectorXd perSample(const Comparison& comparison, const Eigen::VectorXd& residual) {
   Eigen::VectorXd result(comparison.size());
   for (const Comparison::Block& block : comparison.blocks())
     result.segment(block.first, block.count())
-        .setConstant(block.averaged_rows > 0 ? 0 : 1 / std::max(block.sigma, std::sqrt(comparison.meanSquare(block, residual))));
+        .setConstant(!block.isReading() ? 0 : 1 / std::max(block.sigma, std::sqrt(comparison.meanSquare(block, residual))));
   return result;
 }
 
@@ -74,7 +74,7 @@ double samplesPerIndependent(const Comparison& comparison, const Eigen::VectorXd
   double sum = 0;
   int block_count = 0;
   for (const Comparison::Block& block : comparison.blocks()) {
-    if (block.averaged_rows > 0) continue;
+    if (!block.isReading()) continue;
     ++block_count;
     const Eigen::Index count = block.count();
     const Eigen::VectorXd r = residual.segment(block.first, count);

@@ -83,7 +83,7 @@ double excitationRatio(const Comparison& comparison, const std::vector<Eigen::Ve
   for (const Eigen::VectorXd& change : changes)
     if (change.size())
       for (const Comparison::Block& block : comparison.blocks())
-        if (block.averaged_rows == 0) largest = std::max(largest, std::sqrt(comparison.meanSquare(block, change)) / block.sigma);
+        if (block.isReading()) largest = std::max(largest, std::sqrt(comparison.meanSquare(block, change)) / block.sigma);
   return largest;
 }
 

@@ -13,10 +13,6 @@ namespace musclesim {
 
 namespace {
 
-bool isMotion(const std::string& name) {
-  return name.starts_with("angle_") || name.starts_with("length_") || name.starts_with("hand_");
-}
-
 const std::string& nameOf(const Comparison& comparison, const Comparison::Block& block) {
   return comparison.plant().signals()[static_cast<std::size_t>(block.signal)].name;
 }
@@ -65,7 +61,7 @@ std::optional<TensionTest> testTensionOf(const Comparison& comparison, const Eig
   BlockRatio found, expected;
   bool commanded = false;
   for (const Comparison::Block& block : comparison.blocks()) {
-    if (block.signal != l || block.averaged_rows > 0) continue;
+    if (block.signal != l || !block.isReading()) continue;
     const int recording = comparison.segments()[block.segment].recording;
     const auto pressures = pressuresOf(plant, recording, muscle);
     if (!pressures) return std::nullopt;
@@ -105,9 +101,9 @@ std::vector<Motion> motionsOf(const Comparison& comparison, const Eigen::VectorX
     if (!isMotion(plant.signals()[static_cast<std::size_t>(signal)].name)) continue;
     Motion motion{signal, sigmaOf(plant, signal), std::vector<double>(begin.back(), nan), std::vector<double>(begin.back(), nan)};
     for (const Comparison::Block& block : comparison.blocks()) {
-      if (block.signal != signal) continue;
+      if (block.signal != signal || block.is_parity) continue;
       motion.ratio = std::max(motion.ratio, std::sqrt(comparison.meanSquare(block, residual)) / block.sigma);
-      if (block.averaged_rows > 0) continue;
+      if (!block.isReading()) continue;
       for (std::size_t k = 0; k < block.rows.size(); ++k) {
         const std::size_t row = begin[block.segment] + static_cast<std::size_t>(block.rows[k]);
         const Eigen::Index i = block.first + static_cast<Eigen::Index>(k);
@@ -229,7 +225,7 @@ std::optional<double> ratioOf(const Comparison& comparison, const Eigen::VectorX
   double sum = 0;
   int count = 0;
   for (const Comparison::Block& block : comparison.blocks()) {
-    if (!nameOf(comparison, block).starts_with(beginning)) continue;
+    if (block.is_parity || !nameOf(comparison, block).starts_with(beginning)) continue;
     sum += comparison.meanSquare(block, residual) / (block.sigma * block.sigma);
     ++count;
   }
@@ -242,7 +238,7 @@ std::string mostAffected(const Comparison& comparison, const Eigen::VectorXd& re
   double largest = 0;
   for (const Comparison::Block& block : comparison.blocks()) {
     const double ratio = std::sqrt(comparison.meanSquare(block, residual)) / block.sigma;
-    if (!nameOf(comparison, block).starts_with(beginning) || ratio <= largest) continue;
+    if (block.is_parity || !nameOf(comparison, block).starts_with(beginning) || ratio <= largest) continue;
     largest = ratio;
     name = nameOf(comparison, block);
   }
@@ -252,7 +248,8 @@ std::string mostAffected(const Comparison& comparison, const Eigen::VectorXd& re
 double largestMotionRatio(const Comparison& comparison, const Eigen::VectorXd& residual) {
   double largest = 0;
   for (const Comparison::Block& block : comparison.blocks())
-    if (isMotion(nameOf(comparison, block))) largest = std::max(largest, std::sqrt(comparison.meanSquare(block, residual)) / block.sigma);
+    if (!block.is_parity && isMotion(nameOf(comparison, block)))
+      largest = std::max(largest, std::sqrt(comparison.meanSquare(block, residual)) / block.sigma);
   return largest;
 }
 
@@ -282,7 +279,7 @@ std::optional<PressureTest> testPressures(const Comparison& comparison, const Ei
   double gap = 0, with_change = 0, block_count = 0;
   Eigen::VectorXd with_noise = Eigen::VectorXd::Zero(noise_draws);
   for (const Comparison::Block& block : comparison.blocks()) {
-    if (nameOf(comparison, block).starts_with("pressure_")) continue;
+    if (block.is_parity || nameOf(comparison, block).starts_with("pressure_")) continue;
     auto meanProduct = [&](const Eigen::VectorXd& one, const Eigen::VectorXd& other) {
       return one.segment(block.first, block.count()).dot(other.segment(block.first, block.count())) / static_cast<double>(block.count());
     };

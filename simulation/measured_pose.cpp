@@ -57,6 +57,7 @@ class MeasuredPoses::Search {
   const std::string& sources() const { return sources_; }
   const std::string& fault() const { return fault_; }
   std::shared_ptr<const DrawnGhost> at(std::size_t row, const Snapshot& simulated);
+  MatrixXd slopes(std::size_t row, const std::vector<std::string>& signals);
 
  private:
   /// A length of a muscle, a coordinate of the hand, or a distance of two bones at a closure, in the pose of the bodies.
@@ -84,6 +85,8 @@ class MeasuredPoses::Search {
   VectorXd moved(const VectorXd& q, const VectorXd& step_mm) const;
   MatrixXd slopeAt(const VectorXd& q);
   void fit(const VectorXd& measured_mm);
+  void locate(std::size_t row);
+  std::function<double()> motionNamed(const std::string& signal);
 
   Simulation simulation_;
   std::optional<SnapshotTaker> snapshots_;
@@ -94,6 +97,7 @@ class MeasuredPoses::Search {
   std::vector<Index> unknown_;     ///< coordinates that follow from the readings
   VectorXd scale_;                 ///< coordinate per mm
   VectorXd q_;                     ///< the pose found last
+  VectorXd posed_;                 ///< the pose of the bodies
   std::string sources_, fault_;
 };
 
@@ -205,6 +209,7 @@ std::pair<Vector, Vector> MeasuredPoses::Search::endsOf(const Actuator& muscle) 
 }
 
 void MeasuredPoses::Search::pose(const VectorXd& q) {
+  posed_ = q;
   skeleton_->setPose(q);
   skeleton_->placeBodies();
 }
@@ -258,18 +263,22 @@ void MeasuredPoses::Search::fit(const VectorXd& measured_mm) {
   }
 }
 
-std::shared_ptr<const DrawnGhost> MeasuredPoses::Search::at(std::size_t row, const Snapshot& simulated) {
+/// Finds the coordinates in a row.
+void MeasuredPoses::Search::locate(std::size_t row) {
   for (const GivenAngle& angle : angles_) q_[angle.coordinate] = valueAt(angle.signal->values, row) * rad_per_deg;
-  if (!unknown_.empty()) {
-    const auto& chains = simulation_.robot().actuators();
-    for (std::size_t i = 0; i < excess_mm_.size(); ++i) excess_mm_[i] = chains[i]->line() ? 0 : excessMm(simulated.hoses[i]);
-    VectorXd measured_mm(static_cast<Index>(readings_.size()));
-    for (Index i = 0; i < measured_mm.size(); ++i) {
-      const Signal* signal = readings_[static_cast<std::size_t>(i)].signal;
-      measured_mm[i] = signal ? valueAt(signal->values, row) : 0;
-    }
-    fit(measured_mm);
+  if (unknown_.empty()) return;
+  VectorXd measured_mm(static_cast<Index>(readings_.size()));
+  for (Index i = 0; i < measured_mm.size(); ++i) {
+    const Signal* signal = readings_[static_cast<std::size_t>(i)].signal;
+    measured_mm[i] = signal ? valueAt(signal->values, row) : 0;
   }
+  fit(measured_mm);
+}
+
+std::shared_ptr<const DrawnGhost> MeasuredPoses::Search::at(std::size_t row, const Snapshot& simulated) {
+  const auto& chains = simulation_.robot().actuators();
+  for (std::size_t i = 0; i < excess_mm_.size(); ++i) excess_mm_[i] = chains[i]->line() ? 0 : excessMm(simulated.hoses[i]);
+  locate(row);
   pose(q_);
   Snapshot snapshot = snapshots_->take(State{});
   const auto& muscles = simulation_.robot().actuators();
@@ -279,6 +288,46 @@ std::shared_ptr<const DrawnGhost> MeasuredPoses::Search::at(std::size_t row, con
     snapshot.hoses[i].points_mm = {start.cast<float>(), end.cast<float>()};
   }
   return std::make_shared<const DrawnGhost>(DrawnGhost{std::move(snapshot.parts), std::move(snapshot.hoses)});
+}
+
+/// The value of a signal of motion in the pose of the bodies; empty for any other signal.
+std::function<double()> MeasuredPoses::Search::motionNamed(const std::string& signal) {
+  const Robot& robot = simulation_.robot();
+  for (const Robot::Angle& angle : robot.angles())
+    if (signal == "angle_" + angle.name + "_deg")
+      for (Index i = 0; i < q_.size(); ++i) {
+        const Coordinate& coordinate = skeleton_->coordinates()[static_cast<std::size_t>(i)];
+        if (coordinate.joint == angle.joint && coordinate.axis == angle.axis) return [this, i] { return posed_[i] / rad_per_deg; };
+      }
+  const auto& muscles = robot.actuators();
+  for (std::size_t i = 0; i < muscles.size(); ++i)
+    if (signal == fmt::format("length_{}_mm", i)) return [this, &muscle = *muscles[i]] { return lengthMm(muscle); };
+  for (int axis = 0; axis < 3 && robot.hand(); ++axis)
+    if (signal == fmt::format("hand_{}_mm", "xyz"[axis])) return [&robot, axis] { return robot.handMm()[axis]; };
+  return {};
+}
+
+MatrixXd MeasuredPoses::Search::slopes(std::size_t row, const std::vector<std::string>& signals) {
+  std::vector<std::function<double()>> values;
+  for (const std::string& signal : signals) values.push_back(motionNamed(signal));
+  const bool all_known = std::ranges::all_of(values, [](const auto& value) { return static_cast<bool>(value); });
+  if (!skeleton_->closures().empty() || !all_known) return {};
+  locate(row);
+  MatrixXd result(static_cast<Index>(signals.size()), 0);
+  for (Index i = 0; i < q_.size(); ++i) {
+    if (skeleton_->coordinates()[static_cast<std::size_t>(i)].locked()) continue;
+    const VectorXd step = scale_[i] * difference_mm * VectorXd::Unit(q_.size(), i);
+    const auto valuesAt = [&](const VectorXd& q) {
+      pose(q);
+      VectorXd at(result.rows());
+      for (Index s = 0; s < at.size(); ++s) at[s] = values[static_cast<std::size_t>(s)]();
+      return at;
+    };
+    const VectorXd ahead = valuesAt(skeleton_->displaced(q_, step)), behind = valuesAt(skeleton_->displaced(q_, -step));
+    result.conservativeResize(Eigen::NoChange, result.cols() + 1);
+    result.rightCols<1>() = (ahead - behind) / (2 * difference_mm);
+  }
+  return result;
 }
 
 MeasuredPoses::MeasuredPoses(const Recording& recording, const ReplayOptions& options)
@@ -292,6 +341,10 @@ bool MeasuredPoses::areDetermined() const {
 
 const std::string& MeasuredPoses::reason() const {
   return reason_;
+}
+
+Eigen::MatrixXd MeasuredPoses::slopes(std::size_t row, const std::vector<std::string>& signals) {
+  return areDetermined() ? search_->slopes(row, signals) : Eigen::MatrixXd();
 }
 
 std::shared_ptr<const DrawnGhost> MeasuredPoses::at(std::size_t row, const Snapshot& simulated) {

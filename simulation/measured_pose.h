@@ -1,9 +1,11 @@
-/// The poses that a recording measured, to be drawn beside the simulated ones.
+/// The poses that a recording measured: to be drawn beside the simulated ones, and to tell how its signals depend on each other.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "musclesim/log/recording.h"
 #include "musclesim/simulation/replay.h"
@@ -35,6 +37,10 @@ class MeasuredPoses {
   const std::string& reason() const;
   /// The pose in a row; null if the poses are not determined. `simulated`: of the same row.
   std::shared_ptr<const DrawnGhost> at(std::size_t row, const Snapshot& simulated);
+  /// Derivatives of signals of motion by the free coordinates of the skeleton, in the pose measured in a row: one row per signal, in its
+  /// unit per mm, a coordinate that turns counting 100 mm per rad. Chains count as straight. Empty if the pose is not determined, if bones
+  /// form a loop, or if a signal is none of this robot's angles, muscle lengths and coordinates of the hand.
+  Eigen::MatrixXd slopes(std::size_t row, const std::vector<std::string>& signals);
 
  private:
   class Search;

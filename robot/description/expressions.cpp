@@ -21,16 +21,18 @@ std::string problemOf(const mu::Parser::exception_type& error, const std::map<st
                      nearest.empty() ? "" : ", did you mean \"" + nearest + "\"?", fmt::join(known, ", "));
 }
 
+Expressions::Expressions(std::map<std::string, double> names) : names_(std::move(names)) {
+  parser_.DefineConst("pi", std::numbers::pi);
+  for (const auto& [name, number] : names_) parser_.DefineConst(name, number);
+}
+
 double Expressions::operator()(const Quantity& quantity) const {
   if (quantity.expression.empty()) return quantity.number;
   double value = 0;
   try {
-    mu::Parser parser;
-    parser.DefineConst("pi", std::numbers::pi);
-    for (const auto& [name, number] : names_) parser.DefineConst(name, number);
-    parser.SetExpr(quantity.expression);
+    parser_.SetExpr(quantity.expression);
     int value_count = 0;
-    value = *parser.Eval(value_count);
+    value = *parser_.Eval(value_count);
     if (value_count != 1) quantity.place.refuse("\"" + quantity.expression + "\" must be one number");
   } catch (const mu::Parser::exception_type& error) {
     quantity.place.refuse("\"" + quantity.expression + "\": " + problemOf(error, names_));

@@ -16,9 +16,10 @@ namespace musclesim::description {
 std::string problemOf(const mu::ParserError& error, const std::map<std::string, double>& names);
 
 /// Evaluates quantities with muParser: + - * / ^, parentheses, sqrt, sin, cos (radians) and its like, the constant pi, and the names given.
+/// One object serves one thread.
 class Expressions {
  public:
-  explicit Expressions(std::map<std::string, double> names) : names_(std::move(names)) {}
+  explicit Expressions(std::map<std::string, double> names);
 
   /// Throws BadFile for an expression that cannot be read, has an unknown name or is not finite.
   double operator()(const Quantity& quantity) const;
@@ -28,6 +29,7 @@ class Expressions {
 
  private:
   std::map<std::string, double> names_;
+  mutable mu::Parser parser_;  ///< knows the names; making one takes longer than many expressions
 };
 
 }  // namespace musclesim::description

@@ -104,6 +104,7 @@ struct FittedBlock {
   std::string recording, signal;
   double sigma = 0, rms_before = 0;
   int averaged_rows = 0;  ///< rows per average; 0: as recorded
+  bool is_parity = false;  ///< what of the signal contradicts the other signals of motion
 };
 
 /// A fitted explanation and the RMS residual that it leaves in each block.

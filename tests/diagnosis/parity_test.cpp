@@ -1,0 +1,123 @@
+// What signals of motion contradict each other by: an elbow's angle, lengths and hand follow from one coordinate.
+#include "diagnosis/parity.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "diagnosis/comparison.h"
+#include "musclesim/base/random.h"
+
+namespace musclesim {
+namespace {
+
+const std::vector<std::string> names = {"force_0_N", "angle_elbow_deg", "length_0_mm", "length_1_mm", "hand_x_mm", "hand_y_mm"};
+const std::vector<double> sigmas = {0.5, 0.1, 0.1, 0.1, 0.3, 0.3};
+const std::vector<int> motions = {1, 2, 3, 4, 5};
+
+/// A recording of the elbow under antagonistic commands of an amplitude, without noise.
+Recording elbowMoved(double amplitude) {
+  Recording plan;
+  plan.file = "plan.csv";
+  plan.info.robot = "elbow";
+  plan.signals = {{"command_0", {}}, {"command_1", {}}};
+  for (int row = 0; row < 60; ++row) {
+    const double t = 0.02 * row;
+    plan.time_s.push_back(t);
+    plan.signals[0].values.push_back(0.4 + amplitude * std::sin(5 * t));
+    plan.signals[1].values.push_back(0.4 - amplitude * std::sin(5 * t));
+  }
+  Recording recording = replayRecording(plan, {}).simulated;
+  recording.file = plan.file;
+  for (std::size_t i = 0; i < names.size(); ++i) recording.info.noise_std[names[i]] = sigmas[i];
+  return recording;
+}
+
+Eigen::VectorXd readings(const Recording& recording, std::size_t row) {
+  Eigen::VectorXd result(static_cast<Eigen::Index>(motions.size()));
+  for (std::size_t i = 0; i < motions.size(); ++i)
+    result[static_cast<Eigen::Index>(i)] = recording.find(names[static_cast<std::size_t>(motions[i])])->values[row];
+  return result;
+}
+
+double rmsInSigmas(const Eigen::VectorXd& of_motions) {
+  double sum = 0;
+  for (std::size_t i = 0; i < motions.size(); ++i)
+    sum += std::pow(of_motions[static_cast<Eigen::Index>(i)] / sigmas[static_cast<std::size_t>(motions[i])], 2);
+  return std::sqrt(sum / static_cast<double>(motions.size()));
+}
+
+TEST(Parity, AnotherMotionShowsLittleAndAFaultOfOneSensorShowsWhole) {
+  const Recording measured = elbowMoved(0.2), other = elbowMoved(0.21);
+  const ParityRelations parity(measured, {}, motions, names, sigmas);
+  ASSERT_EQ(parity.count(), 4) << "five signals, one coordinate";
+  double largest = 0;
+  for (std::size_t row = 10; row < measured.time_s.size(); ++row) {
+    const Eigen::VectorXd change = readings(measured, row) - readings(other, row);
+    const Eigen::MatrixXd& relation = parity.at(static_cast<int>(row));
+    largest = std::max(largest, rmsInSigmas(change));
+    EXPECT_LT(rmsInSigmas(relation * change), 0.05 * rmsInSigmas(change) + 0.1) << "row " << row;
+    Eigen::VectorXd bias = Eigen::VectorXd::Zero(change.size());
+    bias[0] = 1;  // degree
+    EXPECT_GT((relation * bias)[0], 0.5) << "what remains of a bias of one degree beside four other signals, row " << row;
+  }
+  EXPECT_GT(largest, 5) << "the motions differ by much more than the noise";
+}
+
+TEST(Parity, NoiseKeepsTheShareOfItsVariance) {
+  const Recording measured = elbowMoved(0.1);
+  const ParityRelations parity(measured, {}, motions, names, sigmas);
+  RandomStream random(3, "parity test");
+  constexpr int draws = 4000, row = 30;
+  double square = 0;
+  for (int draw = 0; draw < draws; ++draw) {
+    Eigen::VectorXd noise(static_cast<Eigen::Index>(motions.size()));
+    for (Eigen::Index i = 0; i < noise.size(); ++i)
+      noise[i] = sigmas[static_cast<std::size_t>(motions[static_cast<std::size_t>(i)])] * random.normal();
+    square += std::pow((parity.at(row) * noise)[0], 2) / draws;
+  }
+  EXPECT_NEAR(square, sigmas[1] * sigmas[1] * parity.shareOfVariance(row, 0), 0.1 * square);
+}
+
+TEST(Parity, NeedsMoreSignalsThanCoordinatesAndADeterminedPose) {
+  Recording measured = elbowMoved(0.1);
+  EXPECT_EQ(ParityRelations(measured, {}, {1}, names, sigmas).count(), 0);
+  std::erase_if(measured.signals, [](const Signal& signal) { return isMotion(signal.name); });
+  EXPECT_EQ(ParityRelations(measured, {}, motions, names, sigmas).count(), 0) << "nothing tells the pose";
+}
+
+/// The angle reads a degree too much; the motion itself is as predicted.
+TEST(Parity, IsAChannelOfItsOwn) {
+  Recording measured = elbowMoved(0.2);
+  std::erase_if(measured.signals, [](const Signal& signal) {
+    return !signal.name.starts_with("command_") && std::ranges::find(names, signal.name) == names.end();
+  });
+  for (Signal& signal : measured.signals)
+    if (signal.name == "angle_elbow_deg")
+      for (double& value : signal.values) value += 1;
+  Recording again = measured;
+  again.file = "again.csv";
+  again.signals[0].values[5] += 1e-3;  // the same recording twice is refused
+  DiagnosisOptions options;
+  const Plant plant({measured, again}, options);
+  const Comparison comparison(plant, {{0, 0, 60}}, Comparison::Averages::with);
+  double motion = 0, of_parity = 0;
+  for (const Comparison::Block& block : comparison.blocks()) {
+    const std::string& name = plant.signals()[static_cast<std::size_t>(block.signal)].name;
+    if (block.is_parity)
+      of_parity += block.power;
+    else if (isMotion(name))
+      motion += block.power;
+  }
+  const double as_recordings = 3;  // one recording counts as three
+  EXPECT_NEAR(motion, as_recordings * 1, 1e-9) << "one coordinate";
+  EXPECT_NEAR(of_parity, as_recordings * 4, 1e-9);
+  const Eigen::VectorXd residual = comparison.measured() - comparison.predicted(Model{});
+  for (const Comparison::Block& block : comparison.blocks())
+    if (block.is_parity && block.averaged_rows == 0 && plant.signals()[static_cast<std::size_t>(block.signal)].name == "angle_elbow_deg")
+      EXPECT_GT(std::sqrt(comparison.meanSquare(block, residual)), 4 * block.sigma);
+  EXPECT_EQ(comparison.gap(residual).per_signal.size(), names.size()) << "the gap is that of the signals as recorded";
+}
+
+}  // namespace
+}  // namespace musclesim
