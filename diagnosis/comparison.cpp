@@ -82,17 +82,33 @@ void Comparison::addParity() {
 
 /// Computes all blocks of parity from series of all rows; `seriesOf` gives that of a signal in the segment of a block.
 void Comparison::fillParity(Eigen::VectorXd& values, const std::function<const std::vector<double>&(const Block&, int)>& seriesOf) const {
-  for (const Block& block : blocks_) {
-    if (!block.is_parity || block.averaged_rows > 0) continue;
-    const ParityRelations& parity = plant_.parity(segments_[block.segment].recording);
-    const auto position = std::ranges::find(parity.signals(), block.signal) - parity.signals().begin();
-    values.segment(block.first, block.count()).setZero();
-    for (std::size_t s = 0; s < parity.signals().size(); ++s) {
-      const std::vector<double>& y = seriesOf(block, parity.signals()[s]);
-      for (std::size_t i = 0; i < block.rows.size(); ++i)
-        values[block.first + static_cast<Eigen::Index>(i)] +=
-            parity.at(block.rows[i])(position, static_cast<Eigen::Index>(s)) * y[static_cast<std::size_t>(block.rows[i])];
+  for (auto first = blocks_.begin(); first != blocks_.end();) {
+    const auto isPlainParity = [&](const Block& block) {
+      return block.is_parity && block.averaged_rows == 0 && block.segment == first->segment;
+    };
+    const auto end = std::find_if_not(first, blocks_.end(), isPlainParity);
+    if (end == first) {
+      ++first;
+      continue;
     }
+    const int recording = segments_[first->segment].recording;
+    const ParityRelations& parity = plant_.parity(recording);
+    const auto readingsAt = [&](const std::function<const std::vector<double>&(int)>& of, std::size_t row) {
+      Eigen::VectorXd readings(static_cast<Eigen::Index>(parity.signals().size()));
+      for (std::size_t s = 0; s < parity.signals().size(); ++s) readings[static_cast<Eigen::Index>(s)] = of(parity.signals()[s])[row];
+      return readings;
+    };
+    for (std::size_t i = 0; i < first->rows.size(); ++i) {
+      const auto row = static_cast<std::size_t>(first->rows[i]);
+      const Eigen::VectorXd beyond_pose =
+          parity.at(first->rows[i], readingsAt([&](int signal) -> const std::vector<double>& { return seriesOf(*first, signal); }, row),
+                    readingsAt([&](int signal) -> const std::vector<double>& { return plant_.measured(recording, signal); }, row));
+      for (auto block = first; block != end; ++block) {
+        const auto position = std::ranges::find(parity.signals(), block->signal) - parity.signals().begin();
+        values[block->first + static_cast<Eigen::Index>(i)] = beyond_pose[position];
+      }
+    }
+    first = end;
   }
 }
 

@@ -1,6 +1,8 @@
 #include "parity.h"
 
 #include <Eigen/SVD>
+#include <algorithm>
+#include <optional>
 
 #include "../simulation/measured_pose.h"
 
@@ -30,19 +32,35 @@ ParityRelations::ParityRelations(const Recording& recording, const ReplayOptions
   MeasuredPoses poses(recording, model);
   Eigen::Index largest_rank = 0;
   for (std::size_t row = 0; row < recording.time_s.size(); ++row) {
-    const Eigen::MatrixXd slopes = poses.slopes(row, own_names);
-    if (slopes.rows() == 0 || !slopes.allFinite()) {
-      relations_.clear();
+    std::optional<MotionExpansion> near = poses.expansion(row, own_names);
+    if (!near || !near->slope.allFinite()) {
+      rows_.clear();
       return;
     }
-    Eigen::JacobiSVD<Eigen::MatrixXd> svd(sigma.cwiseInverse().asDiagonal() * slopes, Eigen::ComputeThinU);
+    Eigen::JacobiSVD<Eigen::MatrixXd> svd(sigma.cwiseInverse().asDiagonal() * near->slope, Eigen::ComputeThinU | Eigen::ComputeThinV);
     svd.setThreshold(rank_ratio);
-    const auto seen = svd.matrixU().leftCols(svd.rank());
+    const Eigen::Index rank = svd.rank();
+    const Eigen::MatrixXd seen = svd.matrixU().leftCols(rank);
     const Eigen::MatrixXd beyond = Eigen::MatrixXd::Identity(sigma.size(), sigma.size()) - seen * seen.transpose();
-    relations_.push_back(sigma.asDiagonal() * beyond * sigma.cwiseInverse().asDiagonal());
-    largest_rank = std::max(largest_rank, svd.rank());
+    const Eigen::MatrixXd inverse =
+        svd.matrixV().leftCols(rank) * svd.singularValues().head(rank).cwiseInverse().asDiagonal() * seen.transpose();
+    rows_.push_back({sigma.asDiagonal() * beyond * sigma.cwiseInverse().asDiagonal(), inverse * sigma.cwiseInverse().asDiagonal(),
+                     std::move(near->bend)});
+    largest_rank = std::max(largest_rank, rank);
   }
   count_ = static_cast<int>(sigma.size() - largest_rank);
+}
+
+Eigen::VectorXd ParityRelations::at(int row, const Eigen::VectorXd& readings, const Eigen::VectorXd& measured) const {
+  const Row& at = rows_[static_cast<std::size_t>(row)];
+  const Eigen::VectorXd moved = at.to_pose * (readings - measured);
+  Eigen::VectorXd straight = readings;
+  for (Eigen::Index i = 0; i < straight.size(); ++i) straight[i] -= 0.5 * moved.dot(at.bend[static_cast<std::size_t>(i)] * moved);
+  return at.relation * straight;
+}
+
+double ParityRelations::shareOfVariance(int row, Eigen::Index position) const {
+  return rows_[static_cast<std::size_t>(row)].relation(position, position);
 }
 
 }  // namespace musclesim

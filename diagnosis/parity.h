@@ -14,12 +14,13 @@ namespace musclesim {
 bool isMotion(const std::string& signal);
 
 /// The parity relations of one recording's signals of motion. All n of them follow from the pose of the robot, which has d free coordinates
-/// q, so that n - d combinations do not depend on what moves it:
-///     e = S (1 - A A^+) S^-1 y,   A = S^-1 J,   J = dy / dq (n x d),   S = diag(sigma)
-/// y: readings of one row, mm or degrees; sigma: their noise floors; A^+: pseudoinverse; J is taken in the measured pose. e has the units
-/// of y. A fault of one sensor, or a part that is mounted elsewhere than in the model, shows in e; what only moves the robot does not, as
-/// far as the motion differs from the measured one by little enough for J to hold. Source: Potter and Suman 1977 (parity vector); Chow and
-/// Willsky 1984.
+/// q, so that n - d combinations of them do not depend on what moves it. About the measured readings y of a row, those of a model are
+///     y' = y + J dq + b(dq) + fault,   J = dy / dq (n x d),   b_i = dq^T B_i dq / 2,   B_i = d^2 y_i / dq^2 (d x d)
+/// and what no pose explains is
+///     e(y') = E (y' - b(G (y' - y))),   E = S (1 - A A^+) S^-1,   G = A^+ S^-1,   A = S^-1 J,   S = diag(sigma)
+/// y, y', e: mm or degrees; sigma: noise floors; A^+: pseudoinverse. e(y) - e(y') is free of dq up to its third power. A fault of one
+/// sensor, or a part that is mounted elsewhere than in the model, shows in it; what only moves the robot does not. Source: Potter and Suman
+/// 1977 (parity vector); Chow and Willsky 1984.
 class ParityRelations {
  public:
   /// `signals`: indices of compared signals of motion, `names` and `sigmas` those of all compared signals. There are no relations if the
@@ -31,14 +32,20 @@ class ParityRelations {
   int count() const { return count_; }
   /// The compared signals among which they hold.
   const std::vector<int>& signals() const { return signals_; }
-  /// The matrix S (1 - A A^+) S^-1 of a row.
-  const Eigen::MatrixXd& at(int row) const { return relations_[static_cast<std::size_t>(row)]; }
+  /// e(readings) in a row, where `measured` was measured; both of signals().
+  Eigen::VectorXd at(int row, const Eigen::VectorXd& readings, const Eigen::VectorXd& measured) const;
   /// The share (1 - A A^+)_ii of the variance of a signal's noise that remains in e, by its position in signals().
-  double shareOfVariance(int row, Eigen::Index position) const { return at(row)(position, position); }
+  double shareOfVariance(int row, Eigen::Index position) const;
 
  private:
+  struct Row {
+    Eigen::MatrixXd relation;           ///< E
+    Eigen::MatrixXd to_pose;            ///< G
+    std::vector<Eigen::MatrixXd> bend;  ///< B_i
+  };
+
   std::vector<int> signals_;
-  std::vector<Eigen::MatrixXd> relations_;
+  std::vector<Row> rows_;
   int count_ = 0;
 };
 

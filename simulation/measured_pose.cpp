@@ -20,13 +20,14 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-constexpr double lever_mm = 100;        ///< makes lengths of angles
-constexpr double difference_mm = 1e-3;  ///< of central differences
-constexpr double aside_mm = 10;         ///< from the pose as built, where symmetry can hide that a reading depends on a coordinate
-constexpr double rank_ratio = 1e-3;     ///< a coordinate that moves readings by less than this share counts as not determined
-constexpr double arrived_mm = 1e-5;     ///< of a step
-constexpr double longest_step_mm = 25;  ///< so that the search does not leap to another pose with similar readings
-constexpr double first_damping = 1e-6;  ///< of the largest curvature
+constexpr double lever_mm = 100;           ///< makes lengths of angles
+constexpr double difference_mm = 1e-3;     ///< of central differences
+constexpr double expansion_step_mm = 0.1;  ///< large enough for second differences
+constexpr double aside_mm = 10;            ///< from the pose as built, where symmetry can hide that a reading depends on a coordinate
+constexpr double rank_ratio = 1e-3;        ///< a coordinate that moves readings by less than this share counts as not determined
+constexpr double arrived_mm = 1e-5;        ///< of a step
+constexpr double longest_step_mm = 25;     ///< so that the search does not leap to another pose with similar readings
+constexpr double first_damping = 1e-6;     ///< of the largest curvature
 constexpr double most_damping = 1e6;
 constexpr int step_limit = 100;
 
@@ -57,7 +58,7 @@ class MeasuredPoses::Search {
   const std::string& sources() const { return sources_; }
   const std::string& fault() const { return fault_; }
   std::shared_ptr<const DrawnGhost> at(std::size_t row, const Snapshot& simulated);
-  MatrixXd slopes(std::size_t row, const std::vector<std::string>& signals);
+  std::optional<MotionExpansion> expansion(std::size_t row, const std::vector<std::string>& signals);
 
  private:
   /// A length of a muscle, a coordinate of the hand, or a distance of two bones at a closure, in the pose of the bodies.
@@ -307,25 +308,39 @@ std::function<double()> MeasuredPoses::Search::motionNamed(const std::string& si
   return {};
 }
 
-MatrixXd MeasuredPoses::Search::slopes(std::size_t row, const std::vector<std::string>& signals) {
+std::optional<MotionExpansion> MeasuredPoses::Search::expansion(std::size_t row, const std::vector<std::string>& signals) {
   std::vector<std::function<double()>> values;
   for (const std::string& signal : signals) values.push_back(motionNamed(signal));
   const bool all_known = std::ranges::all_of(values, [](const auto& value) { return static_cast<bool>(value); });
-  if (!skeleton_->closures().empty() || !all_known) return {};
+  if (!skeleton_->closures().empty() || !all_known) return std::nullopt;
   locate(row);
-  MatrixXd result(static_cast<Index>(signals.size()), 0);
-  for (Index i = 0; i < q_.size(); ++i) {
-    if (skeleton_->coordinates()[static_cast<std::size_t>(i)].locked()) continue;
-    const VectorXd step = scale_[i] * difference_mm * VectorXd::Unit(q_.size(), i);
-    const auto valuesAt = [&](const VectorXd& q) {
-      pose(q);
-      VectorXd at(result.rows());
-      for (Index s = 0; s < at.size(); ++s) at[s] = values[static_cast<std::size_t>(s)]();
-      return at;
-    };
-    const VectorXd ahead = valuesAt(skeleton_->displaced(q_, step)), behind = valuesAt(skeleton_->displaced(q_, -step));
-    result.conservativeResize(Eigen::NoChange, result.cols() + 1);
-    result.rightCols<1>() = (ahead - behind) / (2 * difference_mm);
+  std::vector<VectorXd> steps;
+  for (Index i = 0; i < q_.size(); ++i)
+    if (!skeleton_->coordinates()[static_cast<std::size_t>(i)].locked())
+      steps.emplace_back(scale_[i] * expansion_step_mm * VectorXd::Unit(q_.size(), i));
+  const auto beyond = [&](const VectorXd& step) {
+    pose(skeleton_->displaced(q_, step));
+    VectorXd at(static_cast<Index>(values.size()));
+    for (Index s = 0; s < at.size(); ++s) at[s] = values[static_cast<std::size_t>(s)]();
+    return at;
+  };
+  const auto count = static_cast<Index>(steps.size());
+  const VectorXd here = beyond(VectorXd::Zero(q_.size()));
+  MotionExpansion result{MatrixXd(here.size(), count), std::vector<MatrixXd>(values.size(), MatrixXd(count, count))};
+  std::vector<VectorXd> ahead;
+  for (Index i = 0; i < count; ++i) {
+    const VectorXd& step = steps[static_cast<std::size_t>(i)];
+    ahead.push_back(beyond(step));
+    const VectorXd behind = beyond(-step);
+    result.slope.col(i) = (ahead.back() - behind) / (2 * expansion_step_mm);
+    for (Index k = 0; k <= i; ++k) {
+      const VectorXd difference =
+          k == i ? VectorXd(ahead.back() - 2 * here + behind)
+                 : VectorXd(beyond(step + steps[static_cast<std::size_t>(k)]) - ahead.back() - ahead[static_cast<std::size_t>(k)] + here);
+      for (Index s = 0; s < here.size(); ++s)
+        result.bend[static_cast<std::size_t>(s)](i, k) = result.bend[static_cast<std::size_t>(s)](k, i) =
+            difference[s] / (expansion_step_mm * expansion_step_mm);
+    }
   }
   return result;
 }
@@ -343,8 +358,8 @@ const std::string& MeasuredPoses::reason() const {
   return reason_;
 }
 
-Eigen::MatrixXd MeasuredPoses::slopes(std::size_t row, const std::vector<std::string>& signals) {
-  return areDetermined() ? search_->slopes(row, signals) : Eigen::MatrixXd();
+std::optional<MotionExpansion> MeasuredPoses::expansion(std::size_t row, const std::vector<std::string>& signals) {
+  return areDetermined() ? search_->expansion(row, signals) : std::nullopt;
 }
 
 std::shared_ptr<const DrawnGhost> MeasuredPoses::at(std::size_t row, const Snapshot& simulated) {

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,13 @@
 #include "snapshot.h"
 
 namespace musclesim {
+
+/// Signals of motion near a pose: y(q + dq) = y(q) + slope dq + dq^T bend dq / 2, in the units of the signals, dq in mm; a coordinate that
+/// turns counts 100 mm per rad. Free coordinates of the skeleton only.
+struct MotionExpansion {
+  Eigen::MatrixXd slope;              ///< signals x coordinates
+  std::vector<Eigen::MatrixXd> bend;  ///< per signal: coordinates x coordinates
+};
 
 /// Finds the pose of a recording's robot in each row from what was measured.
 ///
@@ -37,10 +45,9 @@ class MeasuredPoses {
   const std::string& reason() const;
   /// The pose in a row; null if the poses are not determined. `simulated`: of the same row.
   std::shared_ptr<const DrawnGhost> at(std::size_t row, const Snapshot& simulated);
-  /// Derivatives of signals of motion by the free coordinates of the skeleton, in the pose measured in a row: one row per signal, in its
-  /// unit per mm, a coordinate that turns counting 100 mm per rad. Chains count as straight. Empty if the pose is not determined, if bones
-  /// form a loop, or if a signal is none of this robot's angles, muscle lengths and coordinates of the hand.
-  Eigen::MatrixXd slopes(std::size_t row, const std::vector<std::string>& signals);
+  /// Signals of motion near the pose measured in a row. Chains count as straight. Nothing if the pose is not determined, if bones form a
+  /// loop, or if a signal is none of this robot's angles, muscle lengths and coordinates of the hand.
+  std::optional<MotionExpansion> expansion(std::size_t row, const std::vector<std::string>& signals);
 
  private:
   class Search;
