@@ -70,8 +70,7 @@ void Search::addOtherColumns(Surroundings& around, std::vector<LinearModel::Colu
 }
 
 /// Simulates every change of the base itself, and of the hypotheses beside it those worth it, unless their sensitivities are given.
-Search::Surroundings Search::surroundingsOf(const Explanation& base, std::optional<std::vector<Sensitivity>> sensitivities,
-                                            Kin kin) const {
+Search::Surroundings Search::surroundingsOf(const Explanation& base, std::optional<std::vector<Sensitivity>> sensitivities, Kin kin) const {
   Surroundings around{base, {}, {}, {}, {}, {}, {}, {}};
   std::vector<LinearModel::Column> columns;
   addOwnColumns(around, columns);
