@@ -10,8 +10,7 @@
 
 namespace musclesim {
 
-Comparison::Comparison(const Plant& plant, std::vector<Segment> segments, Averages averages)
-    : plant_(plant), segments_(std::move(segments)) {
+Comparison::Comparison(const Plant& plant, std::vector<Segment> segments, Derived derived) : plant_(plant), segments_(std::move(segments)) {
   for (std::size_t k = 0; k < segments_.size(); ++k)
     for (std::size_t s = 0; s < plant.signals().size(); ++s) {
       const std::vector<double>& y = plant.measured(segments_[k].recording, static_cast<int>(s));
@@ -22,7 +21,7 @@ Comparison::Comparison(const Plant& plant, std::vector<Segment> segments, Averag
       size_ += static_cast<Eigen::Index>(block.rows.size());
       blocks_.push_back(std::move(block));
     }
-  if (averages == Averages::with) {
+  if (derived == Derived::with) {
     addParity();
     addAverages();
   }
@@ -34,8 +33,8 @@ Comparison::Comparison(const Plant& plant, std::vector<Segment> segments, Averag
     for (std::size_t i = 0; i < block.rows.size(); ++i)
       measured_[block.first + static_cast<Eigen::Index>(i)] = y[static_cast<std::size_t>(block.rows[i])];
   }
-  fillParity(measured_, [this](const Block& block, int signal) -> const std::vector<double>& {
-    return plant_.measured(segments_[block.segment].recording, signal);
+  fillParity(measured_, [this](std::size_t segment, int signal) -> const std::vector<double>& {
+    return plant_.measured(segments_[segment].recording, signal);
   });
   average(measured_);
 }
@@ -80,35 +79,28 @@ void Comparison::addParity() {
   }
 }
 
-/// Computes all blocks of parity from series of all rows; `seriesOf` gives that of a signal in the segment of a block.
-void Comparison::fillParity(Eigen::VectorXd& values, const std::function<const std::vector<double>&(const Block&, int)>& seriesOf) const {
-  for (auto first = blocks_.begin(); first != blocks_.end();) {
-    const auto isPlainParity = [&](const Block& block) {
-      return block.is_parity && block.averaged_rows == 0 && block.segment == first->segment;
-    };
-    const auto end = std::find_if_not(first, blocks_.end(), isPlainParity);
-    if (end == first) {
-      ++first;
-      continue;
-    }
-    const int recording = segments_[first->segment].recording;
-    const ParityRelations& parity = plant_.parity(recording);
-    const auto readingsAt = [&](const std::function<const std::vector<double>&(int)>& of, std::size_t row) {
-      Eigen::VectorXd readings(static_cast<Eigen::Index>(parity.signals().size()));
-      for (std::size_t s = 0; s < parity.signals().size(); ++s) readings[static_cast<Eigen::Index>(s)] = of(parity.signals()[s])[row];
-      return readings;
-    };
-    for (std::size_t i = 0; i < first->rows.size(); ++i) {
-      const auto row = static_cast<std::size_t>(first->rows[i]);
-      const Eigen::VectorXd beyond_pose =
-          parity.at(first->rows[i], readingsAt([&](int signal) -> const std::vector<double>& { return seriesOf(*first, signal); }, row),
-                    readingsAt([&](int signal) -> const std::vector<double>& { return plant_.measured(recording, signal); }, row));
-      for (auto block = first; block != end; ++block) {
-        const auto position = std::ranges::find(parity.signals(), block->signal) - parity.signals().begin();
-        values[block->first + static_cast<Eigen::Index>(i)] = beyond_pose[position];
+/// Computes the parity blocks of rows (not of averages); `seriesOf` gives the values of a signal in all rows of a segment.
+void Comparison::fillParity(Eigen::VectorXd& values, const SeriesOf& seriesOf) const {
+  for (std::size_t k = 0; k < segments_.size(); ++k) {
+    std::vector<const Block*> parts;
+    for (const Block& block : blocks_)
+      if (block.is_parity && block.averaged_rows == 0 && block.segment == k) parts.push_back(&block);
+    if (parts.empty()) continue;
+    const ParityRelations& parity = plant_.parity(segments_[k].recording);
+    const auto count = static_cast<Eigen::Index>(parity.signals().size());
+    Eigen::VectorXd readings(count), measured(count);
+    for (std::size_t i = 0; i < parts.front()->rows.size(); ++i) {
+      const int row = parts.front()->rows[i];
+      for (Eigen::Index s = 0; s < count; ++s) {
+        const int signal = parity.signals()[static_cast<std::size_t>(s)];
+        readings[s] = seriesOf(k, signal)[static_cast<std::size_t>(row)];
+        measured[s] = plant_.measured(segments_[k].recording, signal)[static_cast<std::size_t>(row)];
       }
+      const Eigen::VectorXd beyond_pose = parity.at(row, readings, measured);
+      for (const Block* block : parts)
+        values[block->first + static_cast<Eigen::Index>(i)] =
+            beyond_pose[std::ranges::find(parity.signals(), block->signal) - parity.signals().begin()];
     }
-    first = end;
   }
 }
 
@@ -154,11 +146,11 @@ void Comparison::shareEvidence() {
   }
   const double per_segment = std::max(1.0, usual_recordings / static_cast<double>(segments_.size()));
   const auto powerOf = [&](const Block& block, const Channel& channel) {
-    const ParityRelations& parity = plant_.parity(segments_[block.segment].recording);
     const auto signal_count = static_cast<double>(channel.signals.size());
-    if (block.is_parity) return static_cast<double>(parity.count());
-    return channels.contains({block.segment, "parity"}) && channelOf(block) == "motion" ? signal_count - parity.count()
-                                                                                        : std::sqrt(signal_count);
+    if (channelOf(block) == "motion" && !channels.contains({block.segment, "parity"})) return std::sqrt(signal_count);
+    if (!isMotion(plant_.signals()[static_cast<std::size_t>(block.signal)].name)) return 1.0;
+    const double relation_count = plant_.parity(segments_[block.segment].recording).count();
+    return block.is_parity ? relation_count : signal_count - relation_count;
   };
   for (Block& block : blocks_) {
     const Channel& channel = channels[{block.segment, channelOf(block)}];
@@ -253,12 +245,12 @@ Eigen::VectorXd Comparison::gathered(const std::vector<Prediction>& per_segment)
   for (const Prediction& prediction : per_segment)
     if (prediction.diverged) return {};
   Eigen::VectorXd result(size_);
-  const auto seriesOf = [&](const Block& block, int signal) -> const std::vector<double>& {
-    return per_segment[block.segment].values[static_cast<std::size_t>(signal)];
+  const auto seriesOf = [&](std::size_t segment, int signal) -> const std::vector<double>& {
+    return per_segment[segment].values[static_cast<std::size_t>(signal)];
   };
   for (const Block& block : blocks_) {
     if (!block.isReading()) continue;
-    const std::vector<double>& y = seriesOf(block, block.signal);
+    const std::vector<double>& y = seriesOf(block.segment, block.signal);
     for (std::size_t i = 0; i < block.rows.size(); ++i)
       result[block.first + static_cast<Eigen::Index>(i)] = y[static_cast<std::size_t>(block.rows[i])];
   }

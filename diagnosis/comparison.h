@@ -50,9 +50,9 @@ class Comparison {
     /// Whether its values are readings: neither averages nor parity, which are computed from readings.
     bool isReading() const { return averaged_rows == 0 && !is_parity; }
   };
-  enum class Averages { without, with };  ///< with: also averages, and parity of the signals of motion
+  enum class Derived { without, with };  ///< blocks that are computed from readings: averages, and parity of the signals of motion
 
-  Comparison(const Plant& plant, std::vector<Segment> segments, Averages averages = Averages::without);
+  Comparison(const Plant& plant, std::vector<Segment> segments, Derived derived = Derived::without);
 
   const Plant& plant() const { return plant_; }
   const std::vector<Segment>& segments() const { return segments_; }
@@ -107,7 +107,8 @@ class Comparison {
 
  private:
   void addParity();
-  void fillParity(Eigen::VectorXd& values, const std::function<const std::vector<double>&(const Block&, int)>& seriesOf) const;
+  using SeriesOf = std::function<const std::vector<double>&(std::size_t segment, int signal)>;
+  void fillParity(Eigen::VectorXd& values, const SeriesOf& seriesOf) const;
   void addAverages();
   void shareEvidence();
   bool counts(const Block& block) const;

@@ -21,7 +21,7 @@ constexpr std::size_t per_effect_count = 3;   ///< and at least this many of eve
 }  // namespace
 
 Comparison Search::firstScreeningSegment() const {
-  Comparison result(plant_, {screening_.segments().front()}, Comparison::Averages::with);
+  Comparison result(plant_, {screening_.segments().front()}, Comparison::Derived::with);
   const Eigen::VectorXd nominal = result.predicted(Model{});
   result.goCoarse(nominal, Comparison::Purpose::screening);
   result.setGap(result.measured() - nominal);

@@ -31,8 +31,8 @@ Search::Search(const Plant& plant, const DiagnosisOptions& options, OnSimulation
       options_(options),
       on_simulation_(std::move(on_simulation)),
       causes_(plant, on_simulation_),
-      screening_(plant, plant.screeningSegments(), Comparison::Averages::with),
-      fit_(plant, plant.split().fit, Comparison::Averages::with) {}
+      screening_(plant, plant.screeningSegments(), Comparison::Derived::with),
+      fit_(plant, plant.split().fit, Comparison::Derived::with) {}
 
 /// Whether the set was fitted and did not end far from what is promised now: a fit that began elsewhere may have ended in a local minimum.
 bool Search::isKnown(const Proposal& proposal) const {
@@ -150,7 +150,7 @@ std::vector<Search::Proposal> Search::swaps(const Surroundings& around) const {
 }
 
 /// Two other effects in place of one member, or beside all members if `member` is their number: one effect often takes in what two make.
-/// The first of the two is one of those that do best alone there.
+/// Pairs are formed of the effects that cost least there if added alone (pair_base_count) with any other.
 std::vector<Search::Proposal> Search::pairsInPlaceOf(std::size_t member, const Surroundings& around) const {
   const std::size_t count = around.base.members.size();
   const std::vector<std::size_t> kept = allBut(member, count);

@@ -89,21 +89,21 @@ TEST(SharesOfEvidence, AreEqualForChannelsAndForAtMostThreeRecordings) {
     return planted::recorded({}, amplitude, seed, planted::Pressure::measured);
   };
   const Plant plant({measured(0.1, 1), measured(0.11, 2), measured(0.12, 3), measured(0.13, 4)}, options);
-  const auto powers = [&](int recording_count, Comparison::Averages averages) {
+  const auto powers = [&](int recording_count, Comparison::Derived derived) {
     std::vector<Segment> segments;
     for (int recording = 0; recording < recording_count; ++recording) segments.push_back({recording, 0, 150});
-    const Comparison comparison(plant, segments, averages);
+    const Comparison comparison(plant, segments, derived);
     std::map<std::string, double> sums;
     for (const Comparison::Block& block : comparison.blocks())
       sums[plant.signals()[static_cast<std::size_t>(block.signal)].name] += block.power;
     return sums;
   };
-  for (const Comparison::Averages averages : {Comparison::Averages::without, Comparison::Averages::with}) {
+  for (const Comparison::Derived derived : {Comparison::Derived::without, Comparison::Derived::with}) {
     for (const int recording_count : {1, 2, 3}) {
-      EXPECT_NEAR(powers(recording_count, averages).at("length_0_mm"), 3, 1e-12) << recording_count;
-      EXPECT_NEAR(powers(recording_count, averages).at("pressure_0"), 3, 1e-12) << recording_count;
+      EXPECT_NEAR(powers(recording_count, derived).at("length_0_mm"), 3, 1e-12) << recording_count;
+      EXPECT_NEAR(powers(recording_count, derived).at("pressure_0"), 3, 1e-12) << recording_count;
     }
-    EXPECT_NEAR(powers(4, averages).at("pressure_0"), 4, 1e-12);
+    EXPECT_NEAR(powers(4, derived).at("pressure_0"), 4, 1e-12);
   }
 }
 
@@ -232,7 +232,7 @@ TEST_F(Rig, FitFindsTheBottomOfABentValley) {
 }
 
 TEST_F(Rig, AveragesShowWhatIsWeakButSlow) {
-  const Comparison averaged(plant, {{0, 0, 150}, {1, 0, 150}}, Comparison::Averages::with);
+  const Comparison averaged(plant, {{0, 0, 150}, {1, 0, 150}}, Comparison::Derived::with);
   ASSERT_EQ(averaged.blocks().size(), 4u);
   ASSERT_EQ(averaged.size(), 300 + 2 * 9) << "blocks of 16 rows, the rest left out";
   const Comparison::Block& blocks = averaged.blocks()[2];

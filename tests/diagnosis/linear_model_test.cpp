@@ -44,7 +44,7 @@ class LinearModelOnARig : public testing::Test {
 
   DiagnosisOptions options_;
   Plant plant_{planted::plant({}), options_};
-  Comparison comparison_{plant_, {{0, 0, 160}, {1, 0, 160}}, Comparison::Averages::with};
+  Comparison comparison_{plant_, {{0, 0, 160}, {1, 0, 160}}, Comparison::Derived::with};
   Eigen::VectorXd noise_;
 };
 

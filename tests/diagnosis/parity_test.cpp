@@ -101,7 +101,7 @@ TEST(Parity, IsAChannelOfItsOwn) {
   again.signals[0].values[5] += 1e-3;  // the same recording twice is refused
   DiagnosisOptions options;
   const Plant plant({measured, again}, options);
-  const Comparison comparison(plant, {{0, 0, 60}}, Comparison::Averages::with);
+  const Comparison comparison(plant, {{0, 0, 60}}, Comparison::Derived::with);
   double motion = 0, of_parity = 0;
   for (const Comparison::Block& block : comparison.blocks()) {
     const std::string& name = plant.signals()[static_cast<std::size_t>(block.signal)].name;

@@ -43,7 +43,7 @@ struct Looked {
   }
   DiagnosisOptions options;
   Plant plant;
-  Comparison comparison{plant, {{0, 0, 400}, {1, 0, 400}}, Comparison::Averages::with};
+  Comparison comparison{plant, {{0, 0, 400}, {1, 0, 400}}, Comparison::Derived::with};
   Eigen::VectorXd nominal = comparison.predicted(Model{});
   Hypothesis hypothesis;
   Sensitivity sensitivity;

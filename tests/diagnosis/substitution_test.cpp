@@ -56,7 +56,7 @@ struct Compared {
       const std::string& robot, const std::vector<std::string>& signals, const std::vector<ActiveEffect>& effects,
       const std::function<void(Recording&)>& fault = [](Recording&) {})
       : plant({recorded(robot, signals, effects, 1, fault), recorded(robot, signals, effects, 2, fault)}, options),
-        comparison(plant, {{0, 0, 300}, {1, 0, 300}}, Comparison::Averages::with),
+        comparison(plant, {{0, 0, 300}, {1, 0, 300}}, Comparison::Derived::with),
         residual(comparison.measured() - comparison.predicted(Model{})) {}
   DiagnosisOptions options;
   Plant plant;

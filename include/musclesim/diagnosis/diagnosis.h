@@ -103,7 +103,7 @@ struct Experiment {
 struct FittedBlock {
   std::string recording, signal;
   double sigma = 0, rms_before = 0;
-  int averaged_rows = 0;  ///< rows per average; 0: as recorded
+  int averaged_rows = 0;   ///< rows per average; 0: as recorded
   bool is_parity = false;  ///< what of the signal contradicts the other signals of motion
 };
 
