@@ -69,10 +69,11 @@ ReplayController::ReplayController(const Recording& recording, int muscle_count,
   requireTimes(recording);
   if (recording.find(fmt::format("command_{}", muscle_count)))
     throw BadFile(nameOf(recording), fmt::format("there are commands for more than the {} muscles of the robot", muscle_count));
-  rows_.resize(time_s_.size());
-  for (int muscle = 0; muscle < muscle_count; ++muscle) {
-    const Signal& command = requireCommand(recording, muscle);
-    for (std::size_t row = 0; row < rows_.size(); ++row) rows_[row].push_back(command.values[row]);
+  const auto count = static_cast<std::size_t>(muscle_count);
+  rows_.assign(time_s_.size(), Action(count));
+  for (std::size_t muscle = 0; muscle < count; ++muscle) {
+    const Signal& command = requireCommand(recording, static_cast<int>(muscle));
+    for (std::size_t row = 0; row < rows_.size(); ++row) rows_[row][muscle] = command.values[row];
   }
 }
 

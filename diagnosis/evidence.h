@@ -34,6 +34,8 @@ class Evidence {
   double price(const Explanation& explanation) const;
   /// ln of the odds up to a constant: -misfit - price - sum of numbers^2 / 2; minus infinity with an inactive effect.
   double score(const Explanation& explanation) const;
+  /// The largest misfit and sum of numbers^2 / 2, in nats, with which an explanation that is not fitted yet may come up to a score.
+  double largestCost(const Explanation& explanation, double least_score) const { return -least_score - price(explanation); }
   /// The probability that something acts beside what the explanations hold,
   ///     sum over explanations S of P(S) / (1 + exp(-per_share_left (share_S - share_of_unknown))),
   /// share_S the share of the misfit that S leaves: the right one leaves a small one. Needs Explanation::probability, of sum 1.

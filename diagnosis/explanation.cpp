@@ -99,7 +99,7 @@ FitProblem Causes::problemOf(const Explanation& explanation, const Comparison& c
 }
 
 void Causes::refit(Explanation& explanation, const Comparison& comparison, int rounds, Fidelity fidelity, Accuracy accuracy,
-                   std::vector<Eigen::VectorXd> known, Known known_from) const {
+                   std::vector<SharedVector> known, Known known_from, double largest_cost) const {
   const Eigen::Index effect_count = explanation.z.size(), number_count = plant_.numberCount();
   FitProblem problem = problemOf(explanation, comparison, Fidelity::coarse);
   if (!known.empty()) {
@@ -107,6 +107,7 @@ void Causes::refit(Explanation& explanation, const Comparison& comparison, int r
     problem.renewed_count = effect_count;
     problem.narrow_differences = false;
   }
+  problem.largest_cost = largest_cost;
   problem.known_elsewhere = known_from == Known::elsewhere;
   if (accuracy == Accuracy::ranking) {
     problem.enough = roughly_enough;

@@ -54,9 +54,10 @@ class Causes {
   Eigen::VectorXd clamped(const std::vector<std::size_t>& members, const Eigen::VectorXd& z) const;
   /// The fit of all coordinates and numbers to a comparison. References must outlive the problem.
   FitProblem problemOf(const Explanation& explanation, const Comparison& comparison, Fidelity fidelity) const;
-  /// Fits on, from where the explanation is; `known` as FitProblem::known_derivatives.
+  /// Fits on, from where the explanation is; `known` as FitProblem::known_derivatives, `largest_cost` as FitProblem::largest_cost.
   void refit(Explanation& explanation, const Comparison& comparison, int rounds, Fidelity fidelity, Accuracy accuracy,
-             std::vector<Eigen::VectorXd> known = {}, Known known_from = Known::elsewhere) const;
+             std::vector<SharedVector> known = {}, Known known_from = Known::elsewhere,
+             double largest_cost = std::numeric_limits<double>::infinity()) const;
 
  private:
   const Plant& plant_;

@@ -144,8 +144,9 @@ void Search::tryOtherStrengths() {
       if (other.residual.size() == fit_.size()) other.score = evidence().score(other);
     });
     if (others.size() > start_count) others.resize(start_count);
-    fitAll(others, [this](Explanation& other) { fitRoughly(other); });
-    std::erase_if(others, [&](const Explanation& other) { return other.score < one.score - worth_polishing; });
+    const double least_score = one.score - worth_polishing;
+    fitAll(others, [&](Explanation& other) { fitRoughly(other, least_score); });
+    std::erase_if(others, [&](const Explanation& other) { return other.score < least_score; });
     fitAll(others, [this](Explanation& other) { fitFinely(other); });
     if (!others.empty() && others.front().score > one.score) one = std::move(others.front());
   }
@@ -158,8 +159,9 @@ void Search::tryVariants() {
     Explanation& one = explanations_[rank];
     for (int pass = 0; pass < variant_passes && one.score >= least && !plant_.interrupted(); ++pass) {
       std::vector<Explanation> others = otherVariants(one);
-      fitAll(others, [this](Explanation& other) { fitRoughly(other); });
-      std::erase_if(others, [&](const Explanation& other) { return other.score < one.score - worth_polishing; });
+      const double least_score = one.score - worth_polishing;
+      fitAll(others, [&](Explanation& other) { fitRoughly(other, least_score); });
+      std::erase_if(others, [&](const Explanation& other) { return other.score < least_score; });
       fitAll(others, [this](Explanation& other) { fitFinely(other); });
       if (others.empty() || others.front().score <= one.score) break;
       one = std::move(others.front());
@@ -197,9 +199,10 @@ void Search::keepIfBetter(Explanation one) {
     *same = std::move(one);
 }
 
-/// In coarse steps.
-void Search::fitRoughly(Explanation& explanation) const {
-  causes_.refit(explanation, fit_, coarse_rounds, Fidelity::coarse, Accuracy::ranking);
+/// In coarse steps. Ends early where no score above the least one is promised.
+void Search::fitRoughly(Explanation& explanation, double least_score) const {
+  causes_.refit(explanation, fit_, coarse_rounds, Fidelity::coarse, Accuracy::ranking, {}, Known::elsewhere,
+                evidence().largestCost(explanation, least_score - promise_error));
   if (explanation.residual.size() == fit_.size()) explanation.score = evidence().score(explanation);
 }
 
@@ -213,8 +216,9 @@ void Search::fitFinely(Explanation& explanation) const {
 
 /// Fits on in fine steps; the derivatives found last, in whatever steps, serve at first.
 void Search::goOn(Explanation& explanation, Accuracy accuracy) const {
-  std::vector<Eigen::VectorXd> known;
-  for (Eigen::Index k = 0; k < explanation.jacobian.cols(); ++k) known.emplace_back(explanation.jacobian.col(k));
+  std::vector<SharedVector> known;
+  for (Eigen::Index k = 0; k < explanation.jacobian.cols(); ++k)
+    known.push_back(std::make_shared<const Eigen::VectorXd>(explanation.jacobian.col(k)));
   causes_.refit(explanation, fit_, fine_rounds, Fidelity::fine, accuracy, std::move(known), Known::here);
 }
 

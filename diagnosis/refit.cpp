@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "../base/parallel.h"
+#include "linear_model.h"
 
 namespace musclesim {
 
@@ -41,11 +42,11 @@ Point evaluate(const Comparison& comparison, const FitProblem& problem, const Ei
 }
 
 Eigen::MatrixXd derivatives(const Comparison& comparison, const FitProblem& problem, const Point& at, double difference,
-                            const std::vector<Eigen::VectorXd>& known = {}) {
+                            const std::vector<SharedVector>& known = {}) {
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(comparison.size(), at.z.size());
   parallelFor(static_cast<int>(at.z.size()), comparison.plant().jobCount(), [&](int i) {
-    if (const auto k = static_cast<std::size_t>(i); k < known.size() && known[k].size()) {
-      jacobian.col(i) = known[k];
+    if (const auto k = static_cast<std::size_t>(i); k < known.size() && known[k]) {
+      jacobian.col(i) = *known[k];
       return;
     }
     for (const double side : {1.0, -1.0}) {
@@ -160,6 +161,20 @@ void update(Eigen::MatrixXd& jacobian, const Point& from, const Point& to) {
   if (step.squaredNorm() > 0) jacobian += (from.residual - to.residual - jacobian * step) * step.transpose() / step.squaredNorm();
 }
 
+/// The least cost that the linear model about a point promises.
+double promisedCost(const Comparison& comparison, const FitProblem& problem, const Point& at, const Eigen::MatrixXd& jacobian) {
+  constexpr double farthest = 3;  // times the size of a coordinate, 1 if that is larger
+  std::vector<LinearModel::Column> columns;
+  std::vector<std::size_t> all;
+  for (Eigen::Index k = 0; k < jacobian.cols(); ++k) {
+    const double least = problem.clamped(movedBy(at.z, k, -farthest))[k], most = problem.clamped(movedBy(at.z, k, farthest))[k];
+    const double precision = problem.precision.size() ? problem.precision[k] : 0;
+    all.push_back(columns.size());
+    columns.push_back({jacobian.col(k), least - at.z[k], most - at.z[k], precision, at.z[k]});
+  }
+  return LinearModel(comparison, at.residual, std::move(columns)).solve(all).cost;
+}
+
 /// Of a fit that has no derivatives.
 Certainty allDetermined(Eigen::Index count) {
   return {Eigen::VectorXd::Zero(count), Eigen::VectorXd::Ones(count)};
@@ -190,6 +205,7 @@ FitResult fit(const Comparison& comparison, const FitProblem& problem, int round
   double gained = is_known && problem.known_elsewhere ? std::numeric_limits<double>::infinity() : 0;  // since the derivatives
   double damping = 0.01;
   for (int round = 0; round < round_count && !comparison.plant().interrupted(); ++round) {
+    if (std::isfinite(problem.largest_cost) && promisedCost(comparison, problem, best, jacobian) > problem.largest_cost) break;
     const Point before = best;
     const bool down = stepDown(comparison, problem, jacobian, damping, best);
     const bool settled = best.cost > before.cost - problem.enough;
@@ -198,8 +214,9 @@ FitResult fit(const Comparison& comparison, const FitProblem& problem, int round
     if ((settled && fresh && (difference == narrow || !problem.narrow_differences)) || round + 1 == round_count) break;
     if (settled) {
       if (fresh && problem.narrow_differences) difference = narrow;
-      std::vector<Eigen::VectorXd> kept(static_cast<std::size_t>(jacobian.cols()));
-      for (Eigen::Index k = problem.renewed_count; k >= 0 && k < jacobian.cols(); ++k) kept[static_cast<std::size_t>(k)] = jacobian.col(k);
+      std::vector<SharedVector> kept(static_cast<std::size_t>(jacobian.cols()));
+      for (Eigen::Index k = problem.renewed_count; k >= 0 && k < jacobian.cols(); ++k) 
+        kept[static_cast<std::size_t>(k)] = std::make_shared<const Eigen::VectorXd>(jacobian.col(k));
       jacobian = derivatives(comparison, problem, best, difference, kept);
       gained = 0;
     } else if (down) {

@@ -3,11 +3,16 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <limits>
+#include <memory>
 #include <vector>
 
 #include "comparison.h"
 
 namespace musclesim {
+
+/// A derivative that many fits begin with; null: not known.
+using SharedVector = std::shared_ptr<const Eigen::VectorXd>;
 
 /// The prediction at the compared rows for given coordinates; empty if the model diverges.
 using Predicted = std::function<Eigen::VectorXd(const Eigen::VectorXd&)>;
@@ -17,8 +22,8 @@ struct FitProblem {
   std::function<Eigen::VectorXd(const Eigen::VectorXd&)> clamped;
   Eigen::VectorXd start;
   Eigen::VectorXd precision = {};  ///< of a normal prior of each coordinate about 0: 1 / variance; 0 or empty: none
-  /// Derivatives of the prediction at the start by coordinate, where they are known; empty columns are computed.
-  std::vector<Eigen::VectorXd> known_derivatives = {};
+  /// Derivatives of the prediction at the start by coordinate, where they are known; the others are computed.
+  std::vector<SharedVector> known_derivatives = {};
   /// Only so many of the first coordinates get new derivatives later on; the known ones of the others are only updated. -1: all do.
   Eigen::Index renewed_count = -1;
   /// Nats: a decrease that does not justify another round. The misfit is tempered, so that intervals end far below 1.
@@ -27,6 +32,8 @@ struct FitProblem {
   double still_valid = 0;
   bool known_elsewhere = true;     ///< the known derivatives are those of another place, so that still_valid does not hold for them
   bool narrow_differences = true;  ///< whether the last rounds use narrow differences
+  /// Nats: the fit ends as soon as the linear model about the place that it has reached promises no cost below this one.
+  double largest_cost = std::numeric_limits<double>::infinity();
 };
 
 /// How well the data and the prior determine the coordinates of a fit.

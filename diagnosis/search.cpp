@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <map>
 
 #include "../base/parallel.h"
@@ -222,14 +223,19 @@ void Search::nearToOrigin(Proposal& proposal) const {
   }
 }
 
-/// Fits proposals to the screening segments.
+/// Fits proposals to the screening segments. The fit of a set of two and more effects ends early where nothing better is promised than what
+/// would not be extended.
 void Search::fitOnScreening(std::vector<Proposal> proposals) {
+  const std::vector<std::size_t> best = bestOnScreening(0, 1);
   parallelFor(static_cast<int>(proposals.size()), options_.job_count, [&](int i) {
     Proposal& proposal = proposals[static_cast<std::size_t>(i)];
     Explanation& start = proposal.start;
     if (plant_.interrupted()) return;
     nearToOrigin(proposal);
-    causes_.refit(start, screening_, screening_rounds, Fidelity::coarse, Accuracy::ranking, std::move(proposal.known));
+    const bool is_base = best.empty() || start.members.size() < 2;  // what is extended in any case
+    const double least_score = is_base ? -std::numeric_limits<double>::infinity() : pool_[best.front()].score - hopeless - promise_error;
+    causes_.refit(start, screening_, screening_rounds, Fidelity::coarse, Accuracy::ranking, std::move(proposal.known), Known::elsewhere,
+                  screeningEvidence().largestCost(start, least_score));
     if (start.residual.size() == screening_.size()) start.score = screeningEvidence().score(start);
   });
   for (Proposal& proposal : proposals) {

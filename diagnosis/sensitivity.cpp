@@ -160,13 +160,16 @@ std::vector<Probe> strongerProbes(const Comparison& comparison, const std::vecto
   return result;
 }
 
-/// Largest ratio of the RMS change in any block to the RMS residual there, or to sigma if that is larger. It is 1 for the right cause at
-/// its right strength.
+/// Largest ratio of the RMS change in any block, except those of parity, to the RMS residual there, or to sigma if that is larger. It is 1
+/// for the right cause at its right strength. Parity hardly takes part in the motion: an effect that shows there stands above a residual of
+/// mere noise at any strength.
 double sizeOver(const Comparison& comparison, const Eigen::VectorXd& residual, const Eigen::VectorXd& change) {
   double largest = 0;
-  for (const Comparison::Block& block : comparison.blocks())
+  for (const Comparison::Block& block : comparison.blocks()) {
+    if (block.is_parity) continue;
     largest = std::max(largest, std::sqrt(comparison.meanSquare(block, change)) /
                                     std::max(block.sigma, std::sqrt(comparison.meanSquare(block, residual))));
+  }
   return largest;
 }
 

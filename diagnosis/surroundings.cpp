@@ -30,7 +30,7 @@ void Search::addOwnColumns(Surroundings& around, std::vector<LinearModel::Column
   const Eigen::VectorXd predicted = screening_.measured() - base.residual;
   const FitProblem problem = causes_.problemOf(base, screening_, Fidelity::coarse);
   const Eigen::MatrixXd slopes = derivatives(screening_, problem, problem.start);
-  for (Eigen::Index k = 0; k < slopes.cols(); ++k) around.derivatives.push_back(slopes.col(k));
+  for (Eigen::Index k = 0; k < slopes.cols(); ++k) around.derivatives.push_back(std::make_shared<const Eigen::VectorXd>(slopes.col(k)));
   for (std::size_t m = 0; m < base.members.size(); ++m) {
     const Eigen::Index first = causes_.firstCoordinate(base, m);
     const int count = causes_.hypotheses[base.members[m]].coordinateCount();
@@ -159,8 +159,11 @@ std::vector<Sensitivity> Search::changesBeside(const Explanation& base, const st
   for (const std::size_t i : indices) others.push_back(causes_.hypotheses[i]);
   std::vector<Sensitivity> beside =
       changesOf(screening_, others, screening_.measured() - base.residual, causes_.modelOf(base), options_.job_count, on_simulation_);
-  std::vector<Sensitivity> all = catalogue_.sensitivities;
-  for (Sensitivity& sensitivity : all) std::ranges::fill(sensitivity.per_strength, Eigen::VectorXd());
+  std::vector<Sensitivity> all(causes_.hypotheses.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    all[i].per_strength.resize(catalogue_.sensitivities[i].per_strength.size());
+    all[i].from_threshold = catalogue_.sensitivities[i].from_threshold;
+  }
   for (std::size_t k = 0; k < indices.size(); ++k) all[indices[k]].per_strength = std::move(beside[k].per_strength);
   return all;
 }

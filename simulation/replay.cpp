@@ -203,7 +203,11 @@ ReplayResult replayRecording(const Recording& recording, const ReplayOptions& op
   result.simulated.info.description = info.description;
   result.simulated.info.trial = info.trial;
   const ReplayOptions::Watcher watcher = options.watch ? options.watch(simulation) : nullptr;
-  for (const auto& name : robot.signalNames()) result.simulated.signals.push_back({name, {}});
+  result.simulated.time_s.reserve(recording.time_s.size());
+  for (const auto& name : robot.signalNames()) {
+    result.simulated.signals.push_back({name, {}});
+    result.simulated.signals.back().values.reserve(recording.time_s.size());
+  }
   try {
     for (std::size_t row = 0; row < recording.time_s.size(); ++row) {
       State state = robot.getState();

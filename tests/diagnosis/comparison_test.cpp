@@ -358,15 +358,33 @@ TEST_F(PriorOnARig, KnownDerivativesAreUsedAndRenewedWhereAllowed) {
     return predicted(z);
   };
   const Eigen::VectorXd derivative = left(0) - left(1);
-  known.known_derivatives = {derivative};
+  known.known_derivatives = {std::make_shared<const Eigen::VectorXd>(derivative)};
   known.renewed_count = 0;
   known.narrow_differences = false;
   EXPECT_NEAR(fit(both, known, 1).z[0], 2, 0.05);
   EXPECT_EQ(predictions, 2) << "the start and one step";
-  known.known_derivatives = {-derivative};
+  known.known_derivatives = {std::make_shared<const Eigen::VectorXd>(-derivative)};
   EXPECT_EQ(fit(both, known, 8).z[0], 1) << "no step the wrong way is taken";
   known.renewed_count = -1;
   EXPECT_NEAR(fit(both, known, 8).z[0], 2, 0.05);
+}
+
+/// The prediction is linear in the coordinate, so that the first derivatives promise just what the fit can reach.
+TEST_F(PriorOnARig, AFitEndsAtOnceIfItsLeastCostIsTooLarge) {
+  const double least = fit(both, problem(0), 20).cost;
+  int predictions = 0;
+  FitProblem limited = problem(0);
+  const Predicted predicted = limited.predicted;
+  limited.predicted = [&](const Eigen::VectorXd& z) {
+    ++predictions;
+    return predicted(z);
+  };
+  limited.largest_cost = least + 0.1;
+  EXPECT_NEAR(fit(both, limited, 20).z[0], 2, 0.01);
+  limited.largest_cost = least - 0.1;
+  predictions = 0;
+  EXPECT_EQ(fit(both, limited, 20).z[0], 1) << "it stays at the start";
+  EXPECT_EQ(predictions, 2) << "the start and the derivative";
 }
 
 class LoadedRig : public Rig {
