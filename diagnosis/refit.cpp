@@ -161,9 +161,9 @@ void update(Eigen::MatrixXd& jacobian, const Point& from, const Point& to) {
   if (step.squaredNorm() > 0) jacobian += (from.residual - to.residual - jacobian * step) * step.transpose() / step.squaredNorm();
 }
 
-/// The least cost that the linear model about a point promises.
+/// The least cost that the linear model about a point promises, within the bounds of the coordinates.
 double promisedCost(const Comparison& comparison, const FitProblem& problem, const Point& at, const Eigen::MatrixXd& jacobian) {
-  constexpr double farthest = 3;  // times the size of a coordinate, 1 if that is larger
+  constexpr double farthest = 100;  // times the size of a coordinate, 1 if that is larger
   std::vector<LinearModel::Column> columns;
   std::vector<std::size_t> all;
   for (Eigen::Index k = 0; k < jacobian.cols(); ++k) {
@@ -204,8 +204,11 @@ FitResult fit(const Comparison& comparison, const FitProblem& problem, int round
   bool fresh = !is_known;
   double gained = is_known && problem.known_elsewhere ? std::numeric_limits<double>::infinity() : 0;  // since the derivatives
   double damping = 0.01;
+  bool is_hopeless = false;
   for (int round = 0; round < round_count && !comparison.plant().interrupted(); ++round) {
-    if (std::isfinite(problem.largest_cost) && promisedCost(comparison, problem, best, jacobian) > problem.largest_cost) break;
+    const bool was_hopeless = is_hopeless;
+    is_hopeless = std::isfinite(problem.largest_cost) && promisedCost(comparison, problem, best, jacobian) > problem.largest_cost;
+    if (is_hopeless && was_hopeless) break;
     const Point before = best;
     const bool down = stepDown(comparison, problem, jacobian, damping, best);
     const bool settled = best.cost > before.cost - problem.enough;

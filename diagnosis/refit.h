@@ -32,7 +32,7 @@ struct FitProblem {
   double still_valid = 0;
   bool known_elsewhere = true;     ///< the known derivatives are those of another place, so that still_valid does not hold for them
   bool narrow_differences = true;  ///< whether the last rounds use narrow differences
-  /// Nats: the fit ends as soon as the linear model about the place that it has reached promises no cost below this one.
+  /// Nats: the fit ends when the linear models about two places that it has reached, one after the other, promise no cost below this one.
   double largest_cost = std::numeric_limits<double>::infinity();
 };
 

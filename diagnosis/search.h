@@ -60,8 +60,8 @@ class Search {
 
  private:
   static constexpr std::size_t stand_in_count = 4;  ///< effects that are simulated and fitted in place of each member of a set
-  /// Nats that a linear model about the place that a fit has reached may promise too little. On four plants 47 fits ended above the best set,
-  /// or less than 4 nats behind it; two of them had been promised an end lower than that by more than this.
+  /// Nats that linear models about two places that a fit has reached, one after the other, may both promise too little. On two plants 51 fits
+  /// ended above the best set, or less than 4 nats behind it; all had been promised an end that was not lower than that by more than this.
   static constexpr double promise_error = 6;
 
   /// A set whose fit has not begun, and the linear estimate of what it will cost.
