@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "chance.h"
 #include "contribution.h"
@@ -90,10 +91,22 @@ class CauseDraw {
     return rmse;
   }
 
-  /// Measures what each cause contributes.
+  /// The motion under all causes; empty if they make no body together, as a load that is lifted off from one that is light already.
+  Truth::Motion motionOfAll() const {
+    try {
+      return plant_.truth.motion(lawsOf(plant_.causes));
+    } catch (const BadParameter&) {
+    } catch (const BadFile&) {
+    }
+    return {};
+  }
+
+  /// Measures what each cause contributes: nothing (NaN) if the plant cannot be simulated.
   void weigh() {
     const Truth& truth = plant_.truth;
-    plant_.motion = truth.motion(lawsOf(plant_.causes));
+    plant_.motion = motionOfAll();
+    for (PlantCause& one : plant_.causes) one.contribution_over_noise = std::numeric_limits<double>::quiet_NaN();
+    if (plant_.motion.empty()) return;
     const auto gap = overNoise(truth.rmse(truth.model(), plant_.motion));
     for (std::size_t i = 0; i < plant_.causes.size(); ++i) {
       PlantCause& one = plant_.causes[i];
@@ -130,7 +143,18 @@ class CauseDraw {
   RandomStream& random_;
 };
 
-/// Redraws while a finer time step alone makes more than half the noise: such a plant would have a gap that its cause does not explain.
+/// The truth of a plan with these numbers; nothing if they make no body: a heavy forearm with a small inertia.
+std::optional<Truth> truthOf(const Plan& plan, const NumberErrors& numbers, std::uint64_t seed) {
+  try {
+    return Truth(plan.recordings, plan.signals, plan.noise_std, seed, numbers.truth);
+  } catch (const BadParameter&) {
+  } catch (const BadFile&) {
+  }
+  return std::nullopt;
+}
+
+/// Redraws while a finer time step alone makes more than half the noise: such a plant would have a gap that its cause does not explain. Also
+/// redraws where the numbers make no body.
 Plant drawWithoutCauses(const PlantRequest& request, const Robot& robot, RandomStream& random) {
   constexpr double most_over_noise = 0.5;
   constexpr int most_draws = 20;
@@ -139,10 +163,11 @@ Plant drawWithoutCauses(const PlantRequest& request, const Robot& robot, RandomS
     NumberErrors numbers = drawNumbers(plan.recordings.front(), random);
     if (request.exact_numbers) numbers.truth = {}, numbers.scale = 0;
     const auto seed = static_cast<std::uint64_t>(random.uniform(0, 9e15));
-    Truth truth(plan.recordings, plan.signals, plan.noise_std, seed, numbers.truth);
-    const double gap_of_step = truth.gapOverNoise(truth.rmse(truth.model(), truth.nominalMotion({})));
+    std::optional<Truth> truth = truthOf(plan, numbers, seed);
+    if (!truth) continue;
+    const double gap_of_step = truth->gapOverNoise(truth->rmse(truth->model(), truth->nominalMotion({})));
     if (gap_of_step <= most_over_noise)
-      return {.plan = std::move(plan), .numbers = std::move(numbers), .truth = std::move(truth), .gap_of_step_over_noise = gap_of_step};
+      return {.plan = std::move(plan), .numbers = std::move(numbers), .truth = std::move(*truth), .gap_of_step_over_noise = gap_of_step};
   }
   throw BadParameter(request.name + ": excitations", fmt::format("{} draws", most_draws),
                      "include some in which the model agrees with itself at half its step; take another seed");
@@ -169,8 +194,9 @@ std::optional<Plant> drawPlant(const PlantRequest& request) {
   Plant plant = drawWithoutCauses(request, robot, random);
   if (!CauseDraw(request, robot, plant, random).draw()) return {};
   const Truth& truth = plant.truth;
-  if (!std::isfinite(truth.gapOverNoise(truth.rmse(truth.model(), plant.motion))))
-    throw BadParameter(request.name + ": causes", fmt::format("{}", plant.causes.size()), "not let the plant diverge; take another seed");
+  if (plant.motion.empty() || !std::isfinite(truth.gapOverNoise(truth.rmse(truth.model(), plant.motion))))
+    throw BadParameter(request.name + ": causes", fmt::format("{}", plant.causes.size()),
+                       "make a plant that can be simulated; take another seed");
   return plant;
 }
 
