@@ -138,6 +138,23 @@ TEST_F(Blind, CasesOfARobotFromAFileCanBeMoved) {
   EXPECT_NO_THROW(Simulation().build(recording.info.robot));
 }
 
+/// A forearm whose inertia about the hinge is smaller than that of its mass at its centre is no body. With this tolerance many draws
+/// make none.
+TEST_F(Blind, DrawsNumbersAgainThatMakeNoBody) {
+  const fs::path file = cases("own") / "vague_elbow.toml";
+  fs::create_directories(file.parent_path());
+  std::string text(std::ranges::find(shippedRobots(), "elbow", &ShippedRobot::name)->text);
+  const std::string of_inertia = "tolerance = 0.15";
+  ASSERT_NE(text.find(of_inertia), std::string::npos);
+  text.replace(text.find(of_inertia), of_inertia.size(), "tolerance = 1");
+  append(file, text);
+  MakeOptions options = tiny({"null"});
+  options.robots = {file.string()};
+  options.exact_numbers = false;
+  options.count = 8;
+  EXPECT_NO_THROW(make(cases(), keys(), options));
+}
+
 TEST_F(Blind, SealsAKeyThatTheRecordingsDoNotTell) {
   const fs::path key_file = make(cases(), keys(), tiny({"single"}));
   const nlohmann::json seal = readSeal(cases()), key = readObject(key_file);
