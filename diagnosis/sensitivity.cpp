@@ -14,7 +14,8 @@ namespace {
 
 constexpr double strong = 4;     ///< typical strengths at which a strength without response is tried again
 constexpr double nothing = 0.1;  ///< noise sigmas
-constexpr double late = 3;       ///< typical strengths at which delays and time constants are tried again
+constexpr double late = 3;       ///< typical strengths at which those are tried again whose response is not proportional
+constexpr double useless = 0.99;  ///< share of the misfit left, beyond which a sole strength is tried again at `late`
 
 /// A simulation whose result gives columns of one or more hypotheses.
 struct Probe {
@@ -325,13 +326,17 @@ void leaveOutIdle(const Comparison& comparison, Hypothesis& hypothesis, Sensitiv
   }
 }
 
-/// Probes of delays and time constants, whose response is not proportional to them.
-std::vector<Probe> lateProbes(const std::vector<Hypothesis>& hypotheses) {
+/// Probes of delays and time constants, whose response is not proportional to them, and of sole strengths that seem useless: a tilt about an
+/// axis in the plane of motion acts by its square, and a small one otherwise than the true one.
+std::vector<Probe> lateProbes(const std::vector<Hypothesis>& hypotheses, const std::vector<Sensitivity>& sensitivities, double misfit) {
   std::vector<Probe> result;
   for (std::size_t s = 0; s < hypotheses.size(); ++s)
     for (std::size_t k = 0; k < hypotheses[s].strengths().size(); ++k) {
       const int coordinate = hypotheses[s].strengths()[k];
-      if (hypotheses[s].info().stage == Stage::sensor || !hypotheses[s].isTime(coordinate)) continue;
+      const bool is_sole = hypotheses[s].strengths().size() == 1 && !sensitivities[s].from_threshold;
+      const bool is_useless = is_sole && sensitivities[s].misfit > useless * misfit;
+      if (hypotheses[s].info().stage == Stage::sensor) continue;
+      if (!hypotheses[s].isTime(coordinate) && !is_useless) continue;
       Eigen::VectorXd z = Eigen::VectorXd::Zero(hypotheses[s].coordinateCount());
       z[coordinate] = late;
       result.push_back({{{hypotheses[s].at(z)}, {}}, {{s, k, -1}}});
@@ -391,10 +396,10 @@ std::vector<Sensitivity> sensitivitiesOf(const Comparison& comparison, std::vect
   for (std::size_t s = 0; s < hypotheses.size(); ++s) leaveOutIdle(comparison, hypotheses[s], result[s]);
   constexpr int weakenings = 3;
   for (int i = 0; i < weakenings; ++i) probe(result, weakerProbes(comparison, hypotheses, result, residual), 1);
+  for (std::size_t s = 0; s < hypotheses.size(); ++s) fitLinearly(comparison, hypotheses[s], residual, result[s]);
   std::vector<Sensitivity> late_result = result;
-  probe(late_result, lateProbes(hypotheses), late);
+  probe(late_result, lateProbes(hypotheses, result, comparison.misfit(residual)), late);
   for (std::size_t s = 0; s < hypotheses.size(); ++s) {
-    fitLinearly(comparison, hypotheses[s], residual, result[s]);
     fitLinearly(comparison, hypotheses[s], residual, late_result[s]);
     if (late_result[s].misfit < result[s].misfit) result[s] = std::move(late_result[s]);
   }
