@@ -218,7 +218,7 @@ FitResult fit(const Comparison& comparison, const FitProblem& problem, int round
     if (settled) {
       if (fresh && problem.narrow_differences) difference = narrow;
       std::vector<SharedVector> kept(static_cast<std::size_t>(jacobian.cols()));
-      for (Eigen::Index k = problem.renewed_count; k >= 0 && k < jacobian.cols(); ++k) 
+      for (Eigen::Index k = problem.renewed_count; k >= 0 && k < jacobian.cols(); ++k)
         kept[static_cast<std::size_t>(k)] = std::make_shared<const Eigen::VectorXd>(jacobian.col(k));
       jacobian = derivatives(comparison, problem, best, difference, kept);
       gained = 0;

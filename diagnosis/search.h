@@ -60,16 +60,17 @@ class Search {
 
  private:
   static constexpr std::size_t stand_in_count = 4;  ///< effects that are simulated and fitted in place of each member of a set
-  /// Nats that linear models about two places that a fit has reached, one after the other, may both promise too little. On two plants 51 fits
-  /// ended above the best set, or less than 4 nats behind it; all had been promised an end that was not lower than that by more than this.
+  /// Nats that linear models about two places that a fit has reached, one after the other, may both promise too little. On two plants 51
+  /// fits ended above the best set, or less than 4 nats behind it; all had been promised an end that was not lower than that by more than
+  /// this.
   static constexpr double promise_error = 6;
 
   /// A set whose fit has not begun, and the linear estimate of what it will cost.
   struct Proposal {
     Explanation start;
-    double cost;                              ///< in nats, price included
+    double cost;                           ///< in nats, price included
     std::vector<SharedVector> known = {};  ///< FitProblem::known_derivatives
-    Explanation origin = {};                  ///< where the linear estimate was made: of the same members, those added without strength
+    Explanation origin = {};               ///< where the linear estimate was made: of the same members, those added without strength
   };
   /// A linear model about one explanation, and the meaning of its columns.
   struct Surroundings {

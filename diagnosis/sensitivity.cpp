@@ -12,9 +12,9 @@ namespace musclesim {
 
 namespace {
 
-constexpr double strong = 4;     ///< typical strengths at which a strength without response is tried again
-constexpr double nothing = 0.1;  ///< noise sigmas
-constexpr double late = 3;       ///< typical strengths at which those are tried again whose response is not proportional
+constexpr double strong = 4;      ///< typical strengths at which a strength without response is tried again
+constexpr double nothing = 0.1;   ///< noise sigmas
+constexpr double late = 3;        ///< typical strengths at which those are tried again whose response is not proportional
 constexpr double useless = 0.99;  ///< share of the misfit left, beyond which a sole strength is tried again at `late`
 
 /// A simulation whose result gives columns of one or more hypotheses.
@@ -326,8 +326,8 @@ void leaveOutIdle(const Comparison& comparison, Hypothesis& hypothesis, Sensitiv
   }
 }
 
-/// Probes of delays and time constants, whose response is not proportional to them, and of sole strengths that seem useless: a tilt about an
-/// axis in the plane of motion acts by its square, and a small one otherwise than the true one.
+/// Probes of delays and time constants, whose response is not proportional to them, and of sole strengths that seem useless: a tilt about
+/// an axis in the plane of motion acts by its square, and a small one otherwise than the true one.
 std::vector<Probe> lateProbes(const std::vector<Hypothesis>& hypotheses, const std::vector<Sensitivity>& sensitivities, double misfit) {
   std::vector<Probe> result;
   for (std::size_t s = 0; s < hypotheses.size(); ++s)

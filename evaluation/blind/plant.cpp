@@ -153,8 +153,8 @@ std::optional<Truth> truthOf(const Plan& plan, const NumberErrors& numbers, std:
   return std::nullopt;
 }
 
-/// Redraws while a finer time step alone makes more than half the noise: such a plant would have a gap that its cause does not explain. Also
-/// redraws where the numbers make no body.
+/// Redraws while a finer time step alone makes more than half the noise: such a plant would have a gap that its cause does not explain.
+/// Also redraws where the numbers make no body.
 Plant drawWithoutCauses(const PlantRequest& request, const Robot& robot, RandomStream& random) {
   constexpr double most_over_noise = 0.5;
   constexpr int most_draws = 20;
