@@ -10,7 +10,8 @@ namespace musclesim {
 
 namespace {
 
-constexpr double named = 0.5;  ///< least probability of none_of_these that makes the verdict `unexplained`
+constexpr double named = 0.5;  ///< probability above which an explanation, or none_of_these, is the answer
+constexpr double clearly = 2;  ///< nats by which an explanation must be ahead of a model without effects
 
 std::vector<std::string> labelsOf(const Model& model) {
   std::vector<std::string> labels;
@@ -31,7 +32,6 @@ void accept(const Attempt& attempt, Diagnosis& diagnosis) {
 /// Whether a model without effects explains the fitted data nearly as well: with its numbers within their tolerances, or with a refit of
 /// what is never measured, which pays for its numbers as an explanation pays for its parameters.
 bool numbersDoAsWell(const Search& search, const Eigen::VectorXd& refitted, double score) {
-  constexpr double clearly = 2;  // nats
   const Comparison& comparison = search.fitComparison();
   const auto number_count = static_cast<double>(comparison.plant().nominalParameters().size());
   const double of_refit = -comparison.misfit(refitted) - prices.parameters * number_count;
@@ -59,18 +59,19 @@ bool measureControls(const Search& search, const HeldOut& held_out, const Diagno
   return numbersDoAsWell(search, nominal.fitted, best.score);
 }
 
-/// What the tolerances of the model's numbers allow explains the gap better than any effect.
-Offer judgeNothing(const Search& search, const HeldOut& held_out, Diagnosis& diagnosis) {
-  const Explanation& numbers_only = search.nothing();
-  const Eigen::VectorXd predicted = held_out.comparison.predicted(search.modelOf(numbers_only));
+/// The model without effects, its numbers fitted, and what it leaves of the held-out rows: no rows if it diverges.
+Offer numbersAlone(const Search& search, const HeldOut& held_out) {
+  const Eigen::VectorXd predicted = held_out.comparison.predicted(search.modelOf(search.nothing()));
   if (!predicted.size()) return {};
-  const Eigen::VectorXd after = held_out.comparison.measured() - predicted;
+  return {search.nothing(), held_out.comparison.measured() - predicted};
+}
+
+void acceptNumbers(const Eigen::VectorXd& after, const HeldOut& held_out, bool are_all, Diagnosis& diagnosis) {
   diagnosis.after = held_out.comparison.gap(after);
   diagnosis.reduction_percent = diagnosis.reduction_low_percent = diagnosis.reduction_high_percent = held_out.reductionPercent(after);
-  if (!isWithinNoise(held_out.comparison, after)) return {numbers_only, after};
+  if (!are_all) return;
   diagnosis.verdict = Verdict::no_gap;
   diagnosis.notes.push_back("the gap is no larger than the tolerances of the model's numbers explain");
-  return {numbers_only, after};
 }
 
 }  // namespace
@@ -83,7 +84,13 @@ Offer judge(const Search& search, const HeldOut& held_out, const DiagnosisOption
             Diagnosis& diagnosis) {
   if (search.explanations().empty()) return {};
   const Explanation& best = search.explanations().front();
-  if (search.nothing().probability > best.probability) return judgeNothing(search, held_out, diagnosis);
+  const double ahead = best.score - search.nothing().score;
+  if (ahead < 0 || (ahead < clearly && best.probability <= named)) {
+    Offer numbers = numbersAlone(search, held_out);
+    const bool are_all = numbers.after.size() > 0 && isWithinNoise(held_out.comparison, numbers.after);
+    if (numbers.after.size() > 0 && (are_all || ahead < 0)) acceptNumbers(numbers.after, held_out, are_all, diagnosis);
+    if (are_all || ahead < 0) return numbers;
+  }
   const Model model = search.modelOf(best);
   const Eigen::VectorXd predicted = held_out.comparison.predicted(model);
   if (!predicted.size()) return {};

@@ -142,6 +142,21 @@ TEST(Diagnose, SaysNoGapWhereThereIsOnlyNoise) {
   EXPECT_TRUE(found.chosen.empty());
 }
 
+/// Forces 9 % weaker than the model's, 1.9 times the tolerance of their constant: some effects are a little likelier than none, but none of
+/// them much.
+TEST(Diagnose, SaysNoGapWhereTolerancesDoNearlyAsWellAsSeveralEffects) {
+  const std::vector<Recording> recordings = plant({{"force_gain", "muscle_0", {{"gain", 0.91}}}});
+  const Diagnosis found = diagnose(recordings, few({"payload", "external_force", "force_gain", "length_offset"}));
+  ASSERT_FALSE(found.effects.empty()) << diagnosisSummary(found);
+  EXPECT_LT(found.effects.front().probability, 0.5) << diagnosisSummary(found);
+  const auto none = std::ranges::find_if(found.explanations, [](const auto& one) { return one.effects.empty(); });
+  ASSERT_NE(none, found.explanations.end());
+  EXPECT_LT(none->probability, found.explanations[none == found.explanations.begin() ? 1 : 0].probability)
+      << "else the case is another one";
+  EXPECT_EQ(found.verdict, Verdict::no_gap) << diagnosisSummary(found);
+  EXPECT_TRUE(found.chosen.empty());
+}
+
 /// A load 3 % heavier than the model's: the robot's file says that it may be off by 2 %.
 TEST(Diagnose, SaysNoGapWhereTolerancesExplainIt) {
   const std::vector<Recording> recordings = plant({{"payload", "hand", {{"mass_kg", 0.06}}}});
