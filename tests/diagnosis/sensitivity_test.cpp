@@ -1,4 +1,4 @@
-// Sensitivities if the typical strength is far from the right one.
+// Sensitivities on a rig, also where the typical strength is far from the right one.
 #include "diagnosis/sensitivity.h"
 
 #include <gtest/gtest.h>
@@ -7,6 +7,7 @@
 
 #include "diagnosis/refit.h"
 #include "planted.h"
+#include "short_rig.h"
 
 namespace musclesim {
 namespace {
@@ -81,6 +82,90 @@ TEST(SensitivityRelinearised, EndsWhereTheEffectIsImpossible) {
   const Looked adapted({"sensor_bias", "signal_length_0", {{"offset", -120.0}}}, Looked::Strengths::adapted, "payload");
   EXPECT_LT(adapted.sensitivity.misfit, adapted.before());
   EXPECT_DOUBLE_EQ(adapted.sensitivity.amount[0], -5) << "more is asked for";
+}
+
+class LoadedRig : public planted::ShortRig {
+ protected:
+  LoadedRig() : ShortRig({{"payload", "hand", {{"mass_kg", 0.1}}}}, 0.05) {}
+};
+
+TEST_F(LoadedRig, FirstLookSeesThePayload) {
+  options.candidates = {"payload", "valve_lag"};
+  std::vector<Hypothesis> all = hypotheses(plant, options);
+  const Eigen::VectorXd nominal = both.predicted(Model{});
+  int simulations = 0;
+  const std::vector<Sensitivity> sensitivities = sensitivitiesOf(both, all, nominal, Model{}, 1, [&] { ++simulations; });
+  EXPECT_GT(simulations, 1);
+  const double before = both.misfit(both.measured() - nominal);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].info().id == "payload") {
+      EXPECT_LT(sensitivities[i].misfit, 0.4 * before);
+      const auto values = all[i].valuesAt(sensitivities[i].amount);
+      EXPECT_NEAR(values.front().second, 0.1, 0.03);
+    } else {
+      EXPECT_GT(sensitivities[i].misfit, 0.8 * before);
+    }
+  }
+}
+
+class SlightlyDampedRig : public planted::ShortRig {
+ protected:
+  SlightlyDampedRig() : ShortRig({{"viscous_loss", "muscle_0", {{"damping_Ns_per_m", damping}}}}, 0.05) {}
+  static constexpr double damping = 3;  // the first look begins at 245
+};
+
+TEST_F(SlightlyDampedRig, StrengthsThatDoTooMuchAreWeakened) {
+  options.candidates = {"viscous_loss"};
+  std::vector<Hypothesis> all = hypotheses(plant, options);
+  const Eigen::VectorXd nominal = both.predicted(Model{});
+  const double typical = all.front().valuesAt(all.front().typical()).front().second;
+  const std::vector<Sensitivity> sensitivities = sensitivitiesOf(both, all, nominal, Model{}, 1, [] {});
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(all.front().coordinateCount());
+  z[all.front().strengths().front()] = 1;
+  EXPECT_LT(all.front().valuesAt(z).front().second, 0.1 * typical);
+  z[all.front().strengths().front()] = sensitivities.front().amount[0];
+  EXPECT_NEAR(all.front().valuesAt(z).front().second, damping, 0.5 * damping);
+  EXPECT_LT(sensitivities.front().misfit, 0.6 * both.misfit(both.measured() - nominal));
+}
+
+class PushedRig : public planted::ShortRig {
+ protected:
+  PushedRig() : ShortRig({{"external_force", "hand", {{"force_y_N", -2.0}}}}, 0.05) {}
+};
+
+/// The load of the rig moves up and down only.
+TEST_F(PushedRig, StrengthsThatDoNothingAreLeftOut) {
+  options.candidates = {"external_force"};
+  std::vector<Hypothesis> all = hypotheses(plant, options);
+  ASSERT_EQ(all.front().coordinateCount(), 3);
+  const Eigen::VectorXd nominal = both.predicted(Model{});
+  const std::vector<Sensitivity> sensitivities = sensitivitiesOf(both, all, nominal, Model{}, 1, [] {});
+  ASSERT_EQ(all.front().coordinateCount(), 1);
+  EXPECT_EQ(sensitivities.front().per_strength.size(), 1U);
+  const auto values = all.front().valuesAt(sensitivities.front().amount);
+  ASSERT_EQ(values.size(), 1U);
+  EXPECT_EQ(values.front().first, "force_y_N");
+  EXPECT_NEAR(values.front().second, -2, 0.5);
+}
+
+class TiltedRig : public planted::ShortRig {
+ protected:
+  TiltedRig() : ShortRig({{"base_tilt", "base", {{"tilt_z_deg", 6.0}}}}, 0.05) {}
+};
+
+/// On the rig a tilt to the front and one to the side act alike, in either direction: one of them is kept, and it explains the gap.
+TEST_F(TiltedRig, OfStrengthsThatActAlikeOneIsLeft) {
+  options.candidates = {"base_tilt"};
+  std::vector<Hypothesis> all = hypotheses(plant, options), fresh = all;
+  const Eigen::VectorXd nominal = both.predicted(Model{});
+  const std::vector<Sensitivity> sensitivities = sensitivitiesOf(both, all, nominal, Model{}, 1, [] {});
+  ASSERT_EQ(all.front().coordinateCount(), 1);
+  const double before = both.misfit(both.measured() - nominal);
+  EXPECT_LT(sensitivities.front().misfit, 0.2 * before);
+  std::vector<Sensitivity> of_all = changesOf(both, fresh, nominal, Model{}, 1, [] {});
+  ASSERT_GT(of_all.front().per_strength.size(), 1U);
+  fitLinearly(both, fresh.front(), both.measured() - nominal, of_all.front());
+  EXPECT_LT(of_all.front().misfit, 0.2 * before) << "two that act alike do not drive each other against their bounds";
 }
 
 }  // namespace
