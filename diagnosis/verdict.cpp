@@ -84,7 +84,7 @@ Offer judge(const Search& search, const HeldOut& held_out, const DiagnosisOption
             Diagnosis& diagnosis) {
   if (search.explanations().empty()) return {};
   const Explanation& best = search.explanations().front();
-  const double ahead = best.score - search.nothing().score;
+  const double ahead = std::log(best.probability / search.nothing().probability);  // nats
   if (ahead < 0 || (ahead < clearly && best.probability <= named)) {
     Offer numbers = numbersAlone(search, held_out);
     const bool are_all = numbers.after.size() > 0 && isWithinNoise(held_out.comparison, numbers.after);
