@@ -59,13 +59,14 @@ bool measureControls(const Search& search, const HeldOut& held_out, const Diagno
   return numbersDoAsWell(search, nominal.fitted, best.score);
 }
 
-/// The model without effects, its numbers fitted, and what it leaves of the held-out rows: no rows if it diverges.
+/// Offers the model without effects, with its numbers fitted, and its residual on the held-out rows. Offers nothing if it diverges.
 Offer numbersAlone(const Search& search, const HeldOut& held_out) {
   const Eigen::VectorXd predicted = held_out.comparison.predicted(search.modelOf(search.nothing()));
   if (!predicted.size()) return {};
   return {search.nothing(), held_out.comparison.measured() - predicted};
 }
 
+/// Reports the gap with fitted numbers; `are_all` says that it is noise, so that the verdict is `no_gap`.
 void acceptNumbers(const Eigen::VectorXd& after, const HeldOut& held_out, bool are_all, Diagnosis& diagnosis) {
   diagnosis.after = held_out.comparison.gap(after);
   diagnosis.reduction_percent = diagnosis.reduction_low_percent = diagnosis.reduction_high_percent = held_out.reductionPercent(after);
@@ -88,8 +89,10 @@ Offer judge(const Search& search, const HeldOut& held_out, const DiagnosisOption
   if (ahead < 0 || (ahead < clearly && best.probability <= named)) {
     Offer numbers = numbersAlone(search, held_out);
     const bool are_all = numbers.after.size() > 0 && isWithinNoise(held_out.comparison, numbers.after);
-    if (numbers.after.size() > 0 && (are_all || ahead < 0)) acceptNumbers(numbers.after, held_out, are_all, diagnosis);
-    if (are_all || ahead < 0) return numbers;
+    if (are_all || ahead < 0) {
+      if (numbers.after.size() > 0) acceptNumbers(numbers.after, held_out, are_all, diagnosis);
+      return numbers;
+    }
   }
   const Model model = search.modelOf(best);
   const Eigen::VectorXd predicted = held_out.comparison.predicted(model);

@@ -41,7 +41,7 @@ print('An independent program made recordings of plants with two to four causes.
       'flattering.** [Withheld causes](blind.md) and [earlier checks](blind_history.md) have unseen ones. A cause is found if it, or one that the '
       f'measured signals cannot separate from it by the key, has a probability above {BELIEVED}; any other effect above it is wrong. A set is full '
       'if all its causes are found and none is wrong. *Left*: share of the gap on the recording that was held out.\n')
-print(f'{found_count} of {cause_count} causes are found, {wrong_count} wrong ones are named, {sum(j.is_full for j in judged.values())} of '
+print(f'{found_count} of {cause_count} causes are found; {wrong_count} wrong {"one is" if wrong_count == 1 else "ones are"} named; {sum(j.is_full for j in judged.values())} of '
       f'{len(judged)} sets are full.' + ('' if len(judged) == len(keys) else f' Not diagnosed: {", ".join(sorted(set(keys) - set(judged)))}.') + '\n')
 print('| case | robot | true causes, noise floors that each makes | found | wrong | probability of the causes | verdict | left | simulations | s, one core |')
 print('|---' * 10 + '|')

@@ -145,10 +145,9 @@ TEST(Diagnose, SaysNoGapWhereThereIsOnlyNoise) {
 /// Forces 9 % weaker than the model's, 1.9 times the tolerance of their constant: some effects are a little likelier than none, but none of
 /// them much.
 TEST(Diagnose, SaysNoGapWhereTolerancesDoNearlyAsWellAsSeveralEffects) {
-  const std::vector<Recording> recordings = plant({{"force_gain", "muscle_0", {{"gain", 0.91}}}});
-  const Diagnosis found = diagnose(recordings, few({"payload", "external_force", "force_gain", "length_offset"}));
-  ASSERT_FALSE(found.effects.empty()) << diagnosisSummary(found);
-  EXPECT_LT(found.effects.front().probability, 0.5) << diagnosisSummary(found);
+  const Diagnosis found =
+      diagnose(plant({{"force_gain", "muscle_0", {{"gain", 0.91}}}}), few({"payload", "external_force", "force_gain", "length_offset"}));
+  for (const FoundEffect& effect : found.effects) EXPECT_LT(effect.probability, 0.5) << effect.label();
   const auto none = std::ranges::find_if(found.explanations, [](const auto& one) { return one.effects.empty(); });
   ASSERT_NE(none, found.explanations.end());
   EXPECT_LT(none->probability, found.explanations[none == found.explanations.begin() ? 1 : 0].probability)
