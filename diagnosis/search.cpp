@@ -17,10 +17,13 @@ namespace {
 constexpr std::size_t single_count = 9;                    ///< single effects that are fitted
 constexpr std::size_t per_stage_count = 2;                 ///< and at least so many of every stage
 constexpr std::size_t beam_width = 5;                      ///< sets of each size that the linear search keeps
-constexpr std::size_t addition_count = 3, swap_count = 4;  ///< sets that are fitted about one explanation, besides one of each stage
+constexpr std::size_t addition_count = 3, drop_count = 4;  ///< sets that are fitted about one explanation, besides one of each stage
+constexpr std::size_t wide_count = 4;  ///< sets of one size of which widened forms are fitted, and so many forms of each
 constexpr std::size_t base_counts[] = {3, 2, 2, 1, 1, 1};  ///< explanations of each size that are extended
-constexpr std::size_t stood_in_count = 6;                  ///< best sets whose members are replaced by stand_in_count effects each
-constexpr std::size_t pair_count = 2;                      ///< pairs of effects that are fitted in place of each of these members
+constexpr std::size_t stood_in_count = 4;                  ///< best sets of whose members each is replaced
+constexpr std::size_t stand_in_count = 4, pair_count = 2;  ///< by so many single effects, and by so many pairs,
+constexpr int stand_in_variants = 2;                       ///< in so many variants
+constexpr int most_stood_in = 12;                          ///< sets in all, while better ones come up
 constexpr std::size_t pair_base_count = 8;                 ///< effects that do best alone, one of which every such pair has
 constexpr double hopeless = 4;                             ///< nats behind the best: sets of this size are not extended any more
 constexpr int screening_rounds = 4;
@@ -135,30 +138,14 @@ std::vector<Search::Proposal> Search::additions(const Surroundings& around) cons
   return result;
 }
 
-/// Each other effect in place of one member.
-std::vector<Search::Proposal> Search::swapsOf(std::size_t member, const Surroundings& around) const {
-  std::vector<Proposal> result;
-  for (std::size_t i = 0; i < around.of_hypothesis.size(); ++i)
-    if (!around.of_hypothesis[i].empty()) result.push_back(proposed(around, allBut(member, around.base.members.size()), {i}));
-  return result;
-}
-
-std::vector<Search::Proposal> Search::swaps(const Surroundings& around) const {
-  std::vector<Proposal> result;
+/// Two further effects: one often takes in what two make, so that neither lowers the cost alone. Pairs are formed of the effects that cost
+/// least if added alone (pair_base_count) with any other.
+std::vector<Search::Proposal> Search::pairs(const Surroundings& around) const {
   const std::size_t count = around.base.members.size();
-  for (std::size_t m = 0; m < count && count > 1; ++m) std::ranges::move(swapsOf(m, around), std::back_inserter(result));
-  return result;
-}
-
-/// Two other effects in place of one member, or beside all members if `member` is their number: one effect often takes in what two make.
-/// Pairs are formed of the effects that cost least there if added alone (pair_base_count) with any other.
-std::vector<Search::Proposal> Search::pairsInPlaceOf(std::size_t member, const Surroundings& around) const {
-  const std::size_t count = around.base.members.size();
-  const std::vector<std::size_t> kept = allBut(member, count);
-  if (static_cast<int>(kept.size()) + 2 > options_.max_effects) return {};
+  if (static_cast<int>(count) + 2 > options_.max_effects) return {};
   std::vector<std::size_t> order;
   std::set<std::string> labels;
-  for (const std::size_t index : nearestBeside(around, kept))
+  for (const std::size_t index : nearestBeside(around, allBut(count, count)))
     if (labels.insert(causes_.hypotheses[index].label()).second) order.push_back(index);
   std::vector<std::vector<std::size_t>> pairs;
   for (std::size_t i = 0; i < std::min(pair_base_count, order.size()); ++i)
@@ -167,7 +154,7 @@ std::vector<Search::Proposal> Search::pairsInPlaceOf(std::size_t member, const S
   std::vector<Proposal> result(pairs.size());
   parallelFor(static_cast<int>(pairs.size()), options_.job_count, [&](int i) {
     const auto index = static_cast<std::size_t>(i);
-    result[index] = proposed(around, kept, pairs[index]);
+    result[index] = proposed(around, allBut(count, count), pairs[index]);
   });
   return result;
 }
@@ -280,42 +267,39 @@ void Search::expand(const Explanation& base) {
   std::vector<Proposal> proposals = nearestOfStages(additions(around), addition_count, 1, 1);
   for (std::size_t i = 0, count = proposals.size(); i < count; ++i)
     if (std::optional<Proposal> simple = withoutFurtherMechanisms(proposals[i])) proposals.push_back(std::move(*simple));
-  std::ranges::move(nearest(swaps(around), swap_count), std::back_inserter(proposals));
-  std::ranges::move(nearest(drops(around), swap_count), std::back_inserter(proposals));
+  std::ranges::move(nearest(drops(around), drop_count), std::back_inserter(proposals));
   fitOnScreening(std::move(proposals));
 }
 
-/// Whether two effects act on the same place at the same stage. Kin resemble each other most, but a linear estimate, which takes the other
-/// members' large changes as proportional, may put any of them last.
-bool Search::areKin(std::size_t hypothesis, std::size_t member) const {
-  const Hypothesis &one = causes_.hypotheses[hypothesis], &other = causes_.hypotheses[member];
-  return one.info().stage == other.info().stage && one.component() == other.component() && one.label() != other.label();
+/// The effects that explain best, alone or as a pair, what a set cannot: the whole catalogue is simulated beside it. Every set is tried
+/// once.
+std::vector<Search::Proposal> Search::standIns(Explanation kept) {
+  if (kept.members.empty() || !stood_in_.insert(causes_.labelsOf(kept.members)).second || plant_.interrupted()) return {};
+  const Eigen::VectorXd predicted = screening_.predicted(causes_.modelOf(kept));
+  on_simulation_();
+  if (predicted.size() != screening_.size()) return {};
+  kept.residual = screening_.measured() - predicted;
+  const Surroundings around = surroundingsOf(kept, changesBeside(kept, screenedBeside(kept)));
+  std::vector<Proposal> result = nearest(additions(around), stand_in_count, stand_in_variants);
+  std::ranges::move(nearest(pairs(around), pair_count), std::back_inserter(result));
+  return result;
 }
 
-/// Tries the nearest stand-ins of every member of the best sets, and their widened forms. The best swaps of all members are mostly those of
-/// one, weaker member.
+/// Tries stand-ins of every member of the best sets, what is missing beside all members, and the sets' widened forms. A swap that is
+/// estimated where the member acts takes the change that the stand-in makes there as proportional, up to all that the member explains;
+/// friction beside friction, for one, is far from that. So the member is taken away first.
 void Search::tryStandIns() {
-  for (std::size_t count = 0; count < stood_in_count && !plant_.interrupted(); ++count) {
-    const std::vector<std::size_t> order = bestOnScreening(0, pool_.size());
-    const auto next = std::ranges::find_if(order, [&](std::size_t i) { return !stood_in_.contains(causes_.labelsOf(pool_[i].members)); });
+  std::set<std::set<std::string>> done;
+  for (int count = 0; count < most_stood_in && !plant_.interrupted(); ++count) {
+    const std::vector<std::size_t> order = bestOnScreening(0, stood_in_count);
+    const auto next = std::ranges::find_if(order, [&](std::size_t i) { return !done.contains(causes_.labelsOf(pool_[i].members)); });
     if (next == order.end() || pool_[*next].score < pool_[order.front()].score - hopeless) return;
     const Explanation base = pool_[*next];  // the pool grows below
-    stood_in_.insert(causes_.labelsOf(base.members));
-    const Surroundings around = surroundingsOf(base, {}, Kin::with);
-    std::vector<Proposal> proposals;
-    for (std::size_t m = 0; m < base.members.size(); ++m) {
-      const std::vector<Proposal> all = swapsOf(m, around);
-      std::vector<Proposal> kin;
-      std::ranges::copy_if(all, std::back_inserter(kin),
-                           [&](const Proposal& one) { return areKin(one.start.members.back(), base.members[m]); });
-      std::ranges::move(nearest(all, stand_in_count), std::back_inserter(proposals));
-      for (Proposal& one : nearest(std::move(kin), all.size()))
-        if (std::ranges::none_of(proposals, [&](const Proposal& other) { return other.start.members == one.start.members; }))
-          proposals.push_back(std::move(one));
-    }
-    for (std::size_t m = 0; m <= base.members.size(); ++m)
-      std::ranges::move(nearest(pairsInPlaceOf(m, around), pair_count), std::back_inserter(proposals));
-    std::ranges::move(nearest(widened(base), swap_count, 2), std::back_inserter(proposals));
+    done.insert(causes_.labelsOf(base.members));
+    std::vector<Proposal> proposals = standIns(base);
+    for (std::size_t m = 0; m < base.members.size(); ++m)
+      std::ranges::move(standIns(causes_.without(base, m)), std::back_inserter(proposals));
+    std::ranges::move(nearest(widened(base), wide_count, 2), std::back_inserter(proposals));
     fitOnScreening(std::move(proposals));
   }
 }
@@ -372,20 +356,18 @@ Explanation Search::earlierFinding() const {
   return result;
 }
 
-/// Widens and expands the best explanations of each size, from one effect on, and in the end expands the best of all.
+/// Widens and expands the best explanations of each size, from one effect on.
 void Search::extendBySize() {
   for (int size = 1; size <= options_.max_effects && !plant_.interrupted(); ++size) {
     const auto of_size = static_cast<std::size_t>(size);
     std::vector<Proposal> wide;
-    for (const std::size_t index : bestOnScreening(of_size, swap_count))
-      std::ranges::move(nearest(widened(pool_[index]), swap_count, 2), std::back_inserter(wide));
+    for (const std::size_t index : bestOnScreening(of_size, wide_count))
+      std::ranges::move(nearest(widened(pool_[index]), wide_count, 2), std::back_inserter(wide));
     fitOnScreening(std::move(wide));
     const std::vector<std::size_t> best = bestOnScreening(0, 1), bases = unlikeOnScreening(of_size, base_counts[of_size - 1]);
     for (const std::size_t index : bases)
       if (size == 1 || pool_[index].score > pool_[best.front()].score - hopeless) expand(pool_[index]);
   }
-  for (int further = 0; further < 2 && !plant_.interrupted(); ++further)
-    for (const std::size_t index : bestOnScreening(0, 1)) expand(pool_[index]);
 }
 
 /// Whether an effect changes a signal in focus by a noticeable part of its noise.

@@ -59,7 +59,6 @@ class Search {
   Rival rival(const Explanation& explanation, const std::string& label) const;
 
  private:
-  static constexpr std::size_t stand_in_count = 4;  ///< effects that are simulated and fitted in place of each member of a set
   /// Nats that linear models about two places that a fit has reached, one after the other, may both promise too little. On two plants 51
   /// fits ended above the best set, or less than 4 nats behind it; all had been promised an end that was not lower than that by more than
   /// this.
@@ -93,16 +92,14 @@ class Search {
   void checkExcitation(const std::vector<Hypothesis>& typical);
 
   // surroundings.cpp
-  enum class Kin { without, with };  ///< whether the kin of members are simulated beside a base
-  Surroundings surroundingsOf(const Explanation& base, std::optional<std::vector<Sensitivity>> sensitivities = {},
-                              Kin kin = Kin::without) const;
-  bool areKin(std::size_t hypothesis, std::size_t member) const;
+  Surroundings surroundingsOf(const Explanation& base, std::optional<std::vector<Sensitivity>> sensitivities = {}) const;
+  std::vector<std::size_t> screenedBeside(const Explanation& base) const;
   std::vector<Surroundings> surroundingsOfNothing() const;
   const Surroundings& aboutNothingNear(const Explanation& base) const;
   void addOwnColumns(Surroundings& around, std::vector<LinearModel::Column>& columns) const;
   void addOtherColumns(Surroundings& around, std::vector<LinearModel::Column>& columns) const;
   std::vector<std::size_t> nearestBeside(const Surroundings& around, const std::vector<std::size_t>& kept) const;
-  std::vector<std::size_t> worthSimulatingBeside(Surroundings around, std::vector<LinearModel::Column> columns, Kin kin) const;
+  std::vector<std::size_t> worthSimulatingBeside(Surroundings around, std::vector<LinearModel::Column> columns) const;
   std::vector<Sensitivity> changesBeside(const Explanation& base, const std::vector<std::size_t>& indices) const;
   Proposal proposed(const Surroundings& around, const std::vector<std::size_t>& kept, const std::vector<std::size_t>& added) const;
 
@@ -115,9 +112,7 @@ class Search {
   std::vector<Proposal> singleEffects(const Surroundings& around) const;
   std::vector<Proposal> largerSets(const Surroundings& around) const;
   std::vector<Proposal> additions(const Surroundings& around) const;
-  std::vector<Proposal> swapsOf(std::size_t member, const Surroundings& around) const;
-  std::vector<Proposal> pairsInPlaceOf(std::size_t member, const Surroundings& around) const;
-  std::vector<Proposal> swaps(const Surroundings& around) const;
+  std::vector<Proposal> pairs(const Surroundings& around) const;
   std::vector<Proposal> drops(const Surroundings& around) const;
   std::optional<Proposal> withoutFurtherMechanisms(const Proposal& proposal) const;
   std::vector<Proposal> widened(const Explanation& base) const;
@@ -127,6 +122,7 @@ class Search {
   std::vector<std::size_t> bestOnScreening(std::size_t member_count, std::size_t count) const;
   std::vector<std::size_t> unlikeOnScreening(std::size_t member_count, std::size_t count) const;
   void extendBySize();
+  std::vector<Proposal> standIns(Explanation kept);
   void tryStandIns();
   bool changesFocus(std::size_t hypothesis) const;
   std::vector<Explanation> explainPressures();
@@ -147,6 +143,8 @@ class Search {
   std::vector<Explanation> otherStrengths(const Explanation& explanation) const;
   void tryOtherStrengths();
   void tryVariants();
+  Explanation likeAnother(const Explanation& one, const Explanation& other) const;
+  void tryLikeTheBest();
   void tryWithoutOne();
   void keepIfBetter(Explanation one);
   void polish();

@@ -70,11 +70,11 @@ void Search::addOtherColumns(Surroundings& around, std::vector<LinearModel::Colu
 }
 
 /// Simulates every change of the base itself, and of the hypotheses beside it those worth it, unless their sensitivities are given.
-Search::Surroundings Search::surroundingsOf(const Explanation& base, std::optional<std::vector<Sensitivity>> sensitivities, Kin kin) const {
+Search::Surroundings Search::surroundingsOf(const Explanation& base, std::optional<std::vector<Sensitivity>> sensitivities) const {
   Surroundings around{base, {}, {}, {}, {}, {}, {}, {}};
   std::vector<LinearModel::Column> columns;
   addOwnColumns(around, columns);
-  around.sensitivities = sensitivities ? std::move(*sensitivities) : changesBeside(base, worthSimulatingBeside(around, columns, kin));
+  around.sensitivities = sensitivities ? std::move(*sensitivities) : changesBeside(base, worthSimulatingBeside(around, columns));
   addOtherColumns(around, columns);
   around.model.emplace(screening_, base.residual, std::move(columns));
   return around;
@@ -92,10 +92,16 @@ std::vector<Search::Surroundings> Search::surroundingsOfNothing() const {
   on_simulation_();
   if (predicted.size() != screening_.size() || plant_.interrupted()) return result;
   as_given.residual = screening_.measured() - predicted;
-  std::vector<std::size_t> screened;
+  result.push_back(surroundingsOf(as_given, changesBeside(as_given, screenedBeside(as_given))));
+  return result;
+}
+
+/// All screened hypotheses that may act beside the base.
+std::vector<std::size_t> Search::screenedBeside(const Explanation& base) const {
+  const auto is_known = [&](const Eigen::VectorXd& change) { return change.size() == screening_.size(); };
+  std::vector<std::size_t> result;
   for (std::size_t i = 0; i < causes_.hypotheses.size(); ++i)
-    if (!result.front().of_hypothesis[i].empty()) screened.push_back(i);
-  result.push_back(surroundingsOf(as_given, changesBeside(as_given, screened)));
+    if (fitsBeside(i, base.members) && std::ranges::all_of(catalogue_.sensitivities[i].per_strength, is_known)) result.push_back(i);
   return result;
 }
 
@@ -120,11 +126,10 @@ std::vector<std::size_t> Search::nearestBeside(const Surroundings& around, const
   return order;
 }
 
-/// Chooses the hypotheses that are simulated beside the base. Those are the ones that lower the cost most if they are added (the nearest
-/// variant of each label), some of each stage, and for each member the ones that cost least if they replace it. A hypothesis that acts like
-/// a member lowers the cost by next to nothing if it is added, so it can only come in as a replacement. `around` and `columns` hold the
-/// base's own columns; what each hypothesis changes is taken from simulations without effects. With `kin`, also the kin of every member.
-std::vector<std::size_t> Search::worthSimulatingBeside(Surroundings around, std::vector<LinearModel::Column> columns, Kin kin) const {
+/// Chooses the hypotheses that are simulated beside the base: the ones that lower the cost most if they are added (the nearest variant of
+/// each label), and some of each stage. `around` and `columns` hold the base's own columns; what each hypothesis changes is taken from
+/// simulations without effects.
+std::vector<std::size_t> Search::worthSimulatingBeside(Surroundings around, std::vector<LinearModel::Column> columns) const {
   around.sensitivities = aboutNothingNear(around.base).sensitivities;
   addOtherColumns(around, columns);
   around.model.emplace(screening_, around.base.residual, std::move(columns));
@@ -139,16 +144,6 @@ std::vector<std::size_t> Search::worthSimulatingBeside(Surroundings around, std:
     labels.insert(hypothesis.label());
     ++of_stage;
     result.push_back(index);
-  }
-  for (std::size_t m = 0; m < member_count; ++m) {
-    std::set<std::string> stand_ins;
-    for (const std::size_t index : nearestBeside(around, allBut(m, member_count))) {
-      const std::string label = causes_.hypotheses[index].label();
-      const bool is_kin = kin == Kin::with && areKin(index, around.base.members[m]);
-      if (stand_ins.size() >= stand_in_count && !is_kin) continue;
-      if (!stand_ins.insert(label).second || !labels.insert(label).second) continue;
-      result.push_back(index);
-    }
   }
   return result;
 }

@@ -115,8 +115,9 @@ TEST(Parity, IsAChannelOfItsOwn) {
   EXPECT_NEAR(of_parity, as_recordings * 4, 1e-9);
   const Eigen::VectorXd residual = comparison.measured() - comparison.predicted(Model{});
   for (const Comparison::Block& block : comparison.blocks())
-    if (block.is_parity && block.averaged_rows == 0 && plant.signals()[static_cast<std::size_t>(block.signal)].name == "angle_elbow_deg")
+    if (block.is_parity && block.averaged_rows == 0 && plant.signals()[static_cast<std::size_t>(block.signal)].name == "angle_elbow_deg") {
       EXPECT_GT(std::sqrt(comparison.meanSquare(block, residual)), 4 * block.sigma);
+    }
   EXPECT_EQ(comparison.gap(residual).per_signal.size(), names.size()) << "the gap is that of the signals as recorded";
 }
 

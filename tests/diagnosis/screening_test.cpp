@@ -77,8 +77,9 @@ TEST_F(ScreeningOfHypotheses, OfManyMusclesKeepsTheNearestAndEveryEffect) {
   for (std::size_t i = 0; i < screening.hypotheses.size(); ++i) {
     if (screening.sensitivities[i].misfit < screening.sensitivities[best].misfit) best = i;
     all_effects.insert(screening.hypotheses[i].info().id);
-    if (screening.hypotheses[i].component() == "all")
+    if (screening.hypotheses[i].component() == "all") {
       EXPECT_TRUE(wasScreened(screening.sensitivities[i])) << screening.hypotheses[i].label();
+    }
     if (!wasScreened(screening.sensitivities[i])) continue;
     ++count;
     effects.insert(screening.hypotheses[i].info().id);
