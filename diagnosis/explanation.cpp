@@ -63,6 +63,24 @@ Explanation Causes::without(const Explanation& explanation, std::size_t member) 
   return result;
 }
 
+Explanation Causes::takingOver(const Explanation& explanation, const Explanation& other) const {
+  Explanation result;
+  std::vector<double> z;
+  for (std::size_t m = 0; m < explanation.members.size(); ++m) {
+    const std::string label = hypotheses[explanation.members[m]].label();
+    const auto same = std::ranges::find_if(other.members, [&](std::size_t i) { return hypotheses[i].label() == label; });
+    const bool is_shared = same != other.members.end();
+    const Explanation& from = is_shared ? other : explanation;
+    const std::size_t position = is_shared ? static_cast<std::size_t>(same - other.members.begin()) : m;
+    result.members.push_back(from.members[position]);
+    const Eigen::VectorXd own = from.z.segment(firstCoordinate(from, position), hypotheses[result.members.back()].coordinateCount());
+    z.insert(z.end(), own.begin(), own.end());
+  }
+  result.z = Eigen::Map<const Eigen::VectorXd>(z.data(), static_cast<Eigen::Index>(z.size()));
+  result.numbers = other.numbers;
+  return result;
+}
+
 Eigen::VectorXd Causes::clamped(const std::vector<std::size_t>& members, const Eigen::VectorXd& z) const {
   Eigen::VectorXd result = z;
   Eigen::Index first = 0;

@@ -51,6 +51,9 @@ class Causes {
   Eigen::Index firstCoordinate(const Explanation& explanation, std::size_t member) const;
   /// The explanation without one of its members, the others unchanged.
   Explanation without(const Explanation& explanation, std::size_t member) const;
+  /// The explanation, not fitted yet, with what another one has: the numbers of the model, and the variants and coordinates of the effects
+  /// that both have.
+  Explanation takingOver(const Explanation& explanation, const Explanation& other) const;
   Eigen::VectorXd clamped(const std::vector<std::size_t>& members, const Eigen::VectorXd& z) const;
   /// The fit of all coordinates and numbers to a comparison. References must outlive the problem.
   FitProblem problemOf(const Explanation& explanation, const Comparison& comparison, Fidelity fidelity) const;

@@ -170,27 +170,6 @@ void Search::tryVariants() {
   }
 }
 
-/// An explanation with the variants, the coordinates and the numbers that another one has for the effects that both have.
-Explanation Search::likeAnother(const Explanation& one, const Explanation& other) const {
-  Explanation result = one;
-  std::vector<double> z;
-  for (std::size_t m = 0; m < one.members.size(); ++m) {
-    const std::string label = causes_.hypotheses[one.members[m]].label();
-    const auto same = std::ranges::find_if(other.members, [&](std::size_t i) { return causes_.hypotheses[i].label() == label; });
-    const bool is_shared = same != other.members.end();
-    const Explanation& from = is_shared ? other : one;
-    const std::size_t position = is_shared ? static_cast<std::size_t>(same - other.members.begin()) : m;
-    result.members[m] = from.members[position];
-    const Eigen::VectorXd own =
-        from.z.segment(causes_.firstCoordinate(from, position), causes_.hypotheses[result.members[m]].coordinateCount());
-    z.insert(z.end(), own.begin(), own.end());
-  }
-  result.z = Eigen::Map<const Eigen::VectorXd>(z.data(), static_cast<Eigen::Index>(z.size()));
-  result.numbers = other.numbers;
-  setCertainty(result, {});
-  return result;
-}
-
 /// Fits the explanations near the best from where the best ended, for all that they share with it. Fits that end in different minima of
 /// the effects which both have say nothing about the effects in which they differ.
 void Search::tryLikeTheBest() {
@@ -202,7 +181,7 @@ void Search::tryLikeTheBest() {
     if (!explanations_[rank].members.empty()) ranks.push_back(rank);
   parallelFor(static_cast<int>(ranks.size()), options_.job_count, [&](int i) {
     Explanation& one = explanations_[ranks[static_cast<std::size_t>(i)]];
-    Explanation other = likeAnother(one, best);
+    Explanation other = causes_.takingOver(one, best);
     if (plant_.interrupted()) return;
     fitRoughly(other, one.score - worth_polishing);
     if (other.residual.size() != fit_.size() || other.score < one.score - worth_polishing) return;

@@ -274,7 +274,8 @@ void Search::expand(const Explanation& base) {
 /// The effects that explain best, alone or as a pair, what a set cannot: the whole catalogue is simulated beside it. Every set is tried
 /// once.
 std::vector<Search::Proposal> Search::standIns(Explanation kept) {
-  if (kept.members.empty() || !stood_in_.insert(causes_.labelsOf(kept.members)).second || plant_.interrupted()) return {};
+  const bool can_grow = !kept.members.empty() && static_cast<int>(kept.members.size()) < options_.max_effects;
+  if (!can_grow || plant_.interrupted() || !stood_in_.insert(causes_.labelsOf(kept.members)).second) return {};
   const Eigen::VectorXd predicted = screening_.predicted(causes_.modelOf(kept));
   on_simulation_();
   if (predicted.size() != screening_.size()) return {};

@@ -143,7 +143,6 @@ class Search {
   std::vector<Explanation> otherStrengths(const Explanation& explanation) const;
   void tryOtherStrengths();
   void tryVariants();
-  Explanation likeAnother(const Explanation& one, const Explanation& other) const;
   void tryLikeTheBest();
   void tryWithoutOne();
   void keepIfBetter(Explanation one);

@@ -59,6 +59,26 @@ TEST_F(CausesOnARig, ClashOnOverlappingPlacesOnly) {
   EXPECT_FALSE(causes_.clash(payload, leak_of_all));
 }
 
+TEST_F(CausesOnARig, TakeOverWhatTheyShareWithOthersInItsVariant) {
+  const std::size_t other_leak = causes_.hypotheses.size();
+  causes_.hypotheses.emplace_back(effectInfo("leak"), "muscle_0", plant_);
+  const Eigen::Index of_leak = causes_.hypotheses[leak].coordinateCount();
+  Explanation other;
+  other.members = {payload, other_leak};
+  other.z = Eigen::VectorXd::LinSpaced(1 + of_leak, 0.6, 0.9);
+  other.numbers = Eigen::VectorXd::Constant(plant_.numberCount(), 0.2);
+  Explanation one;
+  one.members = {leak, threshold};
+  one.z = Eigen::VectorXd::LinSpaced(of_leak + 2, 0.1, 0.3);
+  one.numbers = Eigen::VectorXd::Zero(plant_.numberCount());
+  const Explanation result = causes_.takingOver(one, other);
+  EXPECT_EQ(result.members, (std::vector<std::size_t>{other_leak, threshold}));
+  ASSERT_EQ(result.z.size(), one.z.size());
+  EXPECT_EQ(result.z.head(of_leak), other.z.tail(of_leak));
+  EXPECT_EQ(result.z.tail(2), one.z.tail(2)) << "not shared";
+  EXPECT_EQ(result.numbers, other.numbers);
+}
+
 TEST_F(CausesOnARig, AreClampedEachByItsOwnBounds) {
   const Eigen::VectorXd far = Eigen::Vector3d(1e6, -1e6, 1e6), clamped = causes_.clamped(explanation_.members, far);
   EXPECT_EQ(clamped.head(2), causes_.hypotheses[threshold].clamped(far.head(2)));
