@@ -173,6 +173,7 @@ void Search::tryVariants() {
 /// Fits the explanations near the best from where the best ended, for all that they share with it. Fits that end in different minima of
 /// the effects which both have say nothing about the effects in which they differ.
 void Search::tryLikeTheBest() {
+  if (explanations_.empty() || plant_.interrupted()) return;
   std::ranges::stable_sort(explanations_, std::greater<>{}, &Explanation::score);
   const Explanation best = explanations_.front();
   std::vector<std::size_t> ranks;
