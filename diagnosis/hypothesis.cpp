@@ -1,27 +1,28 @@
 #include "hypothesis.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "measured_values.h"
 #include "musclesim/effect/relevance.h"
 
 namespace musclesim {
 
 namespace {
 
-/// The lower and upper `share` quantile of a compared signal over all recordings.
-std::optional<std::pair<double, double>> quantiles(const Plant& plant, const std::string& name, double share) {
-  std::vector<double> values;
-  for (std::size_t s = 0; s < plant.signals().size(); ++s) {
-    if (plant.signals()[s].name != name) continue;
-    for (std::size_t r = 0; r < plant.recordings().size(); ++r)
-      for (const double value : plant.measured(static_cast<int>(r), static_cast<int>(s)))
-        if (std::isfinite(value)) values.push_back(value);
-  }
+using Quantiles = std::optional<std::pair<double, double>>;
+
+/// The lower and upper `share` quantile.
+Quantiles quantiles(std::vector<double> values, double share) {
   if (values.empty()) return std::nullopt;
   std::sort(values.begin(), values.end());
   const auto last = static_cast<double>(values.size() - 1);
   return std::pair{values[static_cast<std::size_t>(share * last)], values[static_cast<std::size_t>((1 - share) * last)]};
+}
+
+Quantiles quantiles(const Plant& plant, const std::string& signal, double share) {
+  return quantiles(measuredValues(plant, signal), share);
 }
 
 double spanOf(const Plant& plant, const std::string& signal) {
@@ -64,7 +65,7 @@ Hypothesis::Hypothesis(EffectInfo info, std::string component, const Plant& plan
     if (!p.shape) strengths_.push_back(static_cast<int>(coordinates_.size()));
     coordinates_.push_back(c);
   }
-  if (info_.id == "force_law") useCorrectedLaw(plant);
+  if (info_.replaces_law) useCorrectedLaw(plant);
   if (info_.id == held_effect) countHeld(plant);
 }
 
@@ -114,7 +115,7 @@ void Hypothesis::useCorrectedLaw(const Plant& plant) {
 bool Hypothesis::isSigned(int coordinate) const {
   const Coordinate& c = coordinates_[static_cast<std::size_t>(coordinate)];
   const EffectParameter& p = info_.parameters[c.parameter];
-  return info_.id == "force_law" || (c.scale == Scale::linear && p.minimum < p.neutral);
+  return info_.replaces_law || (c.scale == Scale::linear && p.minimum < p.neutral);
 }
 
 void Hypothesis::rescale(int coordinate, double z) {
@@ -250,7 +251,7 @@ double Hypothesis::excess(const Eigen::VectorXd& z) const {
   for (int i = 0; i < coordinateCount(); ++i) {
     const Coordinate& c = coordinates_[static_cast<std::size_t>(i)];
     const bool is_strength = std::ranges::find(strengths_, i) != strengths_.end();
-    if (!(is_strength || c.scale == Scale::factor) || info_.parameters[c.parameter].unit == "unit of the signal" || info_.id == "force_law")
+    if (!(is_strength || c.scale == Scale::factor) || info_.parameters[c.parameter].unit == "unit of the signal" || info_.replaces_law)
       continue;
     const double ratio = stretchOf(i, z[i]);
     if (ratio > 1 && std::isfinite(ratio)) sum += std::log(ratio);
@@ -337,12 +338,8 @@ std::vector<Hypothesis> Hypothesis::togetherAndAlone() const {
   return result;
 }
 
-std::vector<Hypothesis> Hypothesis::variants(const Plant& plant) const {
-  if (info_.id == "command_quantisation") return numbersOfBits();
-  if (info_.id == "attachment_offset") return ends(plant);
-  if (info_.id == "base_tilt") return togetherAndAlone();
-  if (info_.id == "leak") return smallAndLarge();
-  if (info_.id != "contact") return withAndWithoutShares();
+/// Walls on either side of where a joint or the hand was most of the time.
+std::vector<Hypothesis> Hypothesis::sides(const Plant& plant) const {
   std::vector<Hypothesis> result;
   auto add = [&](const std::string& plane, double at, const std::string& side, int axis) {
     Hypothesis variant = *this;
@@ -364,12 +361,28 @@ std::vector<Hypothesis> Hypothesis::variants(const Plant& plant) const {
     if (const auto ends = quantiles(plant, "angle_" + component_.substr(6) + "_deg", 0.2)) addBothSides("plane_deg", *ends, 0);
     return result;
   }
-  const char* const hand[] = {"hand_x_mm", "hand_y_mm", "hand_z_mm"};
+  const std::array<std::vector<double>, 3> hand = handMm(plant);
   for (int axis = 0; axis < 3; ++axis)
-    if (const auto ends = quantiles(plant, hand[axis], 0.2)) addBothSides("plane_mm", *ends, axis);
-  if (result.empty() && plant.robot() == "rig")
-    if (const auto ends = quantiles(plant, "length_0_mm", 0.2)) addBothSides("plane_mm", {-ends->second, -ends->first}, 1);
+    if (const auto ends = quantiles(hand[static_cast<std::size_t>(axis)], 0.2)) addBothSides("plane_mm", *ends, axis);
   return result;
+}
+
+std::vector<Hypothesis> Hypothesis::variants(const Plant& plant) const {
+  switch (info_.variants) {
+    case Variants::shares:
+      return withAndWithoutShares();
+    case Variants::strengths:
+      return togetherAndAlone();
+    case Variants::sizes:
+      return smallAndLarge();
+    case Variants::bits:
+      return numbersOfBits();
+    case Variants::ends:
+      return ends(plant);
+    case Variants::sides:
+      return sides(plant);
+  }
+  return {};
 }
 
 bool allows(const DiagnosisOptions& options, const std::string& id) {
@@ -387,8 +400,7 @@ std::vector<Hypothesis> hypotheses(const Plant& plant, const DiagnosisOptions& o
       // Effects without relevant parameters on this component cannot act, such as play between a gauge and a pressure.
       if (!info.parameters.empty() && relevantParameters(info, component).empty()) continue;
       // Sensors fail one at a time, but a clock or a logger may fail for all at once.
-      const bool shared = info.id == "sensor_delay" || info.id == "slow_clock" || info.id == "sensor_dropout";
-      if (info.stage == Stage::sensor && (!plant.compares(component) || (component == "all" && !shared))) continue;
+      if (info.stage == Stage::sensor && (!plant.compares(component) || (component == "all" && !info.may_be_shared))) continue;
       for (Hypothesis& variant : Hypothesis(info, component, plant).variants(plant)) result.push_back(std::move(variant));
     }
   }

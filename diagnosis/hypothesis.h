@@ -81,6 +81,7 @@ class Hypothesis {
   std::vector<Hypothesis> withAndWithoutShares() const;
   std::vector<Hypothesis> ends(const Plant& plant) const;
   std::vector<Hypothesis> togetherAndAlone() const;
+  std::vector<Hypothesis> sides(const Plant& plant) const;
 
   EffectInfo info_;
   std::string component_;

@@ -320,6 +320,21 @@ bool Plant::hasHand() const {
   return reference_->robot().getState().hand_mm.has_value();
 }
 
+Eigen::MatrixX3d Plant::nominalHandMm(int recording) const {
+  const Recording& recorded = recordings_[static_cast<std::size_t>(recording)];
+  Eigen::MatrixX3d places(static_cast<Eigen::Index>(recorded.time_s.size()), 3);
+  Eigen::Index row = 0;
+  ReplayOptions options = options_.model;
+  options.watch = [&](Simulation& simulation) -> ReplayOptions::Watcher {
+    if (!simulation.robot().hand()) return {};
+    return [&](const State&) {
+      if (row < places.rows()) places.row(row++) = simulation.robot().handMm();
+    };
+  };
+  const ReplayResult result = replayRecording(recorded, options);
+  return result.divergence || row < places.rows() ? Eigen::MatrixX3d() : places;
+}
+
 /// The fidelity itself if coarser steps save time on this robot, otherwise fine.
 Fidelity Plant::possible(Fidelity fidelity) const {
   return reference_->substeps() >= fewest_to_coarsen ? fidelity : Fidelity::fine;

@@ -129,6 +129,8 @@ class Plant {
   /// The robot as built.
   RobotDrawing drawing() const;
   bool hasHand() const;
+  /// Where the model without effects has the hand in the rows of a recording, mm. No rows if nothing is the hand, or if the model diverges.
+  Eigen::MatrixX3d nominalHandMm(int recording) const;
 
   /// Number of distinct simulations of the robot, and the seconds simulated; those of pressures alone do not count.
   long simulationCount() const { return simulation_count_; }

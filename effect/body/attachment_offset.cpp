@@ -30,7 +30,8 @@ EffectInfo AttachmentOffset::info() {
           .mount_offset_mm = [](const EffectValues& values, MuscleEnd end) -> Eigen::Vector2d {
             if (end != endOf(values)) return {0, 0};
             return {values["offset_mm"], values["rise_mm"]};
-          }};
+          },
+          .variants = Variants::ends};
 }
 
 void AttachmentOffset::attach(const EffectPlace& place) {

@@ -17,7 +17,8 @@ EffectInfo BaseTilt::info() {
           .source = "definition",
           .parameters = {{"tilt_x_deg", "deg", 0, -180, 180, -8, 8, "rotation of gravity about x"},
                          {"tilt_z_deg", "deg", 0, -180, 180, -8, 8, "rotation of gravity about z"}},
-          .make = [](const EffectValues& values) { return std::make_unique<BaseTilt>(values["tilt_x_deg"], values["tilt_z_deg"]); }};
+          .make = [](const EffectValues& values) { return std::make_unique<BaseTilt>(values["tilt_x_deg"], values["tilt_z_deg"]); },
+          .variants = Variants::strengths};
 }
 
 void BaseTilt::attach(const EffectPlace& place) {

@@ -35,7 +35,8 @@ EffectInfo Contact::info() {
                           "side of x_w on which the wall is; auto: given by the sign of x_w",
                           true,
                           {"auto", "beyond", "below"}}},
-          .make = [](const EffectValues& values) { return std::make_unique<Contact>(values); }};
+          .make = [](const EffectValues& values) { return std::make_unique<Contact>(values); },
+          .variants = Variants::sides};
 }
 
 double Wall::push(double coordinate) const {

@@ -26,7 +26,8 @@ EffectInfo CommandQuantisation::info() {
                      {"top_level", "", 1, 0, 1, 0, 1, "1: the highest level is full scale; 0: full scale would be one level above it",
                       true}},
       .make = [](const EffectValues& v) { return std::make_unique<CommandQuantisation>(v["bits"], v["rounding_point"], v["top_level"]); },
-      .ignores_motion = true};
+      .ignores_motion = true,
+      .variants = Variants::bits};
 }
 
 CommandQuantisation::CommandQuantisation(double bits, double rounding_point, double top_level)

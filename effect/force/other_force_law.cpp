@@ -93,7 +93,8 @@ EffectInfo OtherForceLaw::info() {
           .signature = "the static map of tension deviates smoothly, the same in both directions",
           .source = "Braun 2007; Chou and Hannaford 1996; Sarosi 2012; measured maps",
           .parameters = lawParameters(),
-          .make = [](const EffectValues& values) { return std::make_unique<OtherForceLaw>(values); }};
+          .make = [](const EffectValues& values) { return std::make_unique<OtherForceLaw>(values); },
+          .replaces_law = true};
 }
 
 void OtherForceLaw::attach(const EffectPlace& place) {

@@ -23,7 +23,8 @@ EffectInfo Leak::info() {
           [](const EffectValues& values) {
             return std::make_unique<Leak>(values["leak_per_s"], values["regulator_time_constant_s"], values["flow_exponent"]);
           },
-      .ignores_motion = true};
+      .ignores_motion = true,
+      .variants = Variants::sizes};
 }
 
 double Leak::lossPerS(double pressure) const {

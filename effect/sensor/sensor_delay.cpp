@@ -14,7 +14,8 @@ EffectInfo SensorDelay::info() {
           .source = "dead time of sampling, filters and buses",
           .parameters = {{"delay_s", "s", 0, 0, 2, 0.005, 0.1, "T"},
                          {"filter_share", "", 0, 0, 1, 0, 1, "c, share of the delay that comes from a first-order filter", true, {}, true}},
-          .make = [](const EffectValues& values) { return std::make_unique<SensorDelay>(values["delay_s"], values["filter_share"]); }};
+          .make = [](const EffectValues& values) { return std::make_unique<SensorDelay>(values["delay_s"], values["filter_share"]); },
+          .may_be_shared = true};
 }
 
 double SensorDelay::reading(double value, const StepTime& time, long) {

@@ -17,7 +17,8 @@ EffectInfo SensorDropout::info() {
       .source = "Gilbert 1960, two-state channel",
       .parameters = {{"fraction", "", 0, 0, 0.99, 0.01, 0.3, "share of the samples that are lost"},
                      {"mean_gap_samples", "", 3, 1, 1e4, 1, 10, "mean number of lost samples in a row", true}},
-      .make = [](const EffectValues& values) { return std::make_unique<SensorDropout>(values["fraction"], values["mean_gap_samples"]); }};
+      .make = [](const EffectValues& values) { return std::make_unique<SensorDropout>(values["fraction"], values["mean_gap_samples"]); },
+      .may_be_shared = true};
 }
 
 void SensorDropout::attach(const EffectPlace& place) {

@@ -11,7 +11,8 @@ EffectInfo SlowClock::info() {
           .signature = "this signal's delay grows in proportion to the time",
           .source = "3.1 s per 100 s in a published record of a pneumatic wrist",
           .parameters = {{"lag_per_s", "s/s", 0, 0, 0.5, 0.002, 0.05, "r, what the reading falls behind by per second"}},
-          .make = [](const EffectValues& values) { return std::make_unique<SlowClock>(values["lag_per_s"]); }};
+          .make = [](const EffectValues& values) { return std::make_unique<SlowClock>(values["lag_per_s"]); },
+          .may_be_shared = true};
 }
 
 double SlowClock::reading(double value, const StepTime& time, long) {

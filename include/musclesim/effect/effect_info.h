@@ -16,6 +16,16 @@ namespace musclesim {
 /// Neutral value of a parameter that limits something.
 inline constexpr double unlimited = std::numeric_limits<double>::infinity();
 
+/// Choices of an effect's parameters that a fit cannot reach from each other: a diagnosis tries each by itself.
+enum class Variants {
+  shares,     ///< with and without the parameters that are shares and may be zero (further lags, a filter)
+  strengths,  ///< all strengths together, and each alone
+  sizes,      ///< small and large: these show differently
+  bits,       ///< every number of bits, and how a converter rounds
+  ends,       ///< either end of a muscle
+  sides,      ///< either side of every axis
+};
+
 /// Everything about an effect that does not need a simulation. What `musclesim effects ID` prints and a fit needs to know.
 struct EffectInfo {
   std::string id;
@@ -32,6 +42,11 @@ struct EffectInfo {
   /// Whether an effect of the command or pressure stage never asks for lengths, forces or poses. Then pressures can be predicted with a
   /// body that stands still (SimulationOptions::body_moves).
   bool ignores_motion = false;
+  Variants variants = Variants::shares;
+  /// Whether the parameters are the constants of another force law, of which none is neutral.
+  bool replaces_law = false;
+  /// Of the sensor stage: whether one cause may disturb all readings alike, such as a logger's clock.
+  bool may_be_shared = false;
   /// Whether effectCatalogue() lists the effect, so that `musclesim effects` shows it and a diagnosis looks for it.
   bool listed = true;
 };
