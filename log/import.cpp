@@ -257,19 +257,23 @@ class Import {
     Series result;
     result.table = &table;
     result.column = indexIn(table, column.from, memberOf(column));
-    std::size_t empty_count = 0;
+    std::size_t empty_count = 0, clipped_count = 0;
     double last_s = nan;
     for (std::size_t row = 0; row < times_s.size(); ++row) {
-      const double value = column.valueOf(table.number(row, result.column));
+      const double cell = table.number(row, result.column), value = column.valueOf(cell);
       if (std::isnan(times_s[row]) || times_s[row] == last_s) continue;
       last_s = times_s[row];
       empty_count += std::isnan(value);
-      if (std::isnan(value)) continue;
+      clipped_count += column.isClipped(cell);
+      if (std::isnan(value) || column.isClipped(cell)) continue;
       result.time_s.push_back(last_s);
       result.values.push_back(value);
       result.rows.push_back(row);
     }
     if (empty_count > 0) notes_.push_back(fmt::format("{}: {} of {} cells hold no reading", column.name, empty_count, times_s.size()));
+    if (clipped_count > 0)
+      notes_.push_back(fmt::format("{}: {} of {} cells are where the sensor or the table clips, and are not measured", column.name,
+                                   clipped_count, times_s.size()));
     // What is shorter than a row of the recording is no gap in it.
     const double longest_s = std::max(gap_steps * usualStep(result.time_s), mapping_.step_s.value_or(0));
     result.longest_gap_s = mapping_.longest_gap_s.value_or(longest_s) * (1 + 1e-9);

@@ -149,6 +149,17 @@ void readOwnClock(ImportColumn& column, Members& members, const toml::table& tab
   column.clock->offset = column.clock->offset * factor.value_or(1) + offset.value_or(0);
 }
 
+void readLimits(ImportColumn& column, Members& members, const toml::table& table) {
+  column.clipped_below = members.get<double>("clipped_below", "a number");
+  column.clipped_above = members.get<double>("clipped_above", "a number");
+  if (!column.clipped_below && !column.clipped_above) return;
+  if (column.name.starts_with("command_") || column.from.empty())
+    members.refuse(table,
+                   column.written + ": clipped_below and clipped_above are limits of a sensor, which commands and constants do not have");
+  if (column.clipped_below && column.clipped_above && *column.clipped_below >= *column.clipped_above)
+    members.refuse(table, column.written + ": clipped_below must be less than clipped_above");
+}
+
 ImportColumn readColumn(const std::string& name, const toml::node& node, const std::string& file) {
   if (const auto from = node.value<std::string>()) return importColumn(name, {*from, 0});
   ImportColumn column = importColumn(name, {});
@@ -165,6 +176,7 @@ ImportColumn readColumn(const std::string& name, const toml::node& node, const s
   column.offset = members.get<double>("offset", "a number").value_or(0);
   column.minimum = members.get<double>("minimum", "a number").value_or(column.minimum);
   column.maximum = members.get<double>("maximum", "a number").value_or(column.maximum);
+  readLimits(column, members, *table);
   column.linear = members.get<bool>("linear", "true or false").value_or(column.linear);
   subtractAmbient(column, members, node);
   column.value = value.value_or(0);

@@ -273,7 +273,7 @@ A DMSP-10-250 behind a proportional valve, against a load that is not stated; va
 **What the tool says.** Loop: {where('bench_loop')}; {parameters('bench_loop')}; would do as well: {others('bench_loop')}. With the sensor corrected: {where('bench_loop_corrected')}; {parameters('bench_loop_corrected')}; would do as well: {others('bench_loop_corrected')}. Step: {where('bench_step')}; {parameters('bench_step')}; would do as well: {others('bench_step')}. Tuned for the step: {tuned('bench_step')}.
 ''')
 compare([
-    ('pressure sensor', 'calibration artefact: the vented muscle reads -0.30 bar; the loop\'s table is cut off at 0',
+    ('pressure sensor', 'calibration artefact: the vented muscle reads -0.30 bar; the loop\'s table has 0 instead, which is no reading here',
      'loop: ' + all_named('bench_loop', [('sensor_bias', bar_words), ('pressure_calibration', bar_words)]) + '; step: ' + all_named('bench_step', [('sensor_bias', bar_words), ('pressure_calibration', bar_words)])),
     ('hysteresis', '60 to 66 kPa, 2.0 to 6.8 mm of stroke, in the muscle', 'loop: ' + all_named('bench_loop', HYSTERESIS) + '; corrected: ' + all_named('bench_loop_corrected', HYSTERESIS)),
     ('rate limit', '+7 bar/s', 'step: ' + all_named('bench_step', [('flow_limit', flow_words), ('valve_lag', lag_words)])),
@@ -283,7 +283,7 @@ compare([
 print()
 signals(['bench_loop', 'bench_loop_corrected', 'bench_step'])
 print(f'''
-**Where the tool is wrong or cannot tell.** The loop's readings of 0 below 0.7 V, cut off by the authors' table, look like a regulator that delivers less (`pressure_calibration`) rather than a sensor that reads less (`sensor_bias`); in the step the sensor's offset is {'' if 'sensor_bias' in effects_of('bench_step') else 'not '}named. Play in the reading of the stroke, friction of the braid and a viscous muscle draw nearly the same loop; only a muscle's force would tell. {step_words()} Creep is left: the fitted part of the step ends before most of it, and the held-out part shows it as what remains of the stroke's gap.
+**Where the tool is wrong or cannot tell.** In the step the sensor's offset is {'' if 'sensor_bias' in effects_of('bench_step') else 'not '}named. Play in the reading of the stroke, friction of the braid and a viscous muscle draw nearly the same loop; only a muscle's force would tell. {step_words()} Creep is left: the fitted part of the step ends before most of it, and the held-out part shows it as what remains of the stroke's gap.
 
 ## A coiled fluid muscle
 

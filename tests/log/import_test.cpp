@@ -51,6 +51,24 @@ TEST_F(ImportTest, TakesColumnsInTheirUnitsScaledShiftedAndLimited) {
   EXPECT_EQ(std::get<double>(r.info.robot_parameters.at("load_kg")), 3);
 }
 
+TEST_F(ImportTest, CellsWhereASensorClipsAreNoReadings) {
+  const std::string columns = std::string(head) + "[columns]\ntime_s = \"t\"\ncommand_0_kPa = \"u\"\n";
+  const Recording r = import("t,u,p\n0,0,-1\n1,100,0\n2,200,30\n3,300,90\n4,400,100\n",
+                             columns + "pressure_0_kPa = { from = \"p\", offset = 30, clipped_below = 0, clipped_above = 100 }\n");
+  const std::vector<double>& p = r.find("pressure_0")->values;
+  ASSERT_EQ(p.size(), 5U);
+  for (const int row : {0, 1, 4}) EXPECT_TRUE(std::isnan(p[row])) << row;
+  EXPECT_EQ(p[2], 0.1);
+  EXPECT_EQ(p[3], 0.2);
+  const auto tellsOf = [](const std::string& note) { return note.starts_with("pressure_0_kPa: 3 of 5 cells are where"); };
+  EXPECT_EQ(std::ranges::count_if(r.notes, tellsOf), 1) << testing::PrintToString(r.notes);
+  EXPECT_THROW(import("t,u,p\n0,0,0\n1,1,1\n", columns + "pressure_0_kPa = { from = \"p\", clipped_below = 2, clipped_above = 1 }\n"),
+               BadFile);
+  EXPECT_THROW(
+      import("t,u,p\n0,0,0\n1,1,1\n", std::string(head) + "[columns]\ntime_s = \"t\"\ncommand_0 = { from = \"u\", clipped_below = 0 }\n"),
+      BadFile);
+}
+
 TEST_F(ImportTest, SettledStepsBecomeTwoRowsEach) {
   const Recording r =
       import("u,l\n0,200\n1,190\n0,199\n", std::string(head) + "[columns]\ncommand_0 = \"u\"\nlength_0_mm = \"l\"\n[rows]\nsettle_s = 2\n");

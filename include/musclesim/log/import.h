@@ -22,8 +22,11 @@ struct ImportColumn {
   std::optional<TableClock> clock;  ///< of the other table, or another clock in the first
   double factor = 1, offset = 0, value = 0;
   double minimum, maximum;
-  bool linear = true;  ///< false: hold the last value between rows (default for commands)
+  std::optional<double> clipped_below, clipped_above;  ///< limits of the sensor or table, in the table's unit: x there is no reading
+  bool linear = true;                                  ///< false: hold the last value between rows (default for commands)
 
+  /// Whether the table's value x is at one of the limits or beyond it.
+  bool isClipped(double x) const { return (clipped_below && x <= *clipped_below) || (clipped_above && x >= *clipped_above); }
   /// The value in the written unit for the table's value x.
   double readingOf(double x) const;
   /// The same in the recording's unit.
