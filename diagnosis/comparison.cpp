@@ -128,6 +128,10 @@ void Comparison::addAverages() {
 /// parity is known, n signals of motion have the power sqrt(n), because their sensors fail one by one. Blocks of a channel share its power.
 /// A single recording, or two, count as three: they hold as many motions.
 void Comparison::shareEvidence() {
+  if (!isTempered()) {
+    for (Block& block : blocks_) block.power = counts(block) && block.isReading() ? static_cast<double>(block.count()) : 0;
+    return;
+  }
   constexpr double usual_recordings = 3;
   const auto channelOf = [this](const Block& block) {
     const std::string& name = plant_.signals()[static_cast<std::size_t>(block.signal)].name;
@@ -279,6 +283,7 @@ double misfitBeyond(const Tolerance& tolerance, const Comparison::Block& block, 
 }  // namespace
 
 double Comparison::misfitOf(const Block& block, double mean_square) const {
+  if (!isTempered()) return 0.5 * block.power * (mean_square / (block.sigma * block.sigma) - 1);
   double sum = 0;
   for (const Tolerance& tolerance : tolerances) sum += tolerance.nats * misfitBeyond(tolerance, block, mean_square);
   return sum;
@@ -299,6 +304,7 @@ double Comparison::misfit(const Eigen::VectorXd& residual) const {
 }
 
 double Comparison::weightSquare(const Block& block, double mean_square) const {
+  if (!isTempered()) return block.power / (block.sigma * block.sigma);
   double sum = 0;
   for (const Tolerance& tolerance : tolerances) {
     const double left = tolerance.share_of_gap * block.gap;

@@ -43,7 +43,7 @@ class Comparison {
     double sigma;
     std::size_t averaged_rows = 0;    ///< rows per average; 0: not averaged
     bool is_parity = false;           ///< not the signal itself, but what of it no pose of the robot explains (ParityRelations)
-    double power = 1;                 ///< of its evidence: a channel's share, see shareEvidence
+    double power = 1;                 ///< of its evidence: a channel's share, see shareEvidence; its readings where nothing is tempered
     double gap = 0;                   ///< RMS of the gap
     Eigen::Index first_averaged = 0;  ///< index of the first row that is averaged
     Eigen::Index count() const { return static_cast<Eigen::Index>(rows.size()); }
@@ -90,6 +90,7 @@ class Comparison {
   /// The tempered misfit of a residual, in nats, 0 for noise alone:
   ///   sum over blocks b of power_b  sum over tolerances (rho, kappa) of  kappa / 2 ln((s^2 + ms_b) / (s^2 + sigma_b^2)),
   ///   s^2 = sigma_b^2 + rho^2 C_b^2
+  /// or, where tempering is left out (MethodPart), the sum over readings of (residual^2 / sigma^2 - 1) / 2.
   /// ms_b: mean square of the residual in the block; C_b: RMS of the gap there (setGap); power_b: see Block. Infinite for an empty vector.
   double misfit(const Eigen::VectorXd& residual) const;
   /// The misfit by tolerance, each without its kappa.
@@ -112,6 +113,7 @@ class Comparison {
   void addAverages();
   void shareEvidence();
   bool counts(const Block& block) const;
+  bool isTempered() const { return !plant_.leavesOut(MethodPart::tempering); }
   void average(Eigen::VectorXd& values) const;
   Unsteady unsteadiness(const Eigen::VectorXd& change, const Eigen::VectorXd& residual) const;
   Eigen::VectorXd withNominal(Eigen::VectorXd prediction) const;

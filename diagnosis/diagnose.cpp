@@ -6,6 +6,7 @@
 #include <chrono>
 #include <map>
 #include <mutex>
+#include <ranges>
 #include <variant>
 
 #include "../base/parallel.h"
@@ -219,6 +220,25 @@ class Run {
 };
 
 }  // namespace
+
+namespace {
+
+const std::vector<std::pair<std::string, MethodPart>> method_parts = {
+    {"nuisances", MethodPart::nuisances}, {"stand_ins", MethodPart::stand_ins}, {"tempering", MethodPart::tempering}};
+
+}  // namespace
+
+std::string nameOf(MethodPart part) {
+  return std::ranges::find(method_parts, part, &std::pair<std::string, MethodPart>::second)->first;
+}
+
+MethodPart methodPartNamed(const std::string& name) {
+  const auto found = std::ranges::find(method_parts, name, &std::pair<std::string, MethodPart>::first);
+  if (found == method_parts.end())
+    throw BadParameter(fmt::format("{} is no part of the method that can be left out; these are: {}", name,
+                                   fmt::join(method_parts | std::views::keys, ", ")));
+  return found->second;
+}
 
 std::string nameOf(Verdict verdict) {
   switch (verdict) {

@@ -272,16 +272,9 @@ Plant::MuscleRange Plant::muscleRange(int muscle) const {
   return {actuator.minimumLengthMm(), actuator.maximumLengthMm()};
 }
 
-void Plant::findNumbers(const std::map<std::string, double>& given) {
-  constexpr double of_tuned = 0.5;  // a guess by eye: within a factor of e, twice the tolerance
-  const std::vector<std::string> varying = allThatVaries(recordings_);
-  const auto varies = [&](const std::string& name) {
-    return std::ranges::any_of(varying, [&](const std::string& listed) { return means(listed, name); });
-  };
-  for (const std::string& name : options_.tune) {
-    if (varies(name)) throw BadParameter("--tune", name, "not name a parameter that varies between the recordings");
-    numbers_.push_back({numberNamed("--tune", name), of_tuned, true});
-  }
+/// By the names of parameters, those of the robot's file and of the sidecars.
+std::map<std::string, double> Plant::declaredTolerances() const {
+  if (leavesOut(MethodPart::nuisances)) return {};
   const std::vector<Parameter>& declared = reference_->parameters().declared();
   std::map<std::string, double> by_name = reference_->robot().parameterTolerances();
   // The robot's own tolerances are for its usual values: a number that is set to 0 has none.
@@ -295,7 +288,20 @@ void Plant::findNumbers(const std::map<std::string, double>& given) {
       const auto meant = std::ranges::find_if(declared, [&, &wanted = name](const Parameter& each) { return means(wanted, each.name); });
       by_name[meant == declared.end() ? name : meant->name] = tolerance;
     }
-  for (const auto& [name, tolerance] : by_name)
+  return by_name;
+}
+
+void Plant::findNumbers(const std::map<std::string, double>& given) {
+  constexpr double of_tuned = 0.5;  // a guess by eye: within a factor of e, twice the tolerance
+  const std::vector<std::string> varying = allThatVaries(recordings_);
+  const auto varies = [&](const std::string& name) {
+    return std::ranges::any_of(varying, [&](const std::string& listed) { return means(listed, name); });
+  };
+  for (const std::string& name : options_.tune) {
+    if (varies(name)) throw BadParameter("--tune", name, "not name a parameter that varies between the recordings");
+    numbers_.push_back({numberNamed("--tune", name), of_tuned, true});
+  }
+  for (const auto& [name, tolerance] : declaredTolerances())
     if (!varies(name) && std::ranges::find(options_.tune, name) == options_.tune.end())
       numbers_.push_back({numberNamed("parameter_tolerance", name), tolerance, false});
   numbers_in_force_ = Eigen::VectorXd::Zero(numberCount());

@@ -137,6 +137,7 @@ class Plant {
   double simulatedS() const { return static_cast<double>(simulated_ms_) / ms_per_s; }
   /// Threads to use; 0: one per core.
   int jobCount() const { return options_.job_count; }
+  bool leavesOut(MethodPart part) const { return options_.left_out.contains(part); }
   bool interrupted() const { return options_.interrupted && options_.interrupted(); }
 
  private:
@@ -144,6 +145,7 @@ class Plant {
   void compareSignals();
   void requireNumbers(const std::vector<Segment>& part) const;
   Parameter numberNamed(const std::string& option, const std::string& name) const;
+  std::map<std::string, double> declaredTolerances() const;
   void findNumbers(const std::map<std::string, double>& given);
   Fidelity possible(Fidelity fidelity) const;
   std::string simulationKey(int recording, std::size_t rows, Fidelity fidelity) const;

@@ -426,7 +426,7 @@ void Search::decide() {
     if (fitted != pool_.end()) expand(*fitted);
   }
   extendBySize();
-  tryStandIns();
+  if (!plant_.leavesOut(MethodPart::stand_ins)) tryStandIns();
   fitFinalists();
 }
 

@@ -88,6 +88,8 @@ Action addRunCases(CLI::App& command) {
   command.add_option("--jobs", arguments->run.job_count, "Cases at once (default: one per core); the answers do not depend on it")
       ->check(CLI::Range(1, 1024));
   addList(command, "--candidates", arguments->run.candidates, "Only these effects, by id, separated by commas");
+  addList(command, "--leave-out", arguments->run.leave_out,
+          "What the method does without, to measure what it is worth: nuisances (tolerances of the model's numbers), stand_ins, tempering");
   command.add_option("--commit", arguments->run.commit, "Version of the sources, to be noted with the answers");
   command.add_flag("--quiet", arguments->quiet, "No progress line");
   return [arguments] { return runCases(*arguments); };

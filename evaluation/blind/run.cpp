@@ -53,6 +53,7 @@ namespace {
 std::optional<json> answered(const fs::path& folder, const std::string& name, const RunOptions& options) {
   DiagnosisOptions how;
   how.candidates = options.candidates;
+  for (const std::string& part : options.leave_out) how.left_out.insert(methodPartNamed(part));
   how.job_count = 1;
   how.interrupted = options.interrupted;
   try {
@@ -74,6 +75,7 @@ std::optional<json> answered(const fs::path& folder, const std::string& name, co
 json costMembers(const RunOptions& options) {
   json members = programMembers(options.commit);
   members["candidates"] = options.candidates;
+  members["left_out"] = options.leave_out;
   return members;
 }
 
@@ -123,14 +125,15 @@ std::vector<std::string> answerFiles(const fs::path& folder) {
 
 void requireSameProgram(const fs::path& file, const json& members) {
   const json made = readObject(file);
-  for (const char* member : {"program_sha256", "candidates"})
-    if (made.value(member, json()) != members.at(member))
+  for (const char* member : {"program_sha256", "candidates", "left_out"})
+    if (members.contains(member) && made.value(member, json()) != members.at(member))
       throw BadParameter(
           fmt::format("{}: was made with another {}; remove {} to begin again", file.string(), member, file.parent_path().string()));
 }
 
 RunSummary run(const fs::path& folder, const RunOptions& options) {
   for (const std::string& id : options.candidates) effectInfo(id);  // throws for an unknown one
+  for (const std::string& part : options.leave_out) methodPartNamed(part);
   const json seal = readSeal(folder);
   const std::string key_file = seal["key_file"];
   if (const auto key = keyInReach(key_file, folder))

@@ -46,6 +46,19 @@ TEST_F(Rig, MisfitToleratesASmallShareOfTheGap) {
   EXPECT_NEAR(both.misfitOf(both.blocks()[1], 25 * sigma * sigma), power * temperedMisfit(5, 200), 1e-9);
 }
 
+/// Then a reading three noise floors off costs (9 - 1) / 2 nats whatever the gap, and weights are those of plain least squares.
+TEST_F(Rig, MisfitWithoutTemperingIsThatOfGaussianNoise) {
+  const double sigma = planted::noise_mm;
+  options.left_out = {MethodPart::tempering};
+  Comparison plain(plant, {{0, 0, 150}, {1, 0, 150}});
+  Eigen::VectorXd residual = Eigen::VectorXd::Constant(300, sigma);
+  EXPECT_NEAR(plain.misfit(residual), 0, 1e-9);
+  residual[7] = 3 * sigma;
+  plain.setGap(100 * residual);
+  EXPECT_NEAR(plain.misfit(residual), 4, 1e-9);
+  EXPECT_NEAR(plain.weights(residual)[7], 1 / sigma, 1e-9 / sigma);
+}
+
 /// d(misfit) / d(r) = w^2 r for every row, by central differences.
 TEST_F(Rig, WeightsAreTheSlopeOfTheMisfit) {
   const double sigma = planted::noise_mm;

@@ -155,6 +155,14 @@ TEST_F(NumbersOfAPlant, OfASidecarHaveItsTolerances) {
   EXPECT_TRUE(contains(messageOf<BadParameter>([&] { Plant(recordings, options); }), "did you mean \"rig.load_kg\""));
 }
 
+TEST_F(NumbersOfAPlant, AreExactWhereTolerancesAreLeftOut) {
+  options.left_out = {MethodPart::nuisances};
+  options.tune = {"rig.load_kg"};
+  const Plant plant(recordings, options);
+  ASSERT_EQ(plant.numberCount(), 1);
+  EXPECT_TRUE(find(plant, "rig.load_kg")->is_tuned);
+}
+
 TEST_F(NumbersOfAPlant, ThatAreTunedMayBeOffByAFactorAndComeFirst) {
   options.tune = {"rig.load_kg"};
   const Plant plant(recordings, options);

@@ -260,6 +260,12 @@ TEST_F(Blind, RunsResumesAndScores) {
   others.candidates = {"nonsense"};
   EXPECT_TRUE(contains(messageOf<BadParameter>([&] { run(cases(), others); }), "nonsense"));
 
+  RunOptions without = few();
+  without.leave_out = {"tempering"};
+  EXPECT_TRUE(contains(messageOf<BadParameter>([&] { run(cases(), without); }), "left_out"));
+  without.leave_out = {"templates"};
+  EXPECT_TRUE(contains(messageOf<BadParameter>([&] { run(cases(), without); }), "nuisances, stand_ins, tempering"));
+
   append(cases() / "answers" / "case001.json", " ");
   EXPECT_TRUE(run(cases(), few()).complete()) << "nothing is left to do";
   EXPECT_TRUE(contains(messageOf<BadFile>([&] { score(cases(), key); }), "answers were changed"));

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,6 +26,15 @@ struct DiagnosisProgress {
   long expected = 0;  ///< expected in all, as far as known
 };
 
+/// Parts of the method that a study may leave out, to measure what they are worth:
+/// - nuisances: the tolerances of the model's numbers; the values that the user gave then count as exact
+/// - stand_ins: trying other effects in the place of each member of the best sets
+/// - tempering: misfit is then the sum of (residual / noise)^2 / 2 over all readings, as if the laws of all effects were exact
+enum class MethodPart { nuisances, stand_ins, tempering };
+std::string nameOf(MethodPart part);
+/// Throws BadParameter for an unknown name.
+MethodPart methodPartNamed(const std::string& name);
+
 struct DiagnosisOptions {
   ReplayOptions model;                  ///< the user's model
   std::vector<std::string> candidates;  ///< ids of effects to consider; empty: the whole catalogue
@@ -32,6 +42,7 @@ struct DiagnosisOptions {
   std::vector<std::string> tune;        ///< names of parameters of the model that nobody measured; they are fitted first
   int max_effects = 4;                  ///< largest number of effects in an explanation, 1..6
   std::vector<ActiveEffect> earlier;    ///< an earlier finding: a set that the search begins with, fitted anew and kept if it is believed
+  std::set<MethodPart> left_out;        ///< what the method does without, for studies
   int job_count = 0;                    ///< threads; 0: one per core. The answer does not depend on it
   std::uint64_t seed = 1;               ///< of the bootstrap and the negative control
   /// Keeps the simulations, and has those of an earlier diagnosis of the same recordings with the same options, by the same program: they
