@@ -11,6 +11,7 @@
 #include "columns.h"
 #include "data_table.h"
 #include "import_clock.h"
+#include "import_series.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
 #include "musclesim/base/text.h"
@@ -21,24 +22,9 @@ namespace musclesim {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double unlimited = std::numeric_limits<double>::infinity();
 constexpr std::size_t most_rows = 10'000'000;
-/// Clocks that agree differ by rounding: 0.3 + 0.01 k is not the same number as a cell "0.57".
-constexpr double same_time_s = 1e-6;
 /// A clock that begins later than after three years counts from 1970, or from another year.
 constexpr double epoch_s = 1e8;
-
-/// What one column of a table read, in the recording's unit, at increasing times.
-struct Series {
-  std::vector<double> time_s, values;
-  double longest_gap_s = unlimited;
-  bool is_first_tables = false;      ///< it has the clock of the first table
-  const DataTable* table = nullptr;  ///< null: a constant
-  std::size_t column = 0;            ///< of the table
-  std::vector<std::size_t> rows;     ///< of the table, one per value
-  // Rows of the recording without a reading: outside of the series' own times, in its gaps, and commands held after its end.
-  std::size_t outside_count = 0, gap_count = 0, held_count = 0;
-};
 
 /// A row of the recording: its time, and the time in the clock of the first table where its values come from.
 struct RowTime {
@@ -46,29 +32,9 @@ struct RowTime {
   bool has_readings;
 };
 
-std::size_t countWithin(const std::vector<double>& times_s, double from_s, double until_s) {
-  return static_cast<std::size_t>(std::count_if(times_s.begin(), times_s.end(), [&](double t) { return t >= from_s && t <= until_s; }));
-}
-
-/// A factor that would make both clocks run as long.
-std::string clockHint(double span_s, double other_span_s) {
-  const std::pair<double, const char*> powers[] = {{1e3, "milliseconds"}, {1e6, "microseconds"}, {1e9, "nanoseconds"}};
-  constexpr double near = 3;
-  for (const auto& [power, unit] : powers) {
-    const double ratio = other_span_s / span_s / power, inverse = span_s / other_span_s / power;
-    if (ratio > 1 / near && ratio < near) return fmt::format("; is its clock in {}? Then give time_factor = {:g}", unit, 1 / power);
-    if (inverse > 1 / near && inverse < near) return fmt::format("; is the first table's clock in {}?", unit);
-  }
-  return "; its clock may need time_offset (s) or time_factor";
-}
-
 /// A file in the same folder as another.
 std::string besides(const std::string& file, const std::string& name) {
   return (std::filesystem::path(file).parent_path() / name).string();
-}
-
-bool isCommand(const ImportColumn& column) {
-  return column.name.starts_with("command_");
 }
 
 std::string memberOf(const ImportColumn& column) {
@@ -118,7 +84,7 @@ class Import {
     evaluate(rows);
     fillBefore();
     addRest();
-    noteMissing();
+    for (std::size_t i = 0; i < series_.size(); ++i) series_[i].noteMissing(mapping_.columns[i], rows_.size(), notes_);
     Recording result = parsed(text());
     result.file = csv_file_;
     result.notes.insert(result.notes.begin(), notes_.begin(), notes_.end());
@@ -146,18 +112,20 @@ class Import {
     const auto index = static_cast<std::size_t>(std::count(cell, cell + fault.column() - 1, ','));
     if (index == 0) throw BadFile(csv_file_, withoutPlace(fault));
     const ImportColumn& column = mapping_.columns[index - 1];
-    const Series& series = series_[index - 1];
+    const ImportSeries& series = series_[index - 1];
     const std::string what = withoutPlace(fault);
-    if (!series.table) mapping_.refuse(memberOf(column), what);
+    if (!series.table()) mapping_.refuse(memberOf(column), what);
     const bool is_rest = std::isnan(clock_of_row_[row]);  // its commands are those of `before`, or of the first row
     const double clock_s = clock_of_row_[is_rest ? row + 1 : row] + same_time_s;
-    const auto next = std::upper_bound(series.time_s.begin(), series.time_s.end(), clock_s);
-    if ((is_rest && mapping_.before.contains(column.written)) || next == series.time_s.begin())
+    const std::vector<double>& times_s = series.timesS();
+    const auto next = std::ranges::upper_bound(times_s, clock_s);
+    if ((is_rest && mapping_.before.contains(column.written)) || next == times_s.begin())
       mapping_.refuse("rows.before." + column.written, what);
-    const std::size_t table_row = series.rows[static_cast<std::size_t>(next - series.time_s.begin()) - 1];
-    series.table->refuse(table_row, series.column,
-                         fmt::format("column {}: {} becomes {}", series.table->shownName(series.column),
-                                     inQuotes(series.table->text(table_row, series.column)), what));
+    const DataTable& table = *series.table();
+    const std::size_t table_row = series.tableRow(static_cast<std::size_t>(next - times_s.begin()) - 1);
+    table.refuse(table_row, series.tableColumn(),
+                 fmt::format("column {}: {} becomes {}", table.shownName(series.tableColumn()),
+                             inQuotes(table.text(table_row, series.tableColumn())), what));
   }
 
   /// The column's index; a name that the table does not have is a fault of the mapping.
@@ -206,22 +174,24 @@ class Import {
     if (untimed_count > 0) notes_.push_back(fmt::format("{} rows have no time and are left out", untimed_count));
     for (const ImportColumn& column : mapping_.columns) {
       if (column.from.empty()) {
-        series_.emplace_back().time_s = {-unlimited};
-        series_.back().values = {column.valueOf(0)};
+        series_.emplace_back(column.valueOf(0));
       } else if (!column.clock) {
-        series_.push_back(seriesOf(column, first, clock_));
-        series_.back().is_first_tables = true;
+        addSeries(column, first, clock_, ImportSeries::Clock::of_first_table);
       } else {
         const DataTable& other = otherTable(column);
         const bool is_own = mapping_.places.contains(memberOf(column) + ".time");
         const std::string of_table = clockMember(fmt::format("tables.{}.", column.table));
         std::vector<double> times_s = timesOf(other, *column.clock, is_own ? memberOf(column) + ".time" : of_table);
         shift(times_s);
-        series_.push_back(seriesOf(column, other, times_s));
-        requireOverlap(column, series_.back());
+        addSeries(column, other, times_s, ImportSeries::Clock::own);
+        series_.back().requireOverlap(column, clock_);
       }
     }
     std::erase_if(clock_, [](double time_s) { return std::isnan(time_s); });
+  }
+
+  void addSeries(const ImportColumn& column, const DataTable& table, const std::vector<double>& times_s, ImportSeries::Clock clock) {
+    series_.emplace_back(column, table, indexIn(table, column.from, memberOf(column)), times_s, mapping_, clock, notes_);
   }
 
   /// The member of the mapping that gives a clock, among those that begin so.
@@ -250,55 +220,6 @@ class Import {
     constexpr double per_s = 1e6;
     if (zero_s_ == 0) return;
     for (double& time_s : times_s) time_s = std::round((time_s - zero_s_) * per_s) / per_s;
-  }
-
-  /// The cells that hold a number; of several rows with the same time the first.
-  Series seriesOf(const ImportColumn& column, const DataTable& table, const std::vector<double>& times_s) {
-    Series result;
-    result.table = &table;
-    result.column = indexIn(table, column.from, memberOf(column));
-    std::size_t empty_count = 0, clipped_count = 0;
-    double last_s = nan;
-    for (std::size_t row = 0; row < times_s.size(); ++row) {
-      const double cell = table.number(row, result.column), value = column.valueOf(cell);
-      if (std::isnan(times_s[row]) || times_s[row] == last_s) continue;
-      last_s = times_s[row];
-      empty_count += std::isnan(value);
-      clipped_count += column.isClipped(cell);
-      if (std::isnan(value) || column.isClipped(cell)) continue;
-      result.time_s.push_back(last_s);
-      result.values.push_back(value);
-      result.rows.push_back(row);
-    }
-    if (empty_count > 0) notes_.push_back(fmt::format("{}: {} of {} cells hold no reading", column.name, empty_count, times_s.size()));
-    if (clipped_count > 0)
-      notes_.push_back(fmt::format("{}: {} of {} cells are where the sensor or the table clips, and are not measured", column.name,
-                                   clipped_count, times_s.size()));
-    // What is shorter than a row of the recording is no gap in it.
-    const double longest_s = std::max(gap_steps * usualStep(result.time_s), mapping_.step_s.value_or(0));
-    result.longest_gap_s = mapping_.longest_gap_s.value_or(longest_s) * (1 + 1e-9);
-    return result;
-  }
-
-  /// Two clocks that have hardly a row in common are not the same clock, and every value would be invented.
-  void requireOverlap(const ImportColumn& column, const Series& series) const {
-    if (series.time_s.empty()) return;
-    const std::vector<double>& times_s = series.time_s;
-    const double from_s = clockFront(), until_s = clockBack();
-    const std::string both = fmt::format("{}: its clock runs from {:.6g} to {:.6g} s, the first table's from {:.6g} to {:.6g} s",
-                                         column.written, times_s.front(), times_s.back(), from_s, until_s);
-    const std::string hint = clockHint(until_s - from_s, times_s.back() - times_s.front());
-    if (times_s.front() > until_s || times_s.back() < from_s) throw BadFile(series.table->file(), both + ": they do not overlap" + hint);
-    if (isCommand(column) || times_s.size() < 2 || until_s == from_s) return;
-    if (countWithin(times_s, from_s, until_s) < 2 || countWithin(clock_, times_s.front(), times_s.back()) < 2)
-      throw BadFile(series.table->file(), both + ": fewer than two rows of one lie within the other" + hint);
-  }
-
-  double clockFront() const {
-    return *std::ranges::find_if(clock_, [](double time_s) { return !std::isnan(time_s); });
-  }
-  double clockBack() const {
-    return *std::find_if(clock_.rbegin(), clock_.rend(), [](double time_s) { return !std::isnan(time_s); });
   }
 
   /// Makes two rows of each step: one where its command begins, and one with the readings shortly before it ends.
@@ -359,36 +280,13 @@ class Import {
     if (rows.empty()) mapping_.refuse("rows", "from_s and until_s leave no rows");
   }
 
-  /// The value of a series at a time: a reading, a straight line between two, or the last command. NaN where nothing was read.
-  double valueAt(Series& series, double time_s, const ImportColumn& column) const {
-    const bool is_command = isCommand(column);
-    const auto next = std::upper_bound(series.time_s.begin(), series.time_s.end(), time_s + same_time_s);
-    const auto k = static_cast<std::size_t>(next - series.time_s.begin());
-    if (k > 0 && (series.time_s[k - 1] >= time_s - same_time_s || std::isinf(series.time_s[k - 1]))) return series.values[k - 1];
-    if (k == series.time_s.size() && k > 0 && is_command) {
-      series.held_count += !series.is_first_tables;
-      return series.values[k - 1];
-    }
-    if (!is_command && series.is_first_tables && !mapping_.step_s) return nan;  // the cell is empty
-    if (k == 0 || k == series.time_s.size()) {
-      series.outside_count += !is_command;
-      return nan;
-    }
-    if (!is_command && series.time_s[k] - series.time_s[k - 1] > series.longest_gap_s) {
-      ++series.gap_count;
-      return nan;
-    }
-    if (!column.linear) return series.values[k - 1];
-    const double share = (time_s - series.time_s[k - 1]) / (series.time_s[k] - series.time_s[k - 1]);
-    return (1 - share) * series.values[k - 1] + share * series.values[k];
-  }
-
   void evaluate(const std::vector<RowTime>& rows) {
     for (const RowTime& row : rows) {
       std::vector<double> values;
       for (std::size_t i = 0; i < series_.size(); ++i) {
         const ImportColumn& column = mapping_.columns[i];
-        values.push_back(row.has_readings || isCommand(column) ? valueAt(series_[i], row.clock_s, column) : nan);
+        values.push_back(row.has_readings || isCommand(column) ? series_[i].valueAt(row.clock_s, column, mapping_.step_s.has_value())
+                                                               : nan);
       }
       time_s_.push_back(row.time_s);
       clock_of_row_.push_back(row.clock_s);
@@ -402,13 +300,13 @@ class Import {
       const ImportColumn& column = mapping_.columns[i];
       if (!isCommand(column) || !std::isnan(rows_.front()[i])) continue;
       const auto before = mapping_.before.find(column.written);
-      if (series_[i].time_s.empty()) throw BadFile(series_[i].table->file(), column.written + ": no cell holds a command");
+      if (series_[i].timesS().empty()) throw BadFile(series_[i].table()->file(), column.written + ": no cell holds a command");
       if (before == mapping_.before.end())
         throw BadFile(
-            series_[i].table->file(),
+            series_[i].table()->file(),
             fmt::format("{}: the first command comes at {:.6g} s, after the first row; give the command before it, rows.before = {{ {} = "
                         "... }}, or begin at rows.from_s = {:.6g}",
-                        column.written, series_[i].time_s.front(), column.written, series_[i].time_s.front()));
+                        column.written, series_[i].timesS().front(), column.written, series_[i].timesS().front()));
       std::size_t count = 0;
       for (auto row = rows_.begin(); row != rows_.end() && std::isnan((*row)[i]); ++row, ++count)
         (*row)[i] = before->second * column.unit_factor;
@@ -437,39 +335,6 @@ class Import {
     rows_.insert(rows_.begin(), std::move(rest));
   }
 
-  /// A line that lost its end may still have a line end.
-  void noteLastJump(const ImportColumn& column, const Series& series) {
-    constexpr double jump_ratio = 0.5, earlier_steps = 5;
-    const std::vector<double>& values = series.values;
-    if (values.size() < 3 || isCommand(column)) return;
-    double largest_step = 0;
-    for (std::size_t i = 1; i + 1 < values.size(); ++i) largest_step = std::max(largest_step, std::abs(values[i] - values[i - 1]));
-    const double before = values[values.size() - 2], step = std::abs(values.back() - before);
-    if (step > jump_ratio * std::abs(before) && step > earlier_steps * largest_step && largest_step > 0)
-      notes_.push_back(fmt::format("{} jumps from {:.6g} to {:.6g} in the last row of {}: is the file cut there?", column.name, before,
-                                   values.back(), series.table->file()));
-  }
-
-  void noteMissing() {
-    for (std::size_t i = 0; i < series_.size(); ++i) {
-      const Series& series = series_[i];
-      const std::string of = fmt::format("of {} rows", rows_.size());
-      const std::string& name = mapping_.columns[i].name;
-      noteLastJump(mapping_.columns[i], series);
-      if (series.outside_count > 0)
-        notes_.push_back(fmt::format("{}: {} {} lie outside of its own times, {:.6g} .. {:.6g} s in {}, and are not measured", name,
-                                     series.outside_count, of, series.time_s.empty() ? 0 : series.time_s.front(),
-                                     series.time_s.empty() ? 0 : series.time_s.back(), series.table->file()));
-      if (series.gap_count > 0)
-        notes_.push_back(
-            fmt::format("{}: {} {} lie in gaps longer than {:.4g} s and are not measured (rows.longest_gap_s sets that length)", name,
-                        series.gap_count, of, series.longest_gap_s));
-      if (series.held_count > 0)
-        notes_.push_back(
-            fmt::format("{}: {} {} come after the last command in {} and hold it", name, series.held_count, of, series.table->file()));
-    }
-  }
-
   std::string text() const {
     std::string text = "time_s";
     for (const ImportColumn& column : mapping_.columns) text += "," + column.name;
@@ -485,7 +350,7 @@ class Import {
   std::list<std::pair<std::string, DataTable>> tables_;  ///< by name in the mapping; "" is the first
   std::vector<double> clock_;                            ///< time of the first table's rows, or their numbers
   double zero_s_ = 0;                                    ///< what the clocks read at time 0
-  std::vector<Series> series_;                           ///< per column of the mapping
+  std::vector<ImportSeries> series_;                     ///< per column of the mapping
   std::vector<double> time_s_;
   std::vector<double> clock_of_row_;  ///< where a row's values come from, in the clock of the first table; NaN: the rest before it
   std::vector<std::vector<double>> rows_;
