@@ -19,7 +19,7 @@ struct Complexity {
   constexpr std::array<double, 5> asArray() const { return {parameters, effects, same_place, excess, shared_sensor}; }
 };
 /// Nats for one of each; docs/developer/diagnosis.md says on which plants they were found.
-inline constexpr Complexity prices = {.parameters = 1.0, .effects = 3.1, .same_place = 1.0, .excess = 1.0, .shared_sensor = 4.0};
+inline constexpr Complexity prices = {.parameters = 1.0, .effects = 3.1, .same_place = 1.0, .excess = 2.0, .shared_sensor = 4.0};
 /// ln odds of something else per share of the misfit that an explanation leaves, and the share at which it is as likely as not.
 inline constexpr double per_share_left = 12, share_of_unknown = 0.3;
 

@@ -360,11 +360,6 @@ class Import {
 
 }  // namespace
 
-double ImportColumn::readingOf(double x) const {
-  if (from.empty()) return value;
-  return std::isnan(x) ? x : std::clamp(factor * x + offset, minimum, maximum);
-}
-
 std::string tableFile(const std::string& csv_file, const ImportColumn& column) {
   return besides(csv_file, column.table);
 }

@@ -1,14 +1,16 @@
+#include "musclesim/log/import_mapping.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "../base/toml_document.h"
 #include "musclesim/base/error.h"
-#include "musclesim/log/import.h"
 #include "reading_units.h"
 #include "sidecar.h"
 
@@ -368,6 +370,11 @@ void ImportMapping::refuse(const std::string& member, const std::string& what) c
   const auto found = places.find(member);
   const Place place = found == places.end() ? Place{} : found->second;
   throw BadFile(file, place.line, place.column, member + ": " + what);
+}
+
+double ImportColumn::readingOf(double x) const {
+  if (from.empty()) return value;
+  return std::isnan(x) ? x : std::clamp(factor * x + offset, minimum, maximum);
 }
 
 ImportMapping readImportMapping(const std::string& toml_file) {

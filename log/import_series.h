@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "data_table.h"
-#include "musclesim/log/import.h"
+#include "musclesim/log/import_mapping.h"
 
 namespace musclesim {
 

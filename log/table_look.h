@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "musclesim/log/import.h"
+#include "musclesim/log/import_mapping.h"
 
 namespace musclesim {
 

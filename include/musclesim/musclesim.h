@@ -38,6 +38,7 @@
 #include "musclesim/log/csv.h"
 #include "musclesim/log/figure.h"
 #include "musclesim/log/import.h"
+#include "musclesim/log/import_mapping.h"
 #include "musclesim/log/recorder.h"
 #include "musclesim/log/recording.h"
 #include "musclesim/log/recording_info.h"

@@ -18,6 +18,7 @@
 #include "musclesim/base/parameters.h"
 #include "musclesim/controller/replay.h"
 #include "musclesim/effect/effects_file.h"
+#include "musclesim/log/import.h"
 #include "musclesim/log/recording.h"
 #include "musclesim/robot/robot_file.h"
 #include "musclesim/simulation/simulation.h"

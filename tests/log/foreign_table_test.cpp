@@ -11,6 +11,7 @@
 #include "log/data_table.h"
 #include "log/table_look.h"
 #include "musclesim/base/error.h"
+#include "musclesim/log/import.h"
 #include "support/support.h"
 
 namespace musclesim {
