@@ -58,6 +58,7 @@ LinearModel::Normal LinearModel::normalOf(const std::vector<std::size_t>& column
 
 LinearModel::Solution LinearModel::solve(const std::vector<std::size_t>& columns) const {
   constexpr int reweightings = 4;
+  constexpr double longest_step = 8;  // over that of the weighted squares
   const auto count = static_cast<Eigen::Index>(columns.size());
   Eigen::VectorXd x = Eigen::VectorXd::Zero(count), least(count), most(count);
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -90,8 +91,22 @@ LinearModel::Solution LinearModel::solve(const std::vector<std::size_t>& columns
   for (int round = 0; round < reweightings && count > 0; ++round) {
     for (std::size_t b = 0; b < grams_.size(); ++b) weights[b] = comparison_.weightSquare(comparison_.blocks()[b], mean_squares[b]);
     const Normal normal = normalOf(columns, weights);
+    const Eigen::VectorXd before = x;
     descend(normal.matrix, normal.slope, least, most, x);
-    if (const double now = cost(); now < best.cost) best = {now, x};
+    double now = cost();
+    // Weighted squares are steeper than the misfit they stand for, so that a longer step is often better.
+    for (double length = 2; length <= longest_step; length *= 2) {
+      const Eigen::VectorXd nearer = x;
+      x = (before + 2 * (nearer - before)).cwiseMax(least).cwiseMin(most);
+      if (const double farther = cost(); farther < now) {
+        now = farther;
+      } else {
+        x = nearer;
+        cost();  // its mean squares are those of the next weights
+        break;
+      }
+    }
+    if (now < best.cost) best = {now, x};
   }
   return best;
 }
