@@ -221,22 +221,13 @@ class Run {
 
 }  // namespace
 
-namespace {
-
-const std::vector<std::pair<std::string, MethodPart>> method_parts = {
-    {"nuisances", MethodPart::nuisances}, {"stand_ins", MethodPart::stand_ins}, {"tempering", MethodPart::tempering}};
-
-}  // namespace
-
-std::string nameOf(MethodPart part) {
-  return std::ranges::find(method_parts, part, &std::pair<std::string, MethodPart>::second)->first;
-}
-
 MethodPart methodPartNamed(const std::string& name) {
-  const auto found = std::ranges::find(method_parts, name, &std::pair<std::string, MethodPart>::first);
-  if (found == method_parts.end())
-    throw BadParameter(fmt::format("{} is no part of the method that can be left out; these are: {}", name,
-                                   fmt::join(method_parts | std::views::keys, ", ")));
+  static const std::map<std::string, MethodPart> parts = {
+      {"nuisances", MethodPart::nuisances}, {"stand_ins", MethodPart::stand_ins}, {"tempering", MethodPart::tempering}};
+  const auto found = parts.find(name);
+  if (found == parts.end())
+    throw BadParameter(
+        fmt::format("{} is no part of the method that can be left out; these are: {}", name, fmt::join(parts | std::views::keys, ", ")));
   return found->second;
 }
 

@@ -31,7 +31,6 @@ struct DiagnosisProgress {
 /// - stand_ins: trying other effects in the place of each member of the best sets
 /// - tempering: misfit is then the sum of (residual / noise)^2 / 2 over all readings, as if the laws of all effects were exact
 enum class MethodPart { nuisances, stand_ins, tempering };
-std::string nameOf(MethodPart part);
 /// Throws BadParameter for an unknown name.
 MethodPart methodPartNamed(const std::string& name);
 
