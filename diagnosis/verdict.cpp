@@ -10,7 +10,7 @@ namespace musclesim {
 
 namespace {
 
-constexpr double named = 0.5;  ///< probability above which an explanation, or none_of_these, is the answer
+constexpr double named = 0.5;    ///< probability above which an explanation, or none_of_these, is the answer
 constexpr double clearly = 2.5;  ///< nats by which an explanation must be ahead of a model without effects
 
 std::vector<std::string> labelsOf(const Model& model) {
