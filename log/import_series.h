@@ -25,7 +25,8 @@ class ImportSeries {
   /// One value for all times.
   explicit ImportSeries(double constant);
   /// The cells of a table's column that hold a reading; of several rows with the same time the first. `times_s`: of the table's rows, NaN
-  /// where a row has none. What is shorter than `step_s`, a row of the recording, is no gap. Adds notes on cells without a reading.
+  /// where a row has none. A distance of readings up to `mapping.step_s`, a row of the recording, is no gap. Adds notes on cells
+  /// without a reading.
   ImportSeries(const ImportColumn& column, const DataTable& table, std::size_t table_column, const std::vector<double>& times_s,
                const ImportMapping& mapping, Clock clock, std::vector<std::string>& notes);
 
