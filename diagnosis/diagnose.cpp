@@ -225,10 +225,11 @@ MethodPart methodPartNamed(const std::string& name) {
   static const std::map<std::string, MethodPart> parts = {
       {"nuisances", MethodPart::nuisances}, {"stand_ins", MethodPart::stand_ins}, {"tempering", MethodPart::tempering}};
   const auto found = parts.find(name);
-  if (found == parts.end())
-    throw BadParameter(
-        fmt::format("{} is no part of the method that can be left out; these are: {}", name, fmt::join(parts | std::views::keys, ", ")));
-  return found->second;
+  if (found != parts.end()) return found->second;
+  std::vector<std::string> names;
+  names.reserve(parts.size());
+  for (const auto& [known, part] : parts) names.push_back(known);
+  throw BadParameter(fmt::format("{} is no part of the method that can be left out; these are: {}", name, fmt::join(names, ", ")));
 }
 
 std::string nameOf(Verdict verdict) {
