@@ -15,6 +15,15 @@ namespace {
 
 constexpr double roughly_enough = 0.02, roughly_valid = 0.2;  ///< nats: for fits that only rank explanations
 
+void take(Explanation& explanation, const FitResult& result, bool is_certainty_new) {
+  const Eigen::Index effect_count = explanation.z.size();
+  explanation.z = result.z.head(effect_count);
+  explanation.numbers = result.z.tail(result.z.size() - effect_count);
+  if (is_certainty_new) setCertainty(explanation, result.certainty);
+  explanation.residual = result.residual;
+  explanation.jacobian = result.jacobian;
+}
+
 }  // namespace
 
 bool overlap(const std::string& one, const std::string& other) {
@@ -118,7 +127,7 @@ FitProblem Causes::problemOf(const Explanation& explanation, const Comparison& c
 
 void Causes::refit(Explanation& explanation, const Comparison& comparison, int rounds, Fidelity fidelity, Accuracy accuracy,
                    std::vector<SharedVector> known, Known known_from, double largest_cost) const {
-  const Eigen::Index effect_count = explanation.z.size(), number_count = plant_.numberCount();
+  const Eigen::Index effect_count = explanation.z.size();
   FitProblem problem = problemOf(explanation, comparison, Fidelity::coarse);
   if (!known.empty()) {
     problem.known_derivatives = std::move(known);
@@ -134,13 +143,14 @@ void Causes::refit(Explanation& explanation, const Comparison& comparison, int r
   const FitResult result = fidelity == Fidelity::fine
                                ? fitCorrected(comparison, problem, problemOf(explanation, comparison, Fidelity::fine).predicted, rounds)
                                : fit(comparison, problem, rounds);
-  explanation.z = result.z.head(effect_count);
-  explanation.numbers = result.z.tail(number_count);
-  if (rounds > 0 || explanation.half_width.size() == 0) {
-    setCertainty(explanation, result.certainty);
-  }
-  explanation.residual = result.residual;
-  explanation.jacobian = result.jacobian;
+  take(explanation, result, rounds > 0 || explanation.half_width.size() == 0);
+}
+
+void Causes::finish(Explanation& explanation, const Comparison& comparison) const {
+  take(explanation,
+       musclesim::finish(comparison, problemOf(explanation, comparison, Fidelity::coarse),
+                         problemOf(explanation, comparison, Fidelity::fine).predicted, explanation.residual),
+       true);
 }
 
 }  // namespace musclesim

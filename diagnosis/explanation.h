@@ -61,6 +61,8 @@ class Causes {
   void refit(Explanation& explanation, const Comparison& comparison, int rounds, Fidelity fidelity, Accuracy accuracy,
              std::vector<SharedVector> known = {}, Known known_from = Known::elsewhere,
              double largest_cost = std::numeric_limits<double>::infinity()) const;
+  /// Ends a fit with the last two steps and the intervals (musclesim::finish).
+  void finish(Explanation& explanation, const Comparison& comparison) const;
 
  private:
   const Plant& plant_;

@@ -108,9 +108,10 @@ void Search::polish() {
     const Explanation before = explanation;
     goOn(explanation, Accuracy::estimates);
     if (explanation.residual.size() != fit_.size()) explanation = before;
-    const Certainty certainty = certaintyAt(fit_, causes_.problemOf(explanation, fit_, Fidelity::coarse), explanation.residual);
+    Explanation finished = explanation;
+    causes_.finish(finished, fit_);
     if (plant_.interrupted()) return;
-    setCertainty(explanation, certainty);
+    explanation = std::move(finished);
     takeFromCounterparts(explanation);
     explanation.score = evidence().score(explanation);
   });

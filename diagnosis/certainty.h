@@ -1,0 +1,35 @@
+/// How well the data and the priors determine the coordinates of a fit.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "fit_problem.h"
+
+namespace musclesim {
+
+struct Certainty {
+  Eigen::VectorXd half_width;  ///< half of the 95 % interval of every coordinate; infinite: not determined
+  /// Share of every coordinate in the directions that are determined, 0 .. 1. The sum is the number of these directions: two coordinates of
+  /// which only the ratio shows are one.
+  Eigen::VectorXd determined;
+};
+
+Certainty notDetermined(Eigen::Index count);
+
+/// Derivatives near a point and how well they are known.
+struct Derivatives {
+  Eigen::MatrixXd jacobian;  ///< d(prediction)/dz, one column per coordinate
+  Eigen::VectorXd error;     ///< of each column, relative to it
+};
+
+/// Secants at problem.start, each over a step of about the size of the coordinate's own interval: over longer ones the response bends where
+/// a signal follows steep commands, and shorter ones lie within dry friction. The error is the difference from a secant four times as wide.
+Derivatives derivativesAt(const Comparison& comparison, const FitProblem& problem, const Eigen::VectorXd& residual);
+
+/// The intervals of the linearised problem with the residual's own variance, widened by the number of samples over the effective number of
+/// samples (from the residual's autocorrelation). A direction in which the columns cancel to less than their errors is not known, and the
+/// half width of a coordinate that takes part in it is infinite.
+Certainty certaintyOf(const Comparison& comparison, const FitProblem& problem, const Eigen::VectorXd& residual,
+                      const Derivatives& derivatives);
+
+}  // namespace musclesim
