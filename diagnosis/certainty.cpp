@@ -44,6 +44,12 @@ double samplesPerIndependent(const Comparison& comparison, const Eigen::VectorXd
   return sum / block_count;
 }
 
+/// One over the standard deviation of every row, larger where rows are not independent: the norm of a secant times these is one over the
+/// standard error of the coordinate.
+Eigen::VectorXd perDeviation(const Comparison& comparison, const Eigen::VectorXd& residual) {
+  return perSample(comparison, residual) / std::sqrt(samplesPerIndependent(comparison, residual));
+}
+
 /// How the prediction changes with one coordinate.
 struct Slope {
   Eigen::VectorXd secant;  ///< empty: it could not be taken
@@ -87,7 +93,7 @@ Derivatives derivativesAt(const Comparison& comparison, const FitProblem& proble
   Derivatives found{Eigen::MatrixXd::Zero(comparison.size(), count), Eigen::VectorXd::Zero(count)};
   const FitPoint at = evaluate(comparison, problem, problem.start);
   if (!at.residual.size()) return found;
-  const Eigen::VectorXd weights = perSample(comparison, residual) / std::sqrt(samplesPerIndependent(comparison, residual));
+  const Eigen::VectorXd weights = perDeviation(comparison, residual);
   parallelFor(static_cast<int>(count), comparison.plant().jobCount(), [&](int k) {
     const Slope slope = slopeOf(comparison, problem, at, k, weights);
     if (slope.secant.size()) found.jacobian.col(k) = slope.secant;
@@ -96,13 +102,15 @@ Derivatives derivativesAt(const Comparison& comparison, const FitProblem& proble
   return found;
 }
 
-Certainty certaintyOf(const Comparison& comparison, const FitProblem& problem, const Eigen::VectorXd& residual,
-                      const Derivatives& derivatives) {
-  const auto& [jacobian, error] = derivatives;
+Certainty certaintyOf(const Comparison& comparison, const FitProblem& problem, const FitPoint& at, const Derivatives& derivatives) {
   constexpr double nothing = 1e-12, flat = 1e-8, takes_part = 0.1;
-  const Eigen::MatrixXd weighted = perSample(comparison, residual).asDiagonal() * jacobian;
-  const Eigen::MatrixXd information = weighted.transpose() * weighted / samplesPerIndependent(comparison, residual);
+  constexpr double unbounded = std::numeric_limits<double>::infinity();
+  const auto& [jacobian, error] = derivatives;
+  const Eigen::VectorXd weights = perDeviation(comparison, at.residual);
+  const Eigen::MatrixXd weighted = weights.asDiagonal() * jacobian;
+  const Eigen::MatrixXd information = weighted.transpose() * weighted;
   const Eigen::VectorXd precision = problem.precision.size() ? problem.precision : Eigen::VectorXd::Zero(jacobian.cols());
+  const Eigen::VectorXd slope = weighted.transpose() * weights.cwiseProduct(at.residual) - precision.cwiseProduct(at.z);
   const Eigen::ArrayXd size = (information.diagonal() + precision).array().max(0).sqrt();
   // Scaled to unit size, so that a direction without influence shows in any units.
   const Eigen::VectorXd per_size = (size > nothing).select(size.inverse(), 0.0);
@@ -114,18 +122,22 @@ Certainty certaintyOf(const Comparison& comparison, const FitProblem& problem, c
     if (certain > 0) known += certain * direction * direction.transpose();
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> directions(known);
-  constexpr double unbounded = std::numeric_limits<double>::infinity();
   Eigen::ArrayXd variance = Eigen::ArrayXd::Zero(size.size()), determined = Eigen::ArrayXd::Zero(size.size());
+  Eigen::VectorXd to_least_squares = Eigen::VectorXd::Zero(size.size());
   for (Eigen::Index k = 0; k < size.size(); ++k) {
-    const Eigen::ArrayXd share = directions.eigenvectors().col(k).array().square();
+    const Eigen::VectorXd direction = directions.eigenvectors().col(k);
+    const Eigen::ArrayXd share = direction.array().square();
     if (directions.eigenvalues()[k] > flat) {
       variance += share / directions.eigenvalues()[k];
       determined += share;
+      to_least_squares += direction * (direction.dot(per_size.cwiseProduct(slope)) / directions.eigenvalues()[k]);
     } else {
       variance = (share > takes_part * takes_part).select(unbounded, variance);
     }
   }
-  return {(size > nothing).select(normal_95 * variance.sqrt() * per_size.array(), unbounded), determined};
+  const Eigen::VectorXd least_squares = problem.clamped(at.z + per_size.cwiseProduct(to_least_squares));
+  const Eigen::ArrayXd half_width = normal_95 * variance.sqrt() * per_size.array() + (least_squares - at.z).array().abs();
+  return {(size > nothing).select(half_width, unbounded), determined};
 }
 
 }  // namespace musclesim

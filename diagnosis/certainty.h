@@ -26,10 +26,11 @@ struct Derivatives {
 /// a signal follows steep commands, and shorter ones lie within dry friction. The error is the difference from a secant four times as wide.
 Derivatives derivativesAt(const Comparison& comparison, const FitProblem& problem, const Eigen::VectorXd& residual);
 
-/// The intervals of the linearised problem with the residual's own variance, widened by the number of samples over the effective number of
-/// samples (from the residual's autocorrelation). A direction in which the columns cancel to less than their errors is not known, and the
-/// half width of a coordinate that takes part in it is infinite.
-Certainty certaintyOf(const Comparison& comparison, const FitProblem& problem, const Eigen::VectorXd& residual,
-                      const Derivatives& derivatives);
+/// The intervals of the linearised problem about a point, with the residual's own variance, widened
+/// - by the number of samples over the effective number of samples (from the residual's autocorrelation),
+/// - by the distance to the least squares of all readings. The misfit is tempered and counts other things, too; where only noise remains,
+/// its minimum lies a standard error or two from there, and further where the model is wrong. A direction in which the columns cancel to
+/// less than their errors is not known, and the half width of a coordinate that takes part in it is infinite.
+Certainty certaintyOf(const Comparison& comparison, const FitProblem& problem, const FitPoint& at, const Derivatives& derivatives);
 
 }  // namespace musclesim

@@ -98,8 +98,8 @@ FitResult fit(const Comparison& comparison, const FitProblem& problem, int round
     }
     fresh = settled;
   }
-  return {best.z, best.residual, best.cost,
-          certaintyOf(comparison, problem, best.residual, {jacobian, Eigen::VectorXd::Zero(best.z.size())}), jacobian};
+  return {best.z, best.residual, best.cost, certaintyOf(comparison, problem, best, {jacobian, Eigen::VectorXd::Zero(best.z.size())}),
+          jacobian};
 }
 
 FitResult finish(const Comparison& comparison, const FitProblem& cheap, const Predicted& exact, const Eigen::VectorXd& residual) {
@@ -118,7 +118,7 @@ FitResult finish(const Comparison& comparison, const FitProblem& cheap, const Pr
     if (!stepDown(comparison, exactly, jacobian, damping, best)) break;
     update(jacobian, before, best);
   }
-  return {best.z, best.residual, best.cost, certaintyOf(comparison, cheap, best.residual, near), jacobian};
+  return {best.z, best.residual, best.cost, certaintyOf(comparison, cheap, best, near), jacobian};
 }
 
 FitResult fitCorrected(const Comparison& comparison, const FitProblem& cheap, const Predicted& exact, int round_count) {

@@ -54,11 +54,28 @@ TEST_F(CertaintyOfAFit, StepsAsShortAsTheIntervalsTellApartWhatBends) {
                         tangent = derivatives(both, bent, at, 1e-6);
   const Derivatives found = derivativesAt(both, bent, left);
   for (Eigen::Index k = 0; k < 3; ++k) EXPECT_LT((found.jacobian.col(k) - tangent.col(k)).norm(), 0.05 * tangent.col(k).norm());
-  const Certainty certainty = certaintyOf(both, bent, left, found);
+  const Certainty certainty = certaintyOf(both, bent, at, found);
   EXPECT_NEAR(certainty.determined.sum(), 3, 1e-9);
   EXPECT_LT(certainty.half_width.maxCoeff(), 0.1);
   const Eigen::VectorXd difference = (wide - narrow).colwise().norm().cwiseQuotient(narrow.colwise().norm());
-  EXPECT_LT(certaintyOf(both, bent, left, {narrow, difference}).determined.sum(), 2.9) << "longer steps do not tell";
+  EXPECT_LT(certaintyOf(both, bent, at, {narrow, difference}).determined.sum(), 2.9) << "longer steps do not tell";
+}
+
+/// Away from the least squares of the readings, the half width grows by the distance.
+TEST_F(CertaintyOfAFit, IntervalsReachTheLeastSquares) {
+  constexpr double away = 0.01;
+  const Predicted wave = [](const Eigen::VectorXd& z) -> Eigen::VectorXd {
+    Eigen::VectorXd result(row_count);
+    for (Eigen::Index i = 0; i < row_count; ++i) result[i] = z[0] * std::sin(0.1 * static_cast<double>(i));
+    return result;
+  };
+  const Eigen::VectorXd truth = Eigen::VectorXd::Ones(1), beside = truth.array() + away;
+  const FitProblem linear = problem(wave, truth, truth);
+  const Derivatives derivatives{wave(truth), Eigen::VectorXd::Zero(1)};
+  const double there = certaintyOf(both, linear, evaluate(both, linear, truth), derivatives).half_width[0];
+  const double half_width = certaintyOf(both, linear, evaluate(both, linear, beside), derivatives).half_width[0];
+  EXPECT_GT(half_width, there + 0.9 * away);
+  EXPECT_LT(half_width, 3 * (there + away));
 }
 
 /// Changes of less than 0.01 do nothing: so short a step says nothing, and the interval must not become narrower by it.
@@ -74,7 +91,7 @@ TEST_F(CertaintyOfAFit, StepsWithinDryFrictionAreNotTaken) {
   const Eigen::VectorXd left = residual(dry, truth);
   const Derivatives found = derivativesAt(both, dry, left);
   EXPECT_GT(found.jacobian.norm(), 0.5 * derivatives(both, dry, evaluate(both, dry, truth), narrow_difference).norm());
-  EXPECT_TRUE(std::isfinite(certaintyOf(both, dry, left, found).half_width[0]));
+  EXPECT_TRUE(std::isfinite(certaintyOf(both, dry, evaluate(both, dry, truth), found).half_width[0]));
 }
 
 /// A fit ends where another step gains little of the tempered misfit, which may be many standard errors from the truth. Only the exact
