@@ -22,8 +22,9 @@ struct Derivatives {
   Eigen::VectorXd error;     ///< of each column, relative to it
 };
 
-/// Secants at problem.start, each over a step of about the size of the coordinate's own interval: over longer ones the response bends where
-/// a signal follows steep commands, and shorter ones lie within dry friction. The error is the difference from a secant four times as wide.
+/// Secants at problem.start over the narrow difference, or over shorter ones, as short as the interval of the coordinate, where each gets
+/// steadily closer to the tangent: so it does where a signal follows steep commands, and not where dry friction hides small changes. The
+/// error is the difference from a secant four times as wide.
 Derivatives derivativesAt(const Comparison& comparison, const FitProblem& problem, const Eigen::VectorXd& residual);
 
 /// The intervals of the linearised problem about a point, with the residual's own variance, widened
