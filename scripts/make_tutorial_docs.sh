@@ -45,12 +45,13 @@ You can follow it without a machine: the program simulates the machine, too.
 
 ## 1. The measurements
 
-The machine of this tutorial is a `spring_bench`, a muscle against a spring. Its user does not know two things: the valve lags, and the spring is stiffer than the drawing says.
+The machine of this tutorial is a `spring_bench`, a muscle against a spring. Its user does not know three things: commands reach the valve late, the valve lags, and the spring is stiffer than the drawing says.
 
 TEXT
 file machine.json json <<'TEXT'
 {"format": "musclesim-effects-1", "effects": [
-  {"id": "valve_lag", "component": "all", "parameters": {"fill_time_constant_s": 0.06, "vent_time_constant_s": 0.12}}]}
+  {"id": "transport_delay", "component": "all", "parameters": {"delay_s": 0.025}},
+  {"id": "valve_lag", "component": "all", "parameters": {"fill_time_constant_s": 0.04, "vent_time_constant_s": 0.07}}]}
 TEXT
 text <<'TEXT'
 
@@ -129,8 +130,8 @@ text <<'TEXT'
 Read it from the top:
 
 - *where*: the stage at which the gap arises. If the model is given the measured pressures instead of the commands, it reproduces the measured length; so the gap arises before the force. Only the shape of the gap can then tell whether it arises in command or in pressure.
-- *which*: the effects with their probabilities. "None of these" is a possible answer.
-- *how far*: the gap reduction on `bench3.csv`, which neither fitting nor choosing has seen. "Nominal refit" is the reduction that the model's own numbers achieve without any effect. "Sham" is the reduction that a meaningless disturbance achieves.
+- *which*: the effects with their probabilities, and their parameters with 95 % intervals. "None of these" is a possible answer. Here two effects act together, and their numbers are those of `machine.json`.
+- *how far*: the gap reduction on `bench3.csv`, which neither fitting nor choosing has seen. "Nominal refit" is the reduction that the model's own numbers achieve without any effect. "Negative control" is the reduction that a meaningless disturbance achieves.
 
 `answer/report.html` shows the same with curves; drag over one to zoom. [Diagnosing](diagnosing.md) explains each number and when not to believe it.
 

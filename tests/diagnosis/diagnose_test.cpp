@@ -333,36 +333,6 @@ TEST(Diagnose, RefusesToTuneWhatIsNoNumberOfTheModel) {
   EXPECT_TRUE(contains(messageOf<BadParameter>([&] { diagnose(plant({}), options); }), "begin at another value"));
 }
 
-TEST(Diagnose, FindsThreeEffectsOneBesideTheOther) {
-  DiagnosisOptions options = few({"payload", "transport_delay", "sensor_gain", "force_drift"});
-  options.max_effects = 3;
-  const Diagnosis found = diagnose(withExactModel(plant({{"payload", "hand", {{"mass_kg", 0.3}}},
-                                                         {"transport_delay", "all", {{"delay_s", 0.06}}},
-                                                         {"sensor_gain", "signal_length_0", {{"gain", 1.1}}}})),
-                                   options);
-  std::vector<std::string> told = found.chosen.empty() ? found.attempt.effects : found.chosen;
-  std::ranges::sort(told);
-  EXPECT_EQ(told, (std::vector<std::string>{"payload@hand", "sensor_gain@signal_length_0", "transport_delay@muscle_0"}))
-      << diagnosisSummary(found);
-}
-
-TEST(Diagnose, FindsASecondCauseOfItsOwn) {
-  const auto recordings =
-      withExactModel(plant({{"payload", "hand", {{"mass_kg", 0.12}}}, {"transport_delay", "muscle_0", {{"delay_s", 0.06}}}}));
-  Diagnosis found = diagnose(recordings, few({"payload", "transport_delay", "force_gain", "viscous_loss"}));
-  std::ranges::sort(found.chosen);
-  EXPECT_EQ(found.chosen, (std::vector<std::string>{"payload@hand", "transport_delay@muscle_0"})) << diagnosisSummary(found);
-  EXPECT_TRUE(found.alternatives.empty()) << "a pair is not its own alternative";
-  EXPECT_TRUE(found.next_experiment.commands.empty());
-  EXPECT_TRUE(contains(diagnosisReport(found), "--robot rig"));
-}
-
-TEST(Diagnose, TakesNoSecondCauseThatOnlyMendsTheLawOfTheFirst) {
-  const auto recordings = plant({{"foreign.growing_lag", "muscle_0", {{"fill_time_constant_s", 0.1}, {"vent_time_constant_s", 0.1}}}});
-  const Diagnosis found = diagnose(recordings, few({"valve_lag", "transport_delay", "sensor_delay", "viscous_loss"}));
-  EXPECT_EQ(found.chosen, std::vector<std::string>{"valve_lag@muscle_0"}) << diagnosisSummary(found);
-}
-
 TEST(Diagnose, OffersNothingThatGainsNoMoreThanWhatHasNoMeaning) {
   const Diagnosis found =
       diagnose(withExactModel(plant({{"valve_lag", "all", {{"fill_time_constant_s", 0.15}, {"vent_time_constant_s", 0.15}}}})),

@@ -1,0 +1,91 @@
+// Plants with several planted effects, and with one that a second might mend.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "musclesim/diagnosis/diagnosis.h"
+#include "planted.h"
+#include "support/out_of_catalogue_laws.h"
+#include "support/support.h"
+
+namespace musclesim {
+namespace {
+
+using planted::few;
+using planted::measuredUnder;
+using planted::plant;
+using planted::withExactModel;
+
+TEST(DiagnoseSeveral, FindsThreeEffectsOneBesideTheOther) {
+  DiagnosisOptions options = few({"payload", "transport_delay", "sensor_gain", "force_drift"});
+  options.max_effects = 3;
+  const Diagnosis found = diagnose(withExactModel(plant({{"payload", "hand", {{"mass_kg", 0.3}}},
+                                                         {"transport_delay", "all", {{"delay_s", 0.06}}},
+                                                         {"sensor_gain", "signal_length_0", {{"gain", 1.1}}}})),
+                                   options);
+  std::vector<std::string> told = found.chosen.empty() ? found.attempt.effects : found.chosen;
+  std::ranges::sort(told);
+  EXPECT_EQ(told, (std::vector<std::string>{"payload@hand", "sensor_gain@signal_length_0", "transport_delay@muscle_0"}))
+      << diagnosisSummary(found);
+}
+
+TEST(DiagnoseSeveral, FindsASecondCauseOfItsOwn) {
+  const auto recordings =
+      withExactModel(plant({{"payload", "hand", {{"mass_kg", 0.12}}}, {"transport_delay", "muscle_0", {{"delay_s", 0.06}}}}));
+  Diagnosis found = diagnose(recordings, few({"payload", "transport_delay", "force_gain", "viscous_loss"}));
+  std::ranges::sort(found.chosen);
+  EXPECT_EQ(found.chosen, (std::vector<std::string>{"payload@hand", "transport_delay@muscle_0"})) << diagnosisSummary(found);
+  EXPECT_TRUE(found.alternatives.empty()) << "a pair is not its own alternative";
+  EXPECT_TRUE(found.next_experiment.commands.empty());
+  EXPECT_TRUE(contains(diagnosisReport(found), "--robot rig"));
+}
+
+TEST(DiagnoseSeveral, TakesNoSecondCauseThatOnlyMendsTheLawOfTheFirst) {
+  const auto recordings = plant({{"foreign.growing_lag", "muscle_0", {{"fill_time_constant_s", 0.1}, {"vent_time_constant_s", 0.1}}}});
+  const Diagnosis found = diagnose(recordings, few({"valve_lag", "transport_delay", "sensor_delay", "viscous_loss"}));
+  EXPECT_EQ(found.chosen, std::vector<std::string>{"valve_lag@muscle_0"}) << diagnosisSummary(found);
+}
+
+/// Random steps of command, which hide a dead time behind the steep edges that a lag makes.
+TEST(DiagnoseSeveral, IntervalsOfDeadTimeAndLagHoldTheTruth) {
+  const std::map<std::string, double> truth = {{"delay_s", 0.025}, {"fill_time_constant_s", 0.04}, {"vent_time_constant_s", 0.07}};
+  const std::vector<ActiveEffect> effects = {
+      {"transport_delay", "muscle_0", {{"delay_s", truth.at("delay_s")}}},
+      {"valve_lag",
+       "muscle_0",
+       {{"fill_time_constant_s", truth.at("fill_time_constant_s")}, {"vent_time_constant_s", truth.at("vent_time_constant_s")}}}};
+  std::vector<Recording> recordings;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    Recording plan;
+    plan.file = fmt::format("steps_{}.csv", seed);
+    plan.info.robot = "rig";
+    plan.info.robot_parameters["muscle.model"] = std::string("line");
+    plan.signals = {{"command_0", {}}};
+    RandomStream random(seed, "steps");
+    double command = 0.45;
+    for (int row = 0; row < 400; ++row) {
+      if (row % 40 == 0) command = random.uniform(0.1, 0.9);
+      plan.time_s.push_back(0.01 * row);
+      plan.signals[0].values.push_back(command);
+    }
+    recordings.push_back(measuredUnder(effects, plan, seed, planted::Pressure::measured));
+  }
+  const Diagnosis found = diagnose(recordings, few({"valve_lag", "transport_delay", "sensor_delay"}));
+  ASSERT_EQ(std::set<std::string>(found.chosen.begin(), found.chosen.end()),
+            (std::set<std::string>{"transport_delay@muscle_0", "valve_lag@muscle_0"}))
+      << diagnosisSummary(found);
+  for (const FoundEffect& effect : found.effects)
+    for (const auto& [name, value] : truth)
+      if (const auto estimate = effect.parameters.find(name); effect.probability > 0.5 && estimate != effect.parameters.end()) {
+        EXPECT_TRUE(estimate->second.is_determined) << name;
+        EXPECT_LT(estimate->second.low, value) << name;
+        EXPECT_GT(estimate->second.high, value) << name;
+        EXPECT_LT(estimate->second.high - estimate->second.low, 0.1 * value) << name;
+      }
+}
+
+}  // namespace
+}  // namespace musclesim
