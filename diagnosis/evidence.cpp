@@ -51,6 +51,7 @@ Complexity Evidence::complexityOf(const Explanation& explanation) const {
     result.same_place += actsWhereOthersDo(explanation, i) ? 1 : 0;
     result.excess += hypothesis.excess(explanation.z.segment(first, count));
     result.shared_sensor += hypothesis.info().stage == Stage::sensor && hypothesis.component() == "all" ? 1 : 0;
+    result.places += std::log(hypothesis.placeCount());
     first += count;
   }
   return result;

@@ -16,10 +16,12 @@ struct Complexity {
   double same_place = 0;     ///< effects on the same muscle or signal as an earlier one, or both on the body: they may only mend its law
   double excess = 0;         ///< e-folds by which parameters leave their usual range
   double shared_sensor = 0;  ///< faults that all sensors share
-  constexpr std::array<double, 5> asArray() const { return {parameters, effects, same_place, excess, shared_sensor}; }
+  double places = 0;         ///< ln of the number of components that an effect could act on alone: they share its prior
+  constexpr std::array<double, 6> asArray() const { return {parameters, effects, same_place, excess, shared_sensor, places}; }
 };
 /// Nats for one of each; docs/developer/diagnosis.md says on which plants they were found.
-inline constexpr Complexity prices = {.parameters = 1.0, .effects = 3.1, .same_place = 1.0, .excess = 2.0, .shared_sensor = 4.0};
+inline constexpr Complexity prices = {
+    .parameters = 1.0, .effects = 3.1, .same_place = 1.0, .excess = 2.0, .shared_sensor = 4.0, .places = 1.0};
 /// ln odds of something else per share of the misfit that an explanation leaves, and the share at which it is as likely as not.
 inline constexpr double per_share_left = 12, share_of_unknown = 0.3;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "measured_values.h"
 #include "musclesim/effect/relevance.h"
@@ -394,6 +395,8 @@ std::vector<Hypothesis> hypotheses(const Plant& plant, const DiagnosisOptions& o
   std::vector<Hypothesis> result;
   for (const EffectInfo& info : effectCatalogue()) {
     if (!allows(options, info.id)) continue;
+    const std::size_t first = result.size();
+    std::set<std::string> places;
     for (const std::string& component : plant.componentsFor(info)) {
       // A wall stops one joint or the hand, not all.
       if (component == "all" && info.acts_on.size() > 1) continue;
@@ -401,8 +404,11 @@ std::vector<Hypothesis> hypotheses(const Plant& plant, const DiagnosisOptions& o
       if (!info.parameters.empty() && relevantParameters(info, component).empty()) continue;
       // Sensors fail one at a time, but a clock or a logger may fail for all at once.
       if (info.stage == Stage::sensor && (!plant.compares(component) || (component == "all" && !info.may_be_shared))) continue;
+      if (component != "all") places.insert(component);
       for (Hypothesis& variant : Hypothesis(info, component, plant).variants(plant)) result.push_back(std::move(variant));
     }
+    for (std::size_t i = first; i < result.size(); ++i)
+      if (result[i].component() != "all") result[i].place_count_ = static_cast<int>(places.size());
   }
   return result;
 }

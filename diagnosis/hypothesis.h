@@ -28,6 +28,8 @@ class Hypothesis {
   int coordinateCount() const { return static_cast<int>(coordinates_.size()); }
   /// Numbers that were counted in the recordings or tried one by one instead of fitted.
   int countedParameters() const { return coordinates_.empty() ? static_cast<int>(info_.parameters.size()) : 0; }
+  /// On how many components of the plant the effect could act alone: how often "one of them" was tried. 1 for "all".
+  int placeCount() const { return place_count_; }
   /// Coordinates that are mechanisms beside the effect's own (EffectParameter::adds_mechanism).
   int furtherMechanisms() const;
   /// Indices of the coordinates that are strengths: at 0 the effect vanishes.
@@ -88,6 +90,9 @@ class Hypothesis {
   std::vector<double> base_;  ///< values of the parameters that z does not change
   std::vector<Coordinate> coordinates_;
   std::vector<int> strengths_;
+  int place_count_ = 1;
+
+  friend std::vector<Hypothesis> hypotheses(const Plant& plant, const DiagnosisOptions& options);
 };
 
 /// Whether the options' candidates and exclude lists allow an effect as an answer.

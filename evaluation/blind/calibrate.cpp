@@ -93,7 +93,7 @@ bool TriedCase::isUsable() const {
 std::vector<std::string> weightNames() {
   std::vector<std::string> names;
   for (const Tolerance& tolerance : tolerances) names.push_back("misfit beyond " + std::to_string(tolerance.share_of_gap).substr(0, 4));
-  names.insert(names.end(), {"parameters", "effects", "same_place", "excess", "shared_sensor"});
+  names.insert(names.end(), {"parameters", "effects", "same_place", "excess", "shared_sensor", "places"});
   return names;
 }
 

@@ -159,6 +159,35 @@ TEST_F(EvidenceOnARig, PlacesOverlapThroughAllAndThroughPairsOfMuscles) {
   EXPECT_NEAR(priceOf({6}) - priceOf({8}), prices.shared_sensor, 1e-9) << "a fault that all sensors share";
 }
 
+/// A rig's muscle is the only one; an elbow has two, of which one may leak alone, or both.
+TEST_F(EvidenceOnARig, ComponentsShareThePriorOfAnEffect) {
+  std::vector<Recording> recordings = planted::plant({});
+  for (Recording& recording : recordings) {
+    recording.info = {};
+    recording.info.robot = "elbow";
+    recording.info.noise_std = {{"angle_elbow_deg", 0.05}};
+    const std::vector<double> command = recording.signals[0].values;
+    recording.signals = {{"command_0", command}, {"command_1", command}, {"angle_elbow_deg", recording.signals[1].values}};
+  }
+  DiagnosisOptions options;
+  options.candidates = {"leak", "payload"};
+  const Plant elbow(recordings, options);
+  Causes causes(elbow, on_simulation_);
+  causes.hypotheses = hypotheses(elbow, options);
+  const Evidence evidence(comparison_, nominal_, causes);
+  std::map<std::string, double> places;
+  for (std::size_t i = 0; i < causes.hypotheses.size(); ++i) {
+    Explanation explanation;
+    explanation.members = {i};
+    explanation.z = Eigen::VectorXd::Zero(causes.hypotheses[i].coordinateCount());
+    places[causes.hypotheses[i].label()] = evidence.complexityOf(explanation).places;
+  }
+  EXPECT_NEAR(places.at("leak@muscle_0"), std::log(2), 1e-12);
+  EXPECT_NEAR(places.at("leak@muscle_1"), std::log(2), 1e-12);
+  EXPECT_EQ(places.at("leak@all"), 0);
+  EXPECT_EQ(places.at("payload@hand"), 0);
+}
+
 /// A payload is usually up to 1 kg.
 TEST_F(EvidenceOnARig, WhatExceedsItsUsualRangeCosts) {
   const EffectParameter& mass = effectInfo("payload").parameters.front();

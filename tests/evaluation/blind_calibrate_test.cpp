@@ -49,7 +49,7 @@ TEST(BlindCalibrate, ReadsKeysAndAnswers) {
   writeText(folder.file("keys.json"), R"({"case01": {"kind": "double", "effects": [{"id": "valve_lag"}, {"id": "payload"}],
     "acceptable": [["valve_lag@all"], ["payload@*"]]}})");
   const auto trial = [](const std::string& effects) {
-    return R"({"effects": [)" + effects + R"(], "misfits": [1, 2, 3], "complexity": [4, 1, 0, 0.5, 0], "numbers_cost": 0.25})";
+    return R"({"effects": [)" + effects + R"(], "misfits": [1, 2, 3], "complexity": [4, 1, 0, 0.5, 0, 0], "numbers_cost": 0.25})";
   };
   writeText(folder.file("case01.json"),
             R"({"fitted": {"trials": [)" + trial(R"("valve_lag@all", "payload@hand")") + "," + trial(R"("valve_lag@all")") + "]}}");
