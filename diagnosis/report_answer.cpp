@@ -23,13 +23,17 @@ struct SignWords {
 };
 
 SignWords signWords(const Diagnosis& d, Belief belief) {
+  const bool are_several = d.chosen.size() > 1;
   switch (belief) {
     case Belief::explained:
-      return {"explained", "Explained", "You can believe place, kind and numbers of the cause below."};
+      return {"explained", "Explained",
+              fmt::format("You can believe place, kind and numbers of the {} below.", are_several ? "causes" : "cause")};
     case Belief::partly:
       return {"partly", "Explained in part",
-              isAmbiguous(d) ? "Other causes would explain these recordings as well: record more before you rely on this one."
-                             : "Believe the place and the kind of the cause; its numbers are rough, and something else is left."};
+              isAmbiguous(d) ? fmt::format("Other causes would explain these recordings as well: record more before you rely on {}.",
+                                           are_several ? "these" : "this one")
+                             : fmt::format("Believe the place and the kind of the {}; {} numbers are rough, and something else is left.",
+                                           are_several ? "causes" : "cause", are_several ? "their" : "its")};
     case Belief::cannot_tell:
       return {"cannot_tell", "Cannot tell", "Believe none of the causes yet."};
     case Belief::no_gap:

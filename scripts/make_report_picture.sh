@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Makes docs/user/figures/report.png and report_curves.png, the pictures of a diagnosis in README.md and docs/user/diagnosing.md. The machine
-# that is diagnosed is an elbow whose valves are slow, simulated with sensor noise. A minute.
+# that is diagnosed is an elbow whose commands come late and whose valves are slow, simulated with sensor noise. A minute.
 #
 #     scripts/make_report_picture.sh [build folder]   (default: build/release)
 #
@@ -19,6 +19,7 @@ cd "$work"
 
 cat >machine.json <<'TEXT'
 {"format": "musclesim-effects-1", "effects": [
+  {"id": "transport_delay", "component": "all", "parameters": {"delay_s": 0.03}},
   {"id": "valve_lag", "component": "all", "parameters": {"fill_time_constant_s": 0.05, "vent_time_constant_s": 0.12}}]}
 TEXT
 # commands SEED: large steps of both muscles together, and antagonistic steps small enough to keep the elbow off its stops.

@@ -34,6 +34,7 @@ TEST(Report, SaysInPlainWordsWhatToBelieve) {
   EXPECT_TRUE(contains(
       page, "<li>The pressure of muscle 1 comes late: a dead time of 25 ms and a lag of 40 ms (filling) and 70 ms (venting).</li>"));
   EXPECT_TRUE(contains(page, "<li>The hand carries more than in the model: by 0.2 kg.</li>"));
+  EXPECT_TRUE(contains(page, "You can believe place, kind and numbers of the causes below."));
   EXPECT_TRUE(contains(page, "Together they explain 97.0 % of the"));
   for (const char* question : {"Where", "How sure", "How much is left", "What to do next"})
     EXPECT_TRUE(contains(page, "<dt>" + std::string(question) + "</dt>")) << question;
@@ -102,6 +103,7 @@ TEST(Report, IsSureOfACauseThatAllGoodExplanationsShare) {
   d.ambiguity_sets = {{"valve_lag@muscle_1"}, {"leak@muscle_0", "valve_lag@muscle_1"}};
   std::string page = diagnosisReport(d);
   EXPECT_TRUE(contains(page, "<strong>Explained</strong>"));
+  EXPECT_TRUE(contains(page, "You can believe place, kind and numbers of the cause below."));
   EXPECT_TRUE(contains(page, "of 98 %; that nothing else acts, 20 %."));
   EXPECT_TRUE(contains(page, "2 explanations fit these recordings equally well. All hold lag of the valve (muscle 1)"));
   d.ambiguity_sets[1] = {"leak@muscle_0"};
