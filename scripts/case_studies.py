@@ -202,11 +202,21 @@ def loop_words():
     case = d['wrist_loop']
     effects, after, shrink, _ = outcome(case)
     if case['verdict'] == 'effects_found':
-        return f'Pressure against angle, without a clock, the measured pressure standing for the command: {parameters("wrist_loop")}; {shrink:.1f} % of the gap on the part that was not fitted.'
+        return (f'Pressure against angle, without a clock, the measured pressure standing for the command: {parameters("wrist_loop")}; '
+                f'{shrink:.1f} % of the gap on the part that was not fitted.{too_viscous()}')
     nearest = f'What comes nearest ({parameters("wrist_loop")}) removes {shrink:.1f} % of the gap there. ' if effects else 'What fits the first three fifths best makes the rest worse, so it is not offered. '
     return ('Pressure against angle, without a clock, the measured pressure standing for the command and the other muscle\'s pressure not known: the tool cannot explain it. ' +
             nearest + f'The nominal refit removes {case["gap"]["nominal_refit_shrink_percent"]:.1f} %. The part that is fitted, the way up, does not determine the shape of the static curve on the way down; '
             'the loop of 53 to 92 kPa that its authors see is in the data, but not found.')
+
+
+def too_viscous():
+    """What the loop's viscous friction means beside that of the sweep."""
+    loop, sweep = (effects_of(name).get('joint_viscous_friction', {}).get('damping_Nms_per_rad') for name in ('wrist_loop', 'wrist_sweep'))
+    if not loop or not sweep or loop < 3 * sweep:
+        return ''
+    return (f' Do not believe the kind of that friction: with {loop / sweep:.0f} times the damping of the sweep, the wrist could not swing as it does there. '
+            'At one slow speed viscous and dry friction draw the same loop; its authors see 53 to 92 kPa of hysteresis.')
 
 
 def creep_words(v):
