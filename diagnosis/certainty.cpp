@@ -69,7 +69,8 @@ Slope slopeOf(const Comparison& comparison, const FitProblem& problem, const Fit
   const auto norm = [&](const Eigen::VectorXd& slope) { return weights.cwiseProduct(slope).norm(); };
   Eigen::VectorXd far = secant(comparison, problem, at, coordinate, wide_difference);
   Eigen::VectorXd near = secant(comparison, problem, at, coordinate, narrow_difference);
-  if (!far.size() || !near.size() || norm(near) <= 0) return {near, 0};
+  if (!near.size() || norm(near) <= 0) return {near, 0};
+  if (!far.size()) return {near, largest_error};  // the model diverges there
   Slope best{near, norm(far - near) / norm(near)};
   const double size = std::max(1.0, std::abs(at.z[coordinate]));
   double difference = narrow_difference;

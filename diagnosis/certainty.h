@@ -22,16 +22,17 @@ struct Derivatives {
   Eigen::VectorXd error;     ///< of each column, relative to it
 };
 
-/// Secants at problem.start over the narrow difference, or over shorter ones, as short as the interval of the coordinate, where each gets
-/// steadily closer to the tangent: so it does where a signal follows steep commands, and not where dry friction hides small changes. The
-/// error is the difference from a secant four times as wide.
+/// Secants at problem.start over the narrow difference, or over shorter ones. A step is shortened, down to the width of the coordinate's
+/// own interval, as long as the secant comes steadily closer to the tangent. Under steep commands, where a signal bends within a short
+/// step, it does; where dry friction hides small changes, it does not. The error is the difference from a secant four times as wide.
 Derivatives derivativesAt(const Comparison& comparison, const FitProblem& problem, const Eigen::VectorXd& residual);
 
-/// The intervals of the linearised problem about a point, with the residual's own variance, widened
-/// - by the number of samples over the effective number of samples (from the residual's autocorrelation),
-/// - by the distance to the least squares of all readings. The misfit is tempered and counts other things, too; where only noise remains,
-/// its minimum lies a standard error or two from there, and further where the model is wrong. A direction in which the columns cancel to
-/// less than their errors is not known, and the half width of a coordinate that takes part in it is infinite.
+/// The intervals of the linearised problem about a point, with the residual's own variance. They are widened by the number of samples over
+/// the effective number of samples (from the residual's autocorrelation), and by the distance to the least squares of all readings: the
+/// minimum of the tempered misfit lies a standard error or two from there where only noise remains, and further where the model is wrong.
+///
+/// A direction in which the columns cancel to less than their errors is not known, and the half width of a coordinate that takes part in it
+/// is infinite.
 Certainty certaintyOf(const Comparison& comparison, const FitProblem& problem, const FitPoint& at, const Derivatives& derivatives);
 
 }  // namespace musclesim
