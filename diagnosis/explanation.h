@@ -61,7 +61,7 @@ class Causes {
   void refit(Explanation& explanation, const Comparison& comparison, int rounds, Fidelity fidelity, Accuracy accuracy,
              std::vector<SharedVector> known = {}, Known known_from = Known::elsewhere,
              double largest_cost = std::numeric_limits<double>::infinity()) const;
-  /// Ends a fit with the last two steps and the intervals (musclesim::finish).
+  /// Takes the last steps of a fit and the intervals there (musclesim::finish).
   void finish(Explanation& explanation, const Comparison& comparison) const;
 
  private:
