@@ -20,6 +20,8 @@ constexpr std::size_t beam_width = 5;                      ///< sets of each siz
 constexpr std::size_t addition_count = 3, drop_count = 4;  ///< sets that are fitted about one explanation, besides one of each stage
 constexpr std::size_t wide_count = 4;  ///< sets of one size of which widened forms are fitted, and so many forms of each
 constexpr std::size_t base_counts[] = {3, 2, 2, 1, 1, 1};  ///< explanations of each size that are extended
+constexpr std::size_t neighbour_count = 30;                ///< effects that are simulated beside an explanation that is extended,
+constexpr std::size_t stand_in_neighbour_count = 20;       ///< and beside the rest of a set, one member of which is replaced
 constexpr std::size_t stood_in_count = 4;                  ///< best sets of whose members each is replaced
 constexpr std::size_t stand_in_count = 4, pair_count = 2;  ///< by so many single effects, and by so many pairs,
 constexpr int stand_in_variants = 2;                       ///< in so many variants
@@ -145,7 +147,7 @@ std::vector<Search::Proposal> Search::pairs(const Surroundings& around) const {
   if (static_cast<int>(count) + 2 > options_.max_effects) return {};
   std::vector<std::size_t> order;
   std::set<std::string> labels;
-  for (const std::size_t index : nearestBeside(around, allBut(count, count)))
+  for (const std::size_t index : inOrderOf(costsOfAdding(around)))
     if (labels.insert(causes_.hypotheses[index].label()).second) order.push_back(index);
   std::vector<std::vector<std::size_t>> pairs;
   for (std::size_t i = 0; i < std::min(pair_base_count, order.size()); ++i)
@@ -263,7 +265,7 @@ std::optional<Search::Proposal> Search::withoutFurtherMechanisms(const Proposal&
 void Search::expand(const Explanation& base) {
   if (!expanded_.insert(causes_.labelsOf(base.members)).second || plant_.interrupted()) return;
   const Explanation copy = base;  // the pool grows below
-  const Surroundings around = surroundingsOf(copy);
+  const Surroundings around = surroundingsOf(copy, {neighbour_count, 1});
   std::vector<Proposal> proposals = nearestOfStages(additions(around), addition_count, 1, 1);
   for (std::size_t i = 0, count = proposals.size(); i < count; ++i)
     if (std::optional<Proposal> simple = withoutFurtherMechanisms(proposals[i])) proposals.push_back(std::move(*simple));
@@ -271,16 +273,19 @@ void Search::expand(const Explanation& base) {
   fitOnScreening(std::move(proposals));
 }
 
-/// The effects that explain best, alone or as a pair, what a set cannot: the whole catalogue is simulated beside it. Every set is tried
-/// once.
-std::vector<Search::Proposal> Search::standIns(Explanation kept) {
-  const bool can_grow = !kept.members.empty() && static_cast<int>(kept.members.size()) < options_.max_effects;
-  if (!can_grow || plant_.interrupted() || !stood_in_.insert(causes_.labelsOf(kept.members)).second) return {};
+/// The effects that explain best, alone or as a pair, what a set without one of its members cannot. `beside_all` are the changes that the
+/// catalogue makes beside all members. Every set is tried once.
+std::vector<Search::Proposal> Search::standIns(Explanation kept, const std::vector<Sensitivity>& beside_all) {
+  if (kept.members.empty() || plant_.interrupted() || !stood_in_.insert(causes_.labelsOf(kept.members)).second) return {};
   const Eigen::VectorXd predicted = screening_.predicted(causes_.modelOf(kept));
   on_simulation_();
   if (predicted.size() != screening_.size()) return {};
   kept.residual = screening_.measured() - predicted;
-  const Surroundings around = surroundingsOf(kept, changesBeside(kept, screenedBeside(kept)));
+  return bestAdded(surroundingsOf(kept, {stand_in_neighbour_count, stand_in_variants, &beside_all}));
+}
+
+/// The best additions of one effect and of two.
+std::vector<Search::Proposal> Search::bestAdded(const Surroundings& around) const {
   std::vector<Proposal> result = nearest(additions(around), stand_in_count, stand_in_variants);
   std::ranges::move(nearest(pairs(around), pair_count), std::back_inserter(result));
   return result;
@@ -288,7 +293,8 @@ std::vector<Search::Proposal> Search::standIns(Explanation kept) {
 
 /// Tries stand-ins of every member of the best sets, what is missing beside all members, and the sets' widened forms. A swap that is
 /// estimated where the member acts takes the change that the stand-in makes there as proportional, up to all that the member explains;
-/// friction beside friction, for one, is far from that. So the member is taken away first.
+/// friction beside friction, for one, is far from that. So the member is taken away first, and what promises most there, by its changes
+/// beside nothing or beside all members, is simulated there.
 void Search::tryStandIns() {
   std::set<std::set<std::string>> done;
   for (int count = 0; count < most_stood_in && !plant_.interrupted(); ++count) {
@@ -297,9 +303,12 @@ void Search::tryStandIns() {
     if (next == order.end() || pool_[*next].score < pool_[order.front()].score - hopeless) return;
     const Explanation base = pool_[*next];  // the pool grows below
     done.insert(causes_.labelsOf(base.members));
-    std::vector<Proposal> proposals = standIns(base);
+    const Surroundings around = surroundingsOf(base, changesBeside(base, screenedBeside(base)));
+    std::vector<Proposal> proposals;
+    if (static_cast<int>(base.members.size()) < options_.max_effects && stood_in_.insert(causes_.labelsOf(base.members)).second)
+      proposals = bestAdded(around);
     for (std::size_t m = 0; m < base.members.size(); ++m)
-      std::ranges::move(standIns(causes_.without(base, m)), std::back_inserter(proposals));
+      std::ranges::move(standIns(causes_.without(base, m), around.sensitivities), std::back_inserter(proposals));
     std::ranges::move(nearest(widened(base), wide_count, 2), std::back_inserter(proposals));
     fitOnScreening(std::move(proposals));
   }

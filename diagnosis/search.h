@@ -71,6 +71,12 @@ class Search {
     std::vector<SharedVector> known = {};  ///< FitProblem::known_derivatives
     Explanation origin = {};               ///< where the linear estimate was made: of the same members, those added without strength
   };
+  /// Which hypotheses are simulated beside an explanation.
+  struct Neighbours {
+    std::size_t count;                                      ///< labels at most, besides some of each stage
+    int variants;                                           ///< of each label
+    const std::vector<Sensitivity>* beside_near = nullptr;  ///< known changes beside an explanation that is near, where there are any
+  };
   /// A linear model about one explanation, and the meaning of its columns.
   struct Surroundings {
     Explanation base;
@@ -92,14 +98,18 @@ class Search {
   void checkExcitation(const std::vector<Hypothesis>& typical);
 
   // surroundings.cpp
-  Surroundings surroundingsOf(const Explanation& base, std::optional<std::vector<Sensitivity>> sensitivities = {}) const;
+  Surroundings completed(Surroundings around, std::vector<LinearModel::Column> columns, std::vector<Sensitivity> sensitivities) const;
+  Surroundings surroundingsOf(const Explanation& base, const Neighbours& neighbours) const;
+  Surroundings surroundingsOf(const Explanation& base, std::vector<Sensitivity> sensitivities) const;
   std::vector<std::size_t> screenedBeside(const Explanation& base) const;
   std::vector<Surroundings> surroundingsOfNothing() const;
   const Surroundings& aboutNothingNear(const Explanation& base) const;
   void addOwnColumns(Surroundings& around, std::vector<LinearModel::Column>& columns) const;
   void addOtherColumns(Surroundings& around, std::vector<LinearModel::Column>& columns) const;
-  std::vector<std::size_t> nearestBeside(const Surroundings& around, const std::vector<std::size_t>& kept) const;
-  std::vector<std::size_t> worthSimulatingBeside(Surroundings around, std::vector<LinearModel::Column> columns) const;
+  std::vector<double> costsOfAdding(const Surroundings& around) const;
+  static std::vector<std::size_t> inOrderOf(const std::vector<double>& costs);
+  std::vector<std::size_t> worthSimulatingBeside(const Surroundings& around, const std::vector<LinearModel::Column>& columns,
+                                                 const Neighbours& neighbours) const;
   std::vector<Sensitivity> changesBeside(const Explanation& base, const std::vector<std::size_t>& indices) const;
   Proposal proposed(const Surroundings& around, const std::vector<std::size_t>& kept, const std::vector<std::size_t>& added) const;
 
@@ -122,7 +132,8 @@ class Search {
   std::vector<std::size_t> bestOnScreening(std::size_t member_count, std::size_t count) const;
   std::vector<std::size_t> unlikeOnScreening(std::size_t member_count, std::size_t count) const;
   void extendBySize();
-  std::vector<Proposal> standIns(Explanation kept);
+  std::vector<Proposal> standIns(Explanation kept, const std::vector<Sensitivity>& beside_all);
+  std::vector<Proposal> bestAdded(const Surroundings& around) const;
   void tryStandIns();
   bool changesFocus(std::size_t hypothesis) const;
   std::vector<Explanation> explainPressures();

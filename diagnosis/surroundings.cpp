@@ -1,6 +1,8 @@
 // The linear model about one explanation: its columns, and what it proposes.
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <limits>
 #include <map>
 
 #include "../base/parallel.h"
@@ -10,8 +12,7 @@ namespace musclesim {
 
 namespace {
 
-constexpr std::size_t beside_count = 30;           ///< effects that are simulated beside an explanation
-constexpr std::size_t beside_per_stage_count = 2;  ///< and at least so many of every stage
+constexpr std::size_t beside_per_stage_count = 2;  ///< effects of every stage that are simulated beside an explanation at least
 constexpr double strength_precision = 1.0 / 9;     ///< of a normal prior: three typical strengths are usual
 constexpr double largest_change = 3;               ///< of a coordinate or a number, up to which the prediction is taken as linear
 
@@ -69,15 +70,30 @@ void Search::addOtherColumns(Surroundings& around, std::vector<LinearModel::Colu
   }
 }
 
-/// Simulates every change of the base itself, and of the hypotheses beside it those worth it, unless their sensitivities are given.
-Search::Surroundings Search::surroundingsOf(const Explanation& base, std::optional<std::vector<Sensitivity>> sensitivities) const {
+/// Adds to a base with its own columns those of the hypotheses, and makes the linear model.
+Search::Surroundings Search::completed(Surroundings around, std::vector<LinearModel::Column> columns,
+                                       std::vector<Sensitivity> sensitivities) const {
+  around.sensitivities = std::move(sensitivities);
+  addOtherColumns(around, columns);
+  around.model.emplace(screening_, around.base.residual, std::move(columns));
+  return around;
+}
+
+/// Simulates every change of the base itself, and of the hypotheses beside it those worth it.
+Search::Surroundings Search::surroundingsOf(const Explanation& base, const Neighbours& neighbours) const {
   Surroundings around{base, {}, {}, {}, {}, {}, {}, {}};
   std::vector<LinearModel::Column> columns;
   addOwnColumns(around, columns);
-  around.sensitivities = sensitivities ? std::move(*sensitivities) : changesBeside(base, worthSimulatingBeside(around, columns));
-  addOtherColumns(around, columns);
-  around.model.emplace(screening_, base.residual, std::move(columns));
-  return around;
+  std::vector<Sensitivity> beside = changesBeside(base, worthSimulatingBeside(around, columns, neighbours));
+  return completed(std::move(around), std::move(columns), std::move(beside));
+}
+
+/// Simulates every change of the base itself; those of the hypotheses are known.
+Search::Surroundings Search::surroundingsOf(const Explanation& base, std::vector<Sensitivity> sensitivities) const {
+  Surroundings around{base, {}, {}, {}, {}, {}, {}, {}};
+  std::vector<LinearModel::Column> columns;
+  addOwnColumns(around, columns);
+  return completed(std::move(around), std::move(columns), std::move(sensitivities));
 }
 
 /// Makes about_nothing_. A fit of numbers without effects explains by them what effects make: for a forearm whose joint has a spring it
@@ -111,38 +127,49 @@ const Search::Surroundings& Search::aboutNothingNear(const Explanation& base) co
                                    [&](const Surroundings& around) { return (around.base.numbers - base.numbers).squaredNorm(); });
 }
 
-/// The hypotheses that can be added, in the order of what each costs beside some members of the base, least first.
-std::vector<std::size_t> Search::nearestBeside(const Surroundings& around, const std::vector<std::size_t>& kept) const {
-  std::vector<std::pair<double, std::size_t>> costs;
-  for (std::size_t i = 0; i < causes_.hypotheses.size(); ++i)
-    if (!around.of_hypothesis[i].empty()) costs.emplace_back(0, i);
-  parallelFor(static_cast<int>(costs.size()), options_.job_count, [&](int k) {
-    auto& [cost, index] = costs[static_cast<std::size_t>(k)];
-    cost = proposed(around, kept, {index}).cost;
+/// What every hypothesis costs if it is added to the members of the base; infinity if it cannot be added.
+std::vector<double> Search::costsOfAdding(const Surroundings& around) const {
+  std::vector<double> costs(causes_.hypotheses.size(), std::numeric_limits<double>::infinity());
+  const std::vector<std::size_t> all = allBut(around.base.members.size(), around.base.members.size());
+  parallelFor(static_cast<int>(costs.size()), options_.job_count, [&](int i) {
+    const auto index = static_cast<std::size_t>(i);
+    if (!around.of_hypothesis[index].empty()) costs[index] = proposed(around, all, {index}).cost;
   });
-  std::ranges::stable_sort(costs, {}, &std::pair<double, std::size_t>::first);
+  return costs;
+}
+
+/// The hypotheses that can be added, those that cost least first.
+std::vector<std::size_t> Search::inOrderOf(const std::vector<double>& costs) {
   std::vector<std::size_t> order;
-  for (const auto& [cost, index] : costs) order.push_back(index);
+  for (std::size_t i = 0; i < costs.size(); ++i)
+    if (std::isfinite(costs[i])) order.push_back(i);
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return costs[i]; });
   return order;
 }
 
-/// Chooses the hypotheses that are simulated beside the base: the ones that lower the cost most if they are added (the nearest variant of
-/// each label), and some of each stage. `around` and `columns` hold the base's own columns; what each hypothesis changes is taken from
-/// simulations without effects.
-std::vector<std::size_t> Search::worthSimulatingBeside(Surroundings around, std::vector<LinearModel::Column> columns) const {
-  around.sensitivities = aboutNothingNear(around.base).sensitivities;
-  addOtherColumns(around, columns);
-  around.model.emplace(screening_, around.base.residual, std::move(columns));
-  const std::size_t member_count = around.base.members.size();
-  std::set<std::string> labels;
+/// Chooses the hypotheses that are simulated beside the base: the ones that cost least if they are added, and some of each stage. `around`
+/// and `columns` hold the base's own columns; what each hypothesis changes is taken from simulations without effects, and from the known
+/// ones beside an explanation that is near, whichever promises more.
+std::vector<std::size_t> Search::worthSimulatingBeside(const Surroundings& around, const std::vector<LinearModel::Column>& columns,
+                                                       const Neighbours& neighbours) const {
+  const auto costsWith = [&](const std::vector<Sensitivity>& sensitivities) {
+    return costsOfAdding(completed(around, columns, sensitivities));
+  };
+  std::vector<double> costs = costsWith(aboutNothingNear(around.base).sensitivities);
+  if (neighbours.beside_near)
+    std::ranges::transform(costs, costsWith(*neighbours.beside_near), costs.begin(),
+                           [](double one, double other) { return std::min(one, other); });
+  std::map<std::string, int> times;
   std::map<Stage, std::size_t> per_stage;
   std::vector<std::size_t> result;
-  for (const std::size_t index : nearestBeside(around, allBut(member_count, member_count))) {
+  for (const std::size_t index : inOrderOf(costs)) {
     const Hypothesis& hypothesis = causes_.hypotheses[index];
     std::size_t& of_stage = per_stage[hypothesis.info().stage];
-    if (labels.contains(hypothesis.label()) || (result.size() >= beside_count && of_stage >= beside_per_stage_count)) continue;
-    labels.insert(hypothesis.label());
-    ++of_stage;
+    int& time = times[hypothesis.label()];
+    if (time == 0 && times.size() > neighbours.count && of_stage >= beside_per_stage_count) time = neighbours.variants;  // none of them
+    if (time >= neighbours.variants) continue;
+    of_stage += time == 0 ? 1 : 0;
+    ++time;
     result.push_back(index);
   }
   return result;
