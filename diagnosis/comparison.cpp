@@ -194,7 +194,11 @@ void Comparison::goCoarse(const Eigen::VectorXd& nominal, Purpose purpose) {
       return std::sqrt(meanSquare(block, correction)) <= bearable;
     });
     if (!follows) {
-      if (fidelity == Fidelity::medium) unsteady_ = unsteadiness(correction, residual);
+      if (fidelity == Fidelity::medium) {
+        unsteady_ = unsteadiness(correction, residual);
+        // Of a method of first order, twice the step makes twice the error: the change is the error of the steps in use.
+        for (Block& block : blocks_) block.sigma = std::hypot(block.sigma, std::sqrt(meanSquare(block, correction)));
+      }
       continue;
     }
     correction_ = correction;

@@ -165,6 +165,18 @@ TEST_F(Rig, SaysWhatStepsChangeWhereCoarserOnesFollowAnotherMotion) {
   EXPECT_NEAR(both.unsteady().share_of_gap, 1, 0.05);
 }
 
+TEST_F(Rig, WhatTheStepChangesCountsAsNoiseWhereTheModelIsUnsteady) {
+  const Eigen::VectorXd nominal = both.predicted(Model{});
+  const double sigma = both.blocks().front().sigma;
+  both.goCoarse(nominal);
+  EXPECT_EQ(both.blocks().front().sigma, sigma);
+  both.goCoarse(nominal + Eigen::VectorXd::Constant(300, 100 * planted::noise_mm));
+  const double change = std::sqrt(both.meanSquare(both.blocks().front(), nominal + Eigen::VectorXd::Constant(300, 100 * planted::noise_mm) -
+                                                                             both.predicted(Model{}, Fidelity::medium)));
+  EXPECT_NEAR(change, 100 * planted::noise_mm, planted::noise_mm);
+  EXPECT_NEAR(both.blocks().front().sigma, std::hypot(sigma, change), 1e-12);
+}
+
 TEST_F(Rig, NumbersThatNeedFarMoreStepsAreRefused) {
   Recording machine = planted::recorded({}, 0.1, 1);
   machine.info.extra_json = "{}";  // a measured recording's model takes as many as it needs
