@@ -273,8 +273,8 @@ void Search::expand(const Explanation& base) {
   fitOnScreening(std::move(proposals));
 }
 
-/// The effects that explain best, alone or as a pair, what a set without one of its members cannot. `beside_all` are the changes that the
-/// catalogue makes beside all members. Every set is tried once.
+/// The effects that, alone or as a pair, explain best what the set leaves unexplained since one member was taken away. `beside_all` are the
+/// changes that the catalogue makes beside all members. Every set is tried once.
 std::vector<Search::Proposal> Search::standIns(Explanation kept, const std::vector<Sensitivity>& beside_all) {
   if (kept.members.empty() || plant_.interrupted() || !stood_in_.insert(causes_.labelsOf(kept.members)).second) return {};
   const Eigen::VectorXd predicted = screening_.predicted(causes_.modelOf(kept));

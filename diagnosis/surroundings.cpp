@@ -138,7 +138,7 @@ std::vector<double> Search::costsOfAdding(const Surroundings& around) const {
   return costs;
 }
 
-/// The hypotheses that can be added, those that cost least first.
+/// Sorts the hypotheses by what each costs if it is added, least first, and leaves out those that cannot be added.
 std::vector<std::size_t> Search::inOrderOf(const std::vector<double>& costs) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < costs.size(); ++i)
@@ -159,17 +159,18 @@ std::vector<std::size_t> Search::worthSimulatingBeside(const Surroundings& aroun
   if (neighbours.beside_near)
     std::ranges::transform(costs, costsWith(*neighbours.beside_near), costs.begin(),
                            [](double one, double other) { return std::min(one, other); });
-  std::map<std::string, int> times;
+  std::map<std::string, int> variants_of_label;
   std::map<Stage, std::size_t> per_stage;
   std::vector<std::size_t> result;
   for (const std::size_t index : inOrderOf(costs)) {
     const Hypothesis& hypothesis = causes_.hypotheses[index];
     std::size_t& of_stage = per_stage[hypothesis.info().stage];
-    int& time = times[hypothesis.label()];
-    if (time == 0 && times.size() > neighbours.count && of_stage >= beside_per_stage_count) time = neighbours.variants;  // none of them
-    if (time >= neighbours.variants) continue;
-    of_stage += time == 0 ? 1 : 0;
-    ++time;
+    int& chosen = variants_of_label[hypothesis.label()];
+    const bool is_left_out = variants_of_label.size() > neighbours.count && of_stage >= beside_per_stage_count;
+    if (chosen == 0 && is_left_out) chosen = neighbours.variants;  // its other variants are left out, too
+    if (chosen >= neighbours.variants) continue;
+    of_stage += chosen == 0 ? 1 : 0;
+    ++chosen;
     result.push_back(index);
   }
   return result;

@@ -170,9 +170,9 @@ TEST_F(Rig, WhatTheStepChangesCountsAsNoiseWhereTheModelIsUnsteady) {
   const double sigma = both.blocks().front().sigma;
   both.goCoarse(nominal);
   EXPECT_EQ(both.blocks().front().sigma, sigma);
-  both.goCoarse(nominal + Eigen::VectorXd::Constant(300, 100 * planted::noise_mm));
-  const double change = std::sqrt(both.meanSquare(both.blocks().front(), nominal + Eigen::VectorXd::Constant(300, 100 * planted::noise_mm) -
-                                                                             both.predicted(Model{}, Fidelity::medium)));
+  const Eigen::VectorXd other_motion = nominal + Eigen::VectorXd::Constant(300, 100 * planted::noise_mm);
+  both.goCoarse(other_motion);
+  const double change = std::sqrt(both.meanSquare(both.blocks().front(), other_motion - both.predicted(Model{}, Fidelity::medium)));
   EXPECT_NEAR(change, 100 * planted::noise_mm, planted::noise_mm);
   EXPECT_NEAR(both.blocks().front().sigma, std::hypot(sigma, change), 1e-12);
 }
