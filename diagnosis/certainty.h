@@ -19,20 +19,27 @@ Certainty notDetermined(Eigen::Index count);
 /// Derivatives near a point and how well they are known.
 struct Derivatives {
   Eigen::MatrixXd jacobian;  ///< d(prediction)/dz, one column per coordinate
-  Eigen::VectorXd error;     ///< of each column, relative to it
+  Eigen::MatrixXd error;     ///< [signal][coordinate]: of the signal's part of a column, relative to it
 };
 
-/// Secants at problem.start over the narrow difference, or over shorter ones. A step is shortened, down to the width of the coordinate's
-/// own interval, as long as the secant comes steadily closer to the tangent. Under steep commands, where a signal bends within a short
-/// step, it does; where dry friction hides small changes, it does not. The error is the difference from a secant four times as wide.
+/// Derivatives that are taken to have no errors.
+Derivatives withoutErrors(const Comparison& comparison, const Eigen::MatrixXd& jacobian);
+
+/// Secants at problem.start over the narrow difference, or over others, signal by signal: where the chain of a rig shakes, its length
+/// jumps while its pressure follows smoothly. A step is shortened, down to the width of the coordinate's own interval, as long as a
+/// signal's secant comes steadily closer to the tangent. Under steep commands, where a signal bends within a short step, it does; where dry
+/// friction hides small changes, it does not. The error is the difference from a secant four times as wide. Of a signal whose secants
+/// differ by more than 0.3 in the end, the flatter one of the shortest and the widest is taken: a jump over a short step looks like a steep
+/// response.
 Derivatives derivativesAt(const Comparison& comparison, const FitProblem& problem, const Eigen::VectorXd& residual);
 
 /// The intervals of the linearised problem about a point, with the residual's own variance. They are widened by the number of samples over
-/// the effective number of samples (from the residual's autocorrelation), and by the distance to the least squares of all readings: the
-/// minimum of the tempered misfit lies a standard error or two from there where only noise remains, and further where the model is wrong.
+/// the effective number of samples of each signal (from its residual's autocorrelation), and by the distance to the least squares of all
+/// readings: the minimum of the tempered misfit lies a standard error or two from there where only noise remains, and further where the
+/// model is wrong.
 ///
-/// A direction in which the columns cancel to less than their errors is not known, and the half width of a coordinate that takes part in it
-/// is infinite.
+/// What a signal tells of a direction counts as far as it exceeds what the errors of its columns could make. A direction that no signal
+/// tells is not known, and the half width of a coordinate that takes part in it is infinite.
 Certainty certaintyOf(const Comparison& comparison, const FitProblem& problem, const FitPoint& at, const Derivatives& derivatives);
 
 }  // namespace musclesim

@@ -98,8 +98,7 @@ FitResult fit(const Comparison& comparison, const FitProblem& problem, int round
     }
     fresh = settled;
   }
-  return {best.z, best.residual, best.cost, certaintyOf(comparison, problem, best, {jacobian, Eigen::VectorXd::Zero(best.z.size())}),
-          jacobian};
+  return {best.z, best.residual, best.cost, certaintyOf(comparison, problem, best, withoutErrors(comparison, jacobian)), jacobian};
 }
 
 FitResult finish(const Comparison& comparison, const FitProblem& cheap, const Predicted& exact, const Eigen::VectorXd& residual) {

@@ -58,7 +58,7 @@ TEST_F(CertaintyOfAFit, StepsAsShortAsTheIntervalsTellApartWhatBends) {
   EXPECT_NEAR(certainty.determined.sum(), 3, 1e-9);
   EXPECT_LT(certainty.half_width.maxCoeff(), 0.1);
   const Eigen::VectorXd difference = (wide - narrow).colwise().norm().cwiseQuotient(narrow.colwise().norm());
-  EXPECT_LT(certaintyOf(both, bent, at, {narrow, difference}).determined.sum(), 2.9) << "longer steps do not tell";
+  EXPECT_LT(certaintyOf(both, bent, at, {narrow, difference.transpose()}).determined.sum(), 2.9) << "longer steps do not tell";
 }
 
 /// Away from the least squares of the readings, the half width grows by the distance.
@@ -71,7 +71,7 @@ TEST_F(CertaintyOfAFit, IntervalsReachTheLeastSquares) {
   };
   const Eigen::VectorXd truth = Eigen::VectorXd::Ones(1), beside = truth.array() + away;
   const FitProblem linear = problem(wave, truth, truth);
-  const Derivatives derivatives{wave(truth), Eigen::VectorXd::Zero(1)};
+  const Derivatives derivatives = withoutErrors(both, wave(truth));
   const double there = certaintyOf(both, linear, evaluate(both, linear, truth), derivatives).half_width[0];
   const double half_width = certaintyOf(both, linear, evaluate(both, linear, beside), derivatives).half_width[0];
   EXPECT_GT(half_width, there + 0.9 * away);
@@ -92,6 +92,43 @@ TEST_F(CertaintyOfAFit, StepsWithinDryFrictionAreNotTaken) {
   const Derivatives found = derivativesAt(both, dry, left);
   EXPECT_GT(found.jacobian.norm(), 0.5 * derivatives(both, dry, evaluate(both, dry, truth), narrow_difference).norm());
   EXPECT_TRUE(std::isfinite(certaintyOf(both, dry, evaluate(both, dry, truth), found).half_width[0]));
+}
+
+/// The pressure follows two coordinates smoothly. The length jumps with either of them, and much alike: it must not hide what the pressure
+/// tells, nor seem to tell more by its jumps.
+TEST(CertaintyOfSignals, ASignalThatJumpsHidesNothingThatAnotherOneTells) {
+  constexpr double jump_mm = 2;
+  const DiagnosisOptions options;
+  const Plant plant(
+      {planted::recorded({}, 0.1, 1, planted::Pressure::measured), planted::recorded({}, 0.13, 2, planted::Pressure::measured)}, options);
+  const Comparison both(plant, {{0, 0, 150}, {1, 0, 150}});
+  const auto predicted = [&both](double jump_of_length_mm) -> Predicted {
+    return [&both, jump_of_length_mm](const Eigen::VectorXd& z) {
+      Eigen::VectorXd result = both.measured();
+      for (const Comparison::Block& block : both.blocks())
+        for (Eigen::Index i = 0; i < block.count(); ++i) {
+          const double phase = 0.1 * static_cast<double>(i);
+          const double noise = block.sigma * std::sqrt(2) * std::sin(23 * phase);
+          const double smooth = z[0] * std::sin(phase) + z[1] * std::cos(phase);
+          const double jumping = std::sin(phase + 1000 * (z[0] + 1.01 * z[1]));
+          const bool is_pressure = both.plant().signals()[static_cast<std::size_t>(block.signal)].name == "pressure_0";
+          result[block.first + i] += noise + (is_pressure ? 10 * block.sigma * smooth : jump_of_length_mm * jumping);
+        }
+      return result;
+    };
+  };
+  const auto widthWith = [&](double jump_of_length_mm) {
+    FitProblem problem;
+    problem.start = Eigen::Vector2d::Zero();
+    problem.clamped = [](const Eigen::VectorXd& z) { return z; };
+    problem.predicted = predicted(jump_of_length_mm);
+    const FitPoint at = evaluate(both, problem, problem.start);
+    return certaintyOf(both, problem, at, derivativesAt(both, problem, at.residual)).half_width.maxCoeff();
+  };
+  const double smooth = widthWith(0), jumping = widthWith(jump_mm);
+  EXPECT_LT(smooth, 0.1);
+  EXPECT_LT(jumping, 1.2 * smooth);
+  EXPECT_GT(jumping, 0.5 * smooth);
 }
 
 /// A fit ends where another step gains little of the tempered misfit, which may be many standard errors from the truth. Only the exact
