@@ -194,12 +194,10 @@ void Comparison::goCoarse(const Eigen::VectorXd& nominal, Purpose purpose) {
       return std::sqrt(meanSquare(block, correction)) <= bearable;
     });
     if (!follows) {
-      if (fidelity == Fidelity::medium) {
-        unsteady_ = unsteadiness(correction, residual);
-        // Of a method of first order, twice the step makes twice the error: the change is the error of the steps in use.
-        for (Block& block : blocks_) block.sigma = std::hypot(block.sigma, std::sqrt(meanSquare(block, correction)));
-      }
-      continue;
+      if (fidelity != Fidelity::medium) continue;
+      unsteady_ = unsteadiness(correction, residual);
+      // Of a method of first order, twice the step makes twice the error: the change is the error of the steps in use.
+      for (Block& block : blocks_) block.sigma = std::hypot(block.sigma, std::sqrt(meanSquare(block, correction)));
     }
     correction_ = correction;
     fidelity_ = fidelity;
@@ -212,9 +210,14 @@ Unsteady Comparison::unsteadiness(const Eigen::VectorXd& change, const Eigen::Ve
   Unsteady worst;
   for (const Block& block : blocks_) {
     const double in_sigmas = std::sqrt(meanSquare(block, change)) / block.sigma;
-    if (!block.isReading() || in_sigmas <= worst.in_sigmas) continue;
-    worst = {plant_.signals()[static_cast<std::size_t>(block.signal)].name, in_sigmas,
-             std::sqrt(meanSquare(block, change) / std::max(1e-300, meanSquare(block, residual)))};
+    if (!block.isReading()) continue;
+    const std::string& name = plant_.signals()[static_cast<std::size_t>(block.signal)].name;
+    double& of_signal = worst.all_in_sigmas[name];
+    of_signal = std::max(of_signal, in_sigmas);
+    if (in_sigmas <= worst.in_sigmas) continue;
+    worst.signal = name;
+    worst.in_sigmas = in_sigmas;
+    worst.share_of_gap = std::sqrt(meanSquare(block, change) / std::max(1e-300, meanSquare(block, residual)));
   }
   return worst;
 }

@@ -62,10 +62,10 @@ class Comparison {
   enum class Purpose { fitting, screening };  ///< screening only chooses what is fitted further
 
   /// From here on predictions use coarse time steps, corrected by the change that coarse steps cause in the model without effects. Medium
-  /// steps are used if coarse ones change a signal by more than a few noise sigmas, because the motion is then another one, and fine steps
-  /// if medium ones do. Screening begins with the coarsest steps and tolerates a tenth of a signal's gap where that is more than those
-  /// sigmas. Where even medium steps change the motion, the change that they make is added to the noise of every block (as squares): the
-  /// model is not known any better. Call once. A model that diverges in coarse steps is simulated in fine ones. `nominal` is the fine
+  /// steps are used if coarse ones change a signal by more than a few noise sigmas, because the motion is then another one. Screening
+  /// begins with the coarsest steps and tolerates a tenth of a signal's gap where that is more than those sigmas. Where even medium steps
+  /// change the motion, the change that they make is added to the noise of every block (as squares): the model is not known any better, so
+  /// that medium steps serve there too. Call once. A model that diverges in coarse steps is simulated in fine ones. `nominal` is the fine
   /// prediction of the model without effects.
   void goCoarse(const Eigen::VectorXd& nominal, Purpose purpose = Purpose::fitting);
   Fidelity fidelity() const { return fidelity_; }

@@ -74,6 +74,7 @@ Json gapJson(const Diagnosis& d) {
 
 Json toJson(const Remainder& remainder) {
   Json json = {{"significant", remainder.is_significant},
+               {"within_step_error", remainder.is_within_steps},
                {"stage", remainder.stage},
                {"signal", remainder.signal},
                {"in_noise_floors", remainder.in_sigmas},

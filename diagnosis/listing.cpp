@@ -234,12 +234,22 @@ void listNumbers(const Plant& plant, const Explanation& fitted, Diagnosis& diagn
 
 namespace {
 
+/// Whether no signal stands out of its noise and what the step size changes in it.
+bool isWithinSteps(const Gap& left, const Unsteady& unsteady) {
+  return !unsteady.signal.empty() && std::ranges::all_of(left.per_signal, [&](const auto& entry) {
+    const auto change = unsteady.all_in_sigmas.find(entry.first);
+    return overNoise(entry.second) < out_of_noise * std::hypot(1, change == unsteady.all_in_sigmas.end() ? 0 : change->second);
+  });
+}
+
 /// Names the signal in which the rest stands out most, and its stage.
 void describeRemainder(const Search& search, const HeldOut& held_out, const Eigen::VectorXd& after, Diagnosis& diagnosis) {
   if (!after.size() || diagnosis.before.normalised <= 0) return;
   const Gap left = held_out.comparison.gap(after);
   Remainder& remainder = diagnosis.remainder;
-  remainder.is_significant = !isWithinNoise(held_out.comparison, after);
+  const bool stands_out = !isWithinNoise(held_out.comparison, after);
+  remainder.is_within_steps = stands_out && isWithinSteps(left, diagnosis.unsteady);
+  remainder.is_significant = stands_out && !remainder.is_within_steps;
   remainder.percent_of_gap = 100 * left.normalised / diagnosis.before.normalised;
   remainder.probability = search.noneOfThese();
   for (const auto& [signal, gap] : left.per_signal)

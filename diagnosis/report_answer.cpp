@@ -157,7 +157,7 @@ std::string foundSteps(const Diagnosis& d, Belief belief) {
   if (!d.next_experiment.commands.empty())
     steps +=
         "<li>Play and record <code>next.csv</code>, then diagnose again with that recording first: it tells the alternatives apart.</li>";
-  if (belief == Belief::partly && overNoiseInAll(d.after) >= stands_out_of_noise) {
+  if (belief == Belief::partly && isRestLeft(d)) {
     steps += fmt::format("<li>Look at the residual of the {} in the curves below for what is left.</li>",
                          d.remainder.signal.empty() ? "signals" : signalTitle(d.remainder.signal));
     if (d.chosen.size() >= 4) steps += "<li>Let the program look for more causes: <code>--max-effects 6</code>.</li>";

@@ -114,12 +114,15 @@ bool isAmbiguous(const Diagnosis& d) {
   return d.alternatives.size() > 1 && sharedEffects(d).size() < d.chosen.size();
 }
 
+bool isRestLeft(const Diagnosis& d) {
+  return overNoiseInAll(d.after) >= stands_out_of_noise && !d.remainder.is_within_steps;
+}
+
 Belief beliefOf(const Diagnosis& d) {
   if (d.partial) return Belief::cannot_tell;
   if (d.verdict == Verdict::no_gap) return Belief::no_gap;
   if (d.verdict != Verdict::effects_found) return Belief::cannot_tell;
-  const bool is_rest = overNoiseInAll(d.after) >= stands_out_of_noise;
-  return is_rest || isAmbiguous(d) || d.none_of_these > rather_none ? Belief::partly : Belief::explained;
+  return isRestLeft(d) || isAmbiguous(d) || d.none_of_these > rather_none ? Belief::partly : Belief::explained;
 }
 
 std::string effectTitles(const std::vector<std::string>& labels) {

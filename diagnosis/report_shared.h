@@ -33,6 +33,8 @@ std::vector<std::string> comparedSignals(const Diagnosis& d);
 std::vector<FoundEffect> shownEffects(const Diagnosis& d);
 /// RMS residual over the noise floor, over all signals.
 double overNoiseInAll(const Gap& gap);
+/// Whether more is left than noise and what the step size changes.
+bool isRestLeft(const Diagnosis& d);
 /// The effects that all explanations share which are as good as the best one.
 std::vector<std::string> sharedEffects(const Diagnosis& d);
 /// Whether an explanation without one of the causes found would do as well.

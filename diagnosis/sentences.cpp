@@ -218,6 +218,11 @@ std::string remainder(const Diagnosis& d, const Gap& after) {
   const auto most = std::ranges::max_element(after.per_signal, {}, [](const auto& entry) { return overNoise(entry.second); });
   const std::string where =
       most == after.per_signal.end() ? "" : fmt::format(" ({:.1f} times in {})", overNoise(most->second), most->first);
+  if (d.remainder.is_within_steps)
+    return fmt::format(
+        "The residual is {:.1f} times the noise{}, but no more than internal steps twice as long change: it does not speak "
+        "for another effect.",
+        over_noise, where);
   const bool together = d.chosen.size() > 1 || d.attempt.effects.size() > 1;
   return fmt::format("The residual is still {:.1f} times the noise{}{}: another effect acts as well, or {} follows another law.",
                      over_noise, where, d.remainder.shape.empty() ? "" : ", " + d.remainder.shape, together ? "one of these" : "this one");

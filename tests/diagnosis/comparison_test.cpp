@@ -163,6 +163,7 @@ TEST_F(Rig, SaysWhatStepsChangeWhereCoarserOnesFollowAnotherMotion) {
   EXPECT_EQ(both.unsteady().signal, "length_0_mm");
   EXPECT_NEAR(both.unsteady().in_sigmas, 100, 1);
   EXPECT_NEAR(both.unsteady().share_of_gap, 1, 0.05);
+  EXPECT_EQ(both.unsteady().all_in_sigmas.at("length_0_mm"), both.unsteady().in_sigmas);
 }
 
 TEST_F(Rig, WhatTheStepChangesCountsAsNoiseWhereTheModelIsUnsteady) {

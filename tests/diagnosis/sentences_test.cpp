@@ -179,6 +179,19 @@ TEST(VerdictSentence, SaysWhereTheMotionDependsOnTheStepSize) {
                        "noise, 30 % of the gap"));
 }
 
+/// A residual that is no larger than what the step size changes does not speak for another effect.
+TEST(VerdictSentence, DoesNotCallAnErrorOfTheStepAnotherEffect) {
+  Diagnosis d = lagFound();
+  d.after.normalised = 24;
+  d.after.per_signal = {{"angle_elbow_deg", {0.5, 0.1}}};
+  EXPECT_TRUE(contains(verdictSentence(d), "The residual is still 5.0 times the noise (5.0 times in angle_elbow_deg)"));
+  d.remainder.is_within_steps = true;
+  EXPECT_FALSE(contains(verdictSentence(d), "still"));
+  EXPECT_TRUE(contains(verdictSentence(d),
+                       "The residual is 5.0 times the noise (5.0 times in angle_elbow_deg), but no more than internal steps twice as long "
+                       "change: it does not speak for another effect."));
+}
+
 TEST(VerdictSentence, NamesOtherSetsInFull) {
   Diagnosis d = lagFound();
   d.chosen = {"valve_lag@muscle_1", "payload@hand"};

@@ -97,6 +97,8 @@ struct Gap {
 struct Unsteady {
   std::string signal;                      ///< the signal that changes most; empty if none does noticeably
   double in_sigmas = 0, share_of_gap = 0;  ///< RMS of the change over sigma, and over the RMS of the gap
+  /// Of every signal the largest RMS of the change over sigma in any segment.
+  std::map<std::string, double> all_in_sigmas = {};
 };
 
 struct Experiment {
@@ -157,10 +159,11 @@ struct RobotDrawing {
 
 /// What the chosen effects leave on the held-out data.
 struct Remainder {
-  bool is_significant = false;  ///< it stands out of the noise
-  std::string stage, signal;    ///< of the signal that stands out most
-  double in_sigmas = 0;         ///< RMS over sigma there
-  std::string shape;            ///< in words, empty if it has no simple one
+  bool is_significant = false;   ///< it stands out of the noise, and of what the step size changes
+  bool is_within_steps = false;  ///< it stands out of the noise, but internal steps twice as long change the signals by as much
+  std::string stage, signal;     ///< of the signal that stands out most
+  double in_sigmas = 0;          ///< RMS over sigma there
+  std::string shape;             ///< in words, empty if it has no simple one
   double percent_of_gap = 0;
   double probability = 0;  ///< that something acts which the chosen effects do not hold
 };
