@@ -130,6 +130,12 @@ void Hypothesis::leaveOut(int coordinate) {
   for (int& strength : strengths_) strength -= strength > coordinate;
 }
 
+std::vector<std::string> Hypothesis::strengthNames() const {
+  std::vector<std::string> names;
+  for (const int strength : strengths_) names.push_back(info_.parameters[coordinates_[static_cast<std::size_t>(strength)].parameter].name);
+  return names;
+}
+
 bool Hypothesis::isTime(int coordinate) const {
   return info_.parameters[coordinates_[static_cast<std::size_t>(coordinate)].parameter].unit == "s";
 }

@@ -34,6 +34,8 @@ class Hypothesis {
   int furtherMechanisms() const;
   /// Indices of the coordinates that are strengths: at 0 the effect vanishes.
   const std::vector<int>& strengths() const { return strengths_; }
+  /// Names of the parameters that are strengths, in order.
+  std::vector<std::string> strengthNames() const;
   /// Whether a strength may have either sign.
   bool isSigned(int coordinate) const;
   /// Makes the strength at `z` the new z = 1, with the other sign if `z` is negative.

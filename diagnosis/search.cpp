@@ -21,7 +21,8 @@ constexpr std::size_t addition_count = 3, drop_count = 4;  ///< sets that are fi
 constexpr std::size_t wide_count = 4;  ///< sets of one size of which widened forms are fitted, and so many forms of each
 constexpr std::size_t base_counts[] = {3, 2, 2, 1, 1, 1};  ///< explanations of each size that are extended
 constexpr std::size_t neighbour_count = 30;                ///< effects that are simulated beside an explanation that is extended,
-constexpr std::size_t stand_in_neighbour_count = 20;       ///< and beside the rest of a set, one member of which is replaced
+constexpr std::size_t beside_all_count = 40;               ///< beside a set whose members are replaced,
+constexpr std::size_t stand_in_neighbour_count = 20;       ///< and beside the rest of it without one of them
 constexpr std::size_t stood_in_count = 4;                  ///< best sets of whose members each is replaced
 constexpr std::size_t stand_in_count = 4, pair_count = 2;  ///< by so many single effects, and by so many pairs,
 constexpr int stand_in_variants = 2;                       ///< in so many variants
@@ -190,6 +191,29 @@ std::vector<Search::Proposal> Search::widened(const Explanation& base) const {
   return result;
 }
 
+/// One effect in the place of another that has the same strengths: a dead time of all commands and one of all sensors are the same, but a
+/// fit that does not begin with the right time may end elsewhere, because commands that jump make the misfit jump with their time. Only
+/// effects are exchanged that are all of their kind. There is no estimate, as for widened().
+std::vector<Search::Proposal> Search::exchanged(const Explanation& base) const {
+  std::vector<Proposal> result;
+  const Model model = causes_.modelOf(base);
+  for (std::size_t m = 0; m < base.members.size(); ++m)
+    for (std::size_t i = 0; i < causes_.hypotheses.size(); ++i) {
+      const Hypothesis &one = causes_.hypotheses[base.members[m]], &other = causes_.hypotheses[i];
+      const Explanation rest = causes_.without(base, m);
+      if (one.info().id == other.info().id || one.placeCount() > 1 || other.placeCount() > 1 || one.strengths().empty() ||
+          one.strengthNames() != other.strengthNames() || !fitsBeside(i, rest.members))
+        continue;
+      Explanation exchanged = rest;
+      const Eigen::VectorXd own = other.coordinatesOf(model.effects[m].parameters);
+      exchanged.members.push_back(i);
+      exchanged.z.resize(rest.z.size() + own.size());
+      exchanged.z << rest.z, own;
+      result.push_back({std::move(exchanged), 0});
+    }
+  return result;
+}
+
 /// Moves a start that diverges, or costs more than no effect at all, towards its origin.
 void Search::nearToOrigin(Proposal& proposal) const {
   constexpr double share = 0.3;
@@ -297,19 +321,22 @@ std::vector<Search::Proposal> Search::bestAdded(const Surroundings& around) cons
 /// beside nothing or beside all members, is simulated there.
 void Search::tryStandIns() {
   std::set<std::set<std::string>> done;
+  std::vector<Sensitivity> beside;  // the set before
   for (int count = 0; count < most_stood_in && !plant_.interrupted(); ++count) {
     const std::vector<std::size_t> order = bestOnScreening(0, stood_in_count);
     const auto next = std::ranges::find_if(order, [&](std::size_t i) { return !done.contains(causes_.labelsOf(pool_[i].members)); });
     if (next == order.end() || pool_[*next].score < pool_[order.front()].score - hopeless) return;
     const Explanation base = pool_[*next];  // the pool grows below
     done.insert(causes_.labelsOf(base.members));
-    const Surroundings around = surroundingsOf(base, changesBeside(base, screenedBeside(base)));
+    const Surroundings around = surroundingsOf(base, {beside_all_count, stand_in_variants, beside.empty() ? nullptr : &beside});
+    beside = around.sensitivities;
     std::vector<Proposal> proposals;
     if (static_cast<int>(base.members.size()) < options_.max_effects && stood_in_.insert(causes_.labelsOf(base.members)).second)
       proposals = bestAdded(around);
     for (std::size_t m = 0; m < base.members.size(); ++m)
       std::ranges::move(standIns(causes_.without(base, m), around.sensitivities), std::back_inserter(proposals));
     std::ranges::move(nearest(widened(base), wide_count, 2), std::back_inserter(proposals));
+    std::ranges::move(nearest(exchanged(base), wide_count), std::back_inserter(proposals));
     fitOnScreening(std::move(proposals));
   }
 }

@@ -126,6 +126,7 @@ class Search {
   std::vector<Proposal> drops(const Surroundings& around) const;
   std::optional<Proposal> withoutFurtherMechanisms(const Proposal& proposal) const;
   std::vector<Proposal> widened(const Explanation& base) const;
+  std::vector<Proposal> exchanged(const Explanation& base) const;
   void fitOnScreening(std::vector<Proposal> proposals);
   void nearToOrigin(Proposal& proposal) const;
   void expand(const Explanation& base);
