@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 
 namespace musclesim {
@@ -55,6 +56,23 @@ Complexity Evidence::complexityOf(const Explanation& explanation) const {
     first += count;
   }
   return result;
+}
+
+std::size_t safestSet(const std::vector<std::set<std::string>>& sets, const std::vector<double>& probabilities) {
+  constexpr double as_likely_absent = 0.5;
+  std::map<std::string, double> of_effect;
+  for (std::size_t i = 0; i < sets.size(); ++i)
+    for (const std::string& effect : sets[i]) of_effect[effect] += probabilities[i];
+  std::size_t safest = static_cast<std::size_t>(std::ranges::max_element(probabilities) - probabilities.begin());
+  double least_errors = 0;  // expected, beyond those of naming nothing
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    double errors = 0;
+    for (const std::string& effect : sets[i]) errors += as_likely_absent - of_effect[effect];
+    if (errors >= least_errors) continue;
+    least_errors = errors;
+    safest = i;
+  }
+  return safest;
 }
 
 double Evidence::price(const Explanation& explanation) const {

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "comparison.h"
@@ -24,6 +27,13 @@ inline constexpr Complexity prices = {
     .parameters = 1.0, .effects = 3.1, .same_place = 1.0, .excess = 2.0, .shared_sensor = 4.0, .places = 1.0};
 /// ln odds of something else per share of the misfit that an explanation leaves, and the share at which it is as likely as not.
 inline constexpr double per_share_left = 12, share_of_unknown = 0.3;
+
+/// Index of the set whose names are expected to be wrong or missing least,
+///     the largest sum over effects j of the set of (P(j) - 1/2),   P(j) = sum over sets with j of their probabilities
+/// (least expected Hamming loss; where all effects that are likelier present than absent form one of the sets, it is that one, the median
+/// probability model of Barbieri and Berger 2004). The likeliest set may have an effect that is likelier absent. Where no effect is
+/// likelier present than absent, it is the likeliest set. There must be a set.
+std::size_t safestSet(const std::vector<std::set<std::string>>& sets, const std::vector<double>& probabilities);
 
 class Evidence {
  public:

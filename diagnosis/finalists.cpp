@@ -19,6 +19,7 @@ constexpr std::size_t restarted_count = 4;  ///< explanations near the best that
 constexpr std::size_t start_count = 2;      ///< from so many starts each
 constexpr int variant_passes = 3;           ///< changes of one effect's variant each
 constexpr double worth_polishing = 2;       ///< nats that fine steps may give a variant
+constexpr double listed = 0.01;             ///< least probability of explanations that are fitted to the end and may be chosen
 constexpr int coarse_rounds = 6, fine_rounds = 4;
 
 }  // namespace
@@ -94,11 +95,11 @@ void Search::fitFinalists() {
   polish();
   weigh();
   takeOutNothing();
+  choose();
 }
 
 /// Exact parameters, scores and fresh intervals for the explanations that are listed, and for the numbers without any effect.
 void Search::polish() {
-  constexpr double listed = 0.01;
   std::vector<Explanation*> chosen;
   for (Explanation& explanation : explanations_)
     if (explanation.probability >= listed || explanation.members.empty()) chosen.push_back(&explanation);
@@ -302,6 +303,20 @@ void Search::weigh() {
   for (Explanation& explanation : explanations_) explanation.probability /= sum;
   none_of_these_ = evidence().ofSomethingElse(explanations_);
   std::ranges::stable_sort(explanations_, std::greater<>{}, &Explanation::probability);
+}
+
+/// Puts the explanation first that safestSet() names, of those that are listed.
+void Search::choose() {
+  std::vector<std::set<std::string>> sets;
+  std::vector<double> probabilities;
+  for (const Explanation& explanation : explanations_) {
+    if (explanation.probability < listed && !sets.empty()) break;
+    sets.push_back(causes_.labelsOf(explanation.members));
+    probabilities.push_back(explanation.probability);
+  }
+  if (sets.empty()) return;
+  const auto chosen = explanations_.begin() + static_cast<std::ptrdiff_t>(safestSet(sets, probabilities));
+  std::rotate(explanations_.begin(), chosen, chosen + 1);
 }
 
 void Search::takeOutNothing() {

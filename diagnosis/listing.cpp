@@ -110,7 +110,8 @@ std::vector<const Explanation*> asGood(const Search& search) {
   std::vector<const Explanation*> result;
   const auto& all = search.explanations();
   for (const Explanation& fitted : all)
-    if (fitted.probability > 0 && fitted.probability >= as_good * all.front().probability) result.push_back(&fitted);
+    if (&fitted == &all.front() || (fitted.probability > 0 && fitted.probability >= as_good * search.likeliest().probability))
+      result.push_back(&fitted);
   return result;
 }
 
@@ -157,7 +158,8 @@ void listEffects(const Search& search, const HeldOut& held_out, const DiagnosisO
   }
   for (auto& [label, effect] : found)
     if (effect.probability >= least_listed) diagnosis.effects.push_back(effect);
-  std::ranges::stable_sort(diagnosis.effects, [](const auto& a, const auto& b) { return a.probability > b.probability; });
+  std::ranges::stable_sort(diagnosis.effects, std::greater{}, &FoundEffect::probability);
+  std::ranges::stable_sort(diagnosis.explanations, std::greater{}, &ExplanationProbability::probability);
   listAmbiguity(search, diagnosis);
   // An effect that was found is excited, though not at its typical strength.
   std::erase_if(diagnosis.not_excited, [&](const std::string& label) {
