@@ -39,16 +39,19 @@ int signalCount(const Comparison& comparison) {
   return static_cast<int>(comparison.plant().signals().size());
 }
 
-/// One over the standard deviation of every row, larger where a signal's rows are not independent; 0 for averages and parity, which repeat
-/// the readings. The norm of a secant times these is one over the standard error of the coordinate.
+/// One over the standard deviation of every row, larger where rows are not independent, in their own signal or in all on average: what one
+/// signal's law has wrong may bend the numbers that another one tells. 0 for averages and parity, which repeat the readings. The norm of a
+/// secant times these is one over the standard error of the coordinate.
 Eigen::VectorXd perDeviation(const Comparison& comparison, const Eigen::VectorXd& residual) {
+  Eigen::VectorXd per_independent(signalCount(comparison));
+  for (int signal = 0; signal < signalCount(comparison); ++signal)
+    per_independent[signal] = samplesPerIndependent(comparison, signal, residual);
+  per_independent = per_independent.cwiseMax(per_independent.mean()).eval();
   Eigen::VectorXd result = Eigen::VectorXd::Zero(comparison.size());
-  for (int signal = 0; signal < signalCount(comparison); ++signal) {
-    const double independent_share = 1 / samplesPerIndependent(comparison, signal, residual);
-    for (const Comparison::Block& block : comparison.blocks())
-      if (block.signal == signal && block.isReading())
-        result.segment(block.first, block.count())
-            .setConstant(std::sqrt(independent_share) / std::max(block.sigma, std::sqrt(comparison.meanSquare(block, residual))));
+  for (const Comparison::Block& block : comparison.blocks()) {
+    if (!block.isReading()) continue;
+    const double sigma = std::max(block.sigma, std::sqrt(comparison.meanSquare(block, residual)));
+    result.segment(block.first, block.count()).setConstant(1 / (sigma * std::sqrt(per_independent[block.signal])));
   }
   return result;
 }

@@ -34,9 +34,9 @@ Derivatives withoutErrors(const Comparison& comparison, const Eigen::MatrixXd& j
 Derivatives derivativesAt(const Comparison& comparison, const FitProblem& problem, const Eigen::VectorXd& residual);
 
 /// The intervals of the linearised problem about a point, with the residual's own variance. They are widened by the number of samples over
-/// the effective number of samples of each signal (from its residual's autocorrelation), and by the distance to the least squares of all
-/// readings: the minimum of the tempered misfit lies a standard error or two from there where only noise remains, and further where the
-/// model is wrong.
+/// the effective number of samples (from the residual's autocorrelation, of the signal or of all on average), and by the distance to the
+/// least squares of all readings: the minimum of the tempered misfit lies a standard error or two from there where only noise remains, and
+/// further where the model is wrong.
 ///
 /// What a signal tells of a direction counts as far as it exceeds what the errors of its columns could make. A direction that no signal
 /// tells is not known, and the half width of a coordinate that takes part in it is infinite.

@@ -110,7 +110,7 @@ TEST(CertaintyOfSignals, ASignalThatJumpsHidesNothingThatAnotherOneTells) {
           const double phase = 0.1 * static_cast<double>(i);
           const double noise = block.sigma * std::sqrt(2) * std::sin(23 * phase);
           const double smooth = z[0] * std::sin(phase) + z[1] * std::cos(phase);
-          const double jumping = std::sin(phase + 1000 * (z[0] + 1.01 * z[1]));
+          const double jumping = std::sin(phase + 1000 * (z[0] + 1.01 * z[1])) - std::sin(phase);
           const bool is_pressure = both.plant().signals()[static_cast<std::size_t>(block.signal)].name == "pressure_0";
           result[block.first + i] += noise + (is_pressure ? 10 * block.sigma * smooth : jump_of_length_mm * jumping);
         }
