@@ -72,6 +72,18 @@ Explanation Causes::without(const Explanation& explanation, std::size_t member) 
   return result;
 }
 
+Explanation Causes::with(const Explanation& explanation, std::size_t hypothesis,
+                         const std::map<std::string, Parameter::Value>& values) const {
+  const Eigen::VectorXd own = hypotheses[hypothesis].coordinatesOf(values);
+  Explanation result;
+  result.members = explanation.members;
+  result.members.push_back(hypothesis);
+  result.z.resize(explanation.z.size() + own.size());
+  result.z << explanation.z, own;
+  result.numbers = explanation.numbers;
+  return result;
+}
+
 Explanation Causes::takingOver(const Explanation& explanation, const Explanation& other) const {
   Explanation result;
   std::vector<double> z;

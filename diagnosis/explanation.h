@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -51,6 +52,8 @@ class Causes {
   Eigen::Index firstCoordinate(const Explanation& explanation, std::size_t member) const;
   /// The explanation without one of its members, the others unchanged.
   Explanation without(const Explanation& explanation, std::size_t member) const;
+  /// The explanation with one more member, at these values of its parameters (Hypothesis::coordinatesOf); not fitted yet.
+  Explanation with(const Explanation& explanation, std::size_t hypothesis, const std::map<std::string, Parameter::Value>& values) const;
   /// The explanation, not fitted yet, with what another one has: the numbers of the model, and the variants and coordinates of the effects
   /// that both have.
   Explanation takingOver(const Explanation& explanation, const Explanation& other) const;

@@ -182,11 +182,7 @@ std::vector<Search::Proposal> Search::widened(const Explanation& base) const {
       Explanation wide = base;
       for (std::size_t k = wide.members.size(); k-- > 0;)
         if (causes_.clash(i, wide.members[k])) wide = causes_.without(wide, k);
-      const Eigen::VectorXd own = on_all.coordinatesOf(model.effects[m].parameters), kept = wide.z;
-      wide.members.push_back(i);
-      wide.z.resize(kept.size() + own.size());
-      wide.z << kept, own;
-      result.push_back({std::move(wide), 0});
+      result.push_back({causes_.with(wide, i, model.effects[m].parameters), 0});
     }
   return result;
 }
@@ -204,12 +200,7 @@ std::vector<Search::Proposal> Search::exchanged(const Explanation& base) const {
       if (one.info().id == other.info().id || one.placeCount() > 1 || other.placeCount() > 1 || one.strengths().empty() ||
           one.strengthNames() != other.strengthNames() || !fitsBeside(i, rest.members))
         continue;
-      Explanation exchanged = rest;
-      const Eigen::VectorXd own = other.coordinatesOf(model.effects[m].parameters);
-      exchanged.members.push_back(i);
-      exchanged.z.resize(rest.z.size() + own.size());
-      exchanged.z << rest.z, own;
-      result.push_back({std::move(exchanged), 0});
+      result.push_back({causes_.with(rest, i, model.effects[m].parameters), 0});
     }
   return result;
 }
@@ -315,10 +306,10 @@ std::vector<Search::Proposal> Search::bestAdded(const Surroundings& around) cons
   return result;
 }
 
-/// Tries stand-ins of every member of the best sets, what is missing beside all members, and the sets' widened forms. A swap that is
-/// estimated where the member acts takes the change that the stand-in makes there as proportional, up to all that the member explains;
-/// friction beside friction, for one, is far from that. So the member is taken away first, and what promises most there, by its changes
-/// beside nothing or beside all members, is simulated there.
+/// Tries stand-ins of every member of the best sets, what is missing beside all members, and the sets' widened and exchanged forms. A swap
+/// that is estimated where the member acts takes the change that the stand-in makes there as proportional, up to all that the member
+/// explains; friction beside friction, for one, is far from that. So the member is taken away first, and what promises most there, by its
+/// changes beside nothing or beside all members, is simulated there.
 void Search::tryStandIns() {
   std::set<std::set<std::string>> done;
   std::vector<Sensitivity> beside;  // the set before

@@ -79,6 +79,15 @@ TEST_F(CausesOnARig, TakeOverWhatTheyShareWithOthersInItsVariant) {
   EXPECT_EQ(result.numbers, other.numbers);
 }
 
+/// A member that is taken away and put back at the values that it had.
+TEST_F(CausesOnARig, GetAMemberAtItsValues) {
+  const Model model = causes_.modelOf(explanation_);
+  const Explanation back = causes_.with(causes_.without(explanation_, 1), payload, model.effects[1].parameters);
+  EXPECT_EQ(back.members, explanation_.members);
+  EXPECT_TRUE(back.z.isApprox(explanation_.z, 1e-12));
+  EXPECT_EQ(back.numbers, explanation_.numbers);
+}
+
 TEST_F(CausesOnARig, AreClampedEachByItsOwnBounds) {
   const Eigen::VectorXd far = Eigen::Vector3d(1e6, -1e6, 1e6), clamped = causes_.clamped(explanation_.members, far);
   EXPECT_EQ(clamped.head(2), causes_.hypotheses[threshold].clamped(far.head(2)));
