@@ -83,6 +83,17 @@ TEST_F(PlantedRig, WhatHasNoUsualRangeHasNoExcess) {
   EXPECT_EQ(bias.excess(Eigen::VectorXd::Constant(bias.coordinateCount(), 40)), 0);
 }
 
+/// A dead time of the commands in the place of one of all sensors begins with the same delay.
+TEST_F(PlantedRig, StrengthsOfTheSameNamesTakeEachOthersValues) {
+  const Hypothesis late = hypothesis("transport_delay", "muscle_0"), read_late = hypothesis("sensor_delay", "all");
+  EXPECT_EQ(late.strengthNames(), std::vector<std::string>{"delay_s"});
+  EXPECT_EQ(read_late.strengthNames(), late.strengthNames()) << "a share of a filter is no strength";
+  EXPECT_NE(hypothesis("valve_lag", "muscle_0").strengthNames(), late.strengthNames());
+  const Eigen::VectorXd z = Eigen::VectorXd::Constant(late.coordinateCount(), 1.7);
+  const Eigen::VectorXd own = read_late.coordinatesOf(late.at(z).parameters);
+  EXPECT_NEAR(read_late.valuesAt(own).front().second, late.valuesAt(z).front().second, 1e-12);
+}
+
 TEST_F(PlantedRig, WeakenedStrengthsAreAShareOfWhatTheyWere) {
   Hypothesis payload = hypothesis("payload", "hand"), limit = hypothesis("flow_limit", "muscle_0");
   const double typical_kg = payload.valuesAt(payload.typical()).front().second;
