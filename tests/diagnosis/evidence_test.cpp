@@ -229,6 +229,8 @@ TEST(SafestSet, HasNoEffectThatIsLikelierAbsent) {
   // A second effect that is likelier present than absent, in two sets that are less likely than the first one.
   EXPECT_EQ(safestSet({{"lag"}, {"lag", "gain", "bias"}, {"lag", "gain"}}, {0.4, 0.35, 0.25}), 2U);
   EXPECT_EQ(safestSet({{"lag"}, {"delay"}, {"creep"}}, {0.3, 0.4, 0.3}), 1U) << "nothing is likelier present";
+  EXPECT_EQ(safestSet({{"lag", "gain"}, {"lag", "bias"}, {"lag", "leak"}, {"lag"}}, {0.37, 0.33, 0.22, 0.08}), 0U)
+      << "a second effect acts, though it is not clear which";
 }
 
 TEST_F(EvidenceOnARig, SomethingElseIsLikelyWhereTheExplanationsLeaveMuch) {
