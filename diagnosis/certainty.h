@@ -38,8 +38,9 @@ Derivatives derivativesAt(const Comparison& comparison, const FitProblem& proble
 /// least squares of all readings: the minimum of the tempered misfit lies a standard error or two from there where only noise remains, and
 /// further where the model is wrong.
 ///
-/// What a signal tells of a direction counts as far as it exceeds what the errors of its columns could make. A direction that no signal
-/// tells is not known, and the half width of a coordinate that takes part in it is infinite.
+/// The errors of the derivatives alone could feign some information about a direction; from the information of each signal that much is
+/// subtracted. If nothing is left of any signal, the direction is not known, and every coordinate that takes part in it has an infinite
+/// half width.
 Certainty certaintyOf(const Comparison& comparison, const FitProblem& problem, const FitPoint& at, const Derivatives& derivatives);
 
 }  // namespace musclesim

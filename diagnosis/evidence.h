@@ -28,12 +28,12 @@ inline constexpr Complexity prices = {
 /// ln odds of something else per share of the misfit that an explanation leaves, and the share at which it is as likely as not.
 inline constexpr double per_share_left = 12, share_of_unknown = 0.3;
 
-/// Index of the set whose names are expected to be wrong or missing least, among those that are hardly less likely than the likeliest (the
-/// odds are at most sqrt(10) to 1: other sets leave out what is needed, though it may not be clear which of several effects it is),
-///     the largest sum over effects j of the set of (P(j) - 1/2),   P(j) = sum over sets with j of their probabilities
-/// (least expected Hamming loss; where all effects that are likelier present than absent form one of the sets, it is that one, the median
-/// probability model of Barbieri and Berger 2004). The likeliest set may have an effect that is likelier absent. Where no effect is
-/// likelier present than absent, it is the likeliest set. There must be a set.
+/// Index of the set of effects that is named. It has the largest
+///     sum over its effects j of (P(j) - 1/2),   P(j) = sum of the probabilities of the sets that contain j
+/// so that the fewest wrong and missing names are expected (Hamming loss; median probability model, Barbieri and Berger 2004). The
+/// likeliest set may contain an effect with P(j) < 1/2. A set that is more than sqrt(10) times less likely than the likeliest is never
+/// named: it lacks an effect that is needed, even if several effects could be that one. If no set has a positive sum, the likeliest is
+/// named. `sets` and `probabilities` have the same size, at least 1.
 std::size_t safestSet(const std::vector<std::set<std::string>>& sets, const std::vector<double>& probabilities);
 
 class Evidence {

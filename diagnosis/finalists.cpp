@@ -305,7 +305,7 @@ void Search::weigh() {
   std::ranges::stable_sort(explanations_, std::greater<>{}, &Explanation::probability);
 }
 
-/// Puts the explanation first that safestSet() names, of those that are listed.
+/// Moves the explanation that safestSet() selects to the front. Only explanations with a probability of `listed` or more can be selected.
 void Search::choose() {
   std::vector<std::set<std::string>> sets;
   std::vector<double> probabilities;

@@ -187,9 +187,10 @@ std::vector<Search::Proposal> Search::widened(const Explanation& base) const {
   return result;
 }
 
-/// One effect in the place of another that has the same strengths: a dead time of all commands and one of all sensors are the same, but a
-/// fit that does not begin with the right time may end elsewhere, because commands that jump make the misfit jump with their time. Only
-/// effects are exchanged that are all of their kind. There is no estimate, as for widened().
+/// Each member replaced by every effect whose strengths have the same names, at the same values. Example: a dead time of all commands and
+/// one of all sensors act alike, but if commands jump, the misfit jumps with the dead time, and a fit that begins at another time may end
+/// in another minimum. Only effects that could act on a single place ("all", or the only muscle) are exchanged. As for widened(), nothing
+/// estimates the cost.
 std::vector<Search::Proposal> Search::exchanged(const Explanation& base) const {
   std::vector<Proposal> result;
   const Model model = causes_.modelOf(base);

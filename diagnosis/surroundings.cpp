@@ -138,7 +138,7 @@ std::vector<double> Search::costsOfAdding(const Surroundings& around) const {
   return costs;
 }
 
-/// Sorts the hypotheses by what each costs if it is added, least first, and leaves out those that cannot be added.
+/// The hypotheses that can be added, in ascending order of their costs.
 std::vector<std::size_t> Search::inOrderOf(const std::vector<double>& costs) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < costs.size(); ++i)
