@@ -54,14 +54,39 @@ bool isPlausible(const EffectParameter& p, double value) {
   return std::abs(value - p.neutral) <= most * usual;
 }
 
-/// Change that a law makes alone. NaN for a law that cannot act on this component (a bracket needs a joint) and for a plant that diverges.
-double gapOf(const ActiveEffect& law, const Truth& truth) {
+/// The motion with one law alone. Empty for a law that cannot act on this component (a bracket needs a joint).
+Truth::Motion motionUnder(const ActiveEffect& law, const Truth& truth) {
   try {
-    return truth.gapOverNoise(truth.rmse(truth.clean(), truth.motion({law})));
+    return truth.motion({law});
   } catch (const BadParameter&) {
   } catch (const BadFile&) {  // a robot file that cannot be built with it: a muscle that would end within its pulley
   }
-  return std::numeric_limits<double>::quiet_NaN();
+  return {};
+}
+
+/// Change that a law makes alone. NaN without a motion, and for a plant that diverges.
+double gapOf(const Truth::Motion& motion, const Truth& truth) {
+  return motion.empty() ? std::numeric_limits<double>::quiet_NaN() : truth.gapOverNoise(truth.rmse(truth.clean(), motion));
+}
+
+/// Whether a muscle's pressure is shut off in some of the rows that are fitted and delivered in others.
+bool opensAndCloses(const Truth::Motion& motion, const std::string& pressure) {
+  constexpr double least_share = 0.05;
+  double shut = 0, delivered = 0;
+  for (std::size_t i = 0; i + 1 < motion.size(); ++i)
+    for (const double value : motion[i].find(pressure)->values) ++(value == 0 ? shut : delivered);
+  return std::min(shut, delivered) >= least_share * (shut + delivered);
+}
+
+/// Whether a law does what its name says: a valve whose dead band the commands never leave, or never enter, has no dead band. Always true
+/// for other laws.
+bool showsItself(const OutOfCatalogueLaw& law, const std::string& component, const Truth::Motion& motion) {
+  if (law.stands_for != "command_dead_band") return true;
+  for (const Signal& signal : motion.front().signals) {
+    const bool affected = component == "all" || component == "muscle_" + signal.name.substr(signal.name.find('_') + 1);
+    if (signal.name.starts_with("pressure_") && affected && opensAndCloses(motion, signal.name)) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -151,8 +176,9 @@ std::optional<Cause> causeOfSize(const OutOfCatalogueLaw& law, const std::string
                 .component = component,
                 .law = activeEffect(law.info, component, *values),
                 .stage = law.info.stage};
-    cause.gap_over_noise = gapOf(cause.law, truth);
-    if (band.holds(cause.gap_over_noise)) return cause;
+    const Truth::Motion motion = motionUnder(cause.law, truth);
+    cause.gap_over_noise = gapOf(motion, truth);
+    if (band.holds(cause.gap_over_noise) && showsItself(law, component, motion)) return cause;
     const double target = logUniform(random, band.low, std::min(band.high, largest_target * band.low));
     const bool scalable = std::isfinite(cause.gap_over_noise) && cause.gap_over_noise > no_gap && law.stands_for != "channel_swap";
     if (scalable)

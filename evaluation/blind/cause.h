@@ -59,7 +59,8 @@ std::vector<double> drawSizes(const EffectInfo& law, RandomStream& random);
 /// range or three times its usual range.
 std::optional<std::vector<double>> scaled(const EffectInfo& law, std::vector<double> values, double factor);
 
-/// Draws and scales sizes up to ten times until the change that the cause makes alone lies in the band; empty if it never does.
+/// Draws and scales sizes up to ten times until the change that the cause makes alone lies in the band; empty if it never does. A dead band
+/// must also shut the pressure of a muscle off in a twentieth of the fitted rows, and deliver it in another twentieth.
 std::optional<Cause> causeOfSize(const OutOfCatalogueLaw& law, const std::string& component, const std::string& size, const Truth& truth,
                                  RandomStream& random);
 

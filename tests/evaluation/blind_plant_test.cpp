@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "evaluation/blind/cause.h"
 #include "evaluation/blind/contribution.h"
 #include "evaluation/blind/excitation.h"
 #include "evaluation/blind/key.h"
@@ -89,6 +90,23 @@ TEST(BlindCause, ActsBesideOthersThatCanBeTold) {
   EXPECT_FALSE(beside("creep", "creep"));
   EXPECT_FALSE(beside("valve_lag", "flow_limit"));
   EXPECT_FALSE(beside("transport_delay", "sensor_delay"));
+}
+
+TEST(BlindCause, IsADeadBandThatCommandsEnterAndLeave) {
+  const OutOfCatalogueLaw& law = *std::ranges::find(outOfCatalogueLaws(), "command_dead_band", &OutOfCatalogueLaw::stands_for);
+  const auto drawn = [&](double amplitude) {
+    RandomStream random(1, "test");
+    const Recording plan = planned("rig", 1, {"steps", amplitude, 1}, 1, random);
+    const Truth truth({plan, plan}, {"pressure_0"}, {{"pressure_0", 0.004}}, 1);
+    auto cause = causeOfSize(law, "muscle_0", "strong", truth, random);
+    return std::pair(cause, cause ? truth.motion({cause->law}).front().find("pressure_0")->values : std::vector<double>{});
+  };
+  const auto [cause, pressure] = drawn(0.2);
+  ASSERT_TRUE(cause);
+  const auto shut = std::ranges::count(pressure, 0.0);
+  EXPECT_GE(20 * shut, std::ssize(pressure));
+  EXPECT_LE(20 * shut, 19 * std::ssize(pressure));
+  EXPECT_FALSE(drawn(0).first) << "a command that never changes is in the band or not";
 }
 
 TEST(BlindPlant, DemandsWhatCanBeSeen) {
