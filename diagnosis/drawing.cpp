@@ -40,6 +40,11 @@ RobotDrawing drawingOf(Simulation& simulation) {
     for (const DrawnFrame& frame : snapshot.frames)
       if (frame.name == angle.name) drawing.points.push_back({"joint_" + angle.name, frame.pose.block<2, 1>(0, 3).cast<double>()});
   }
+  for (const Robot::Slide& slide : simulation.robot().slides()) {
+    const dBodyID first = dJointGetBody(slide.joint->id(), 0);
+    const dReal* center = dBodyGetPosition(first ? first : dJointGetBody(slide.joint->id(), 1));
+    drawing.points.push_back({"slide_" + slide.name, {center[0], center[1]}});
+  }
   if (simulation.robot().hand()) drawing.points.push_back({"hand", simulation.robot().handMm().head<2>()});
   return drawing;
 }

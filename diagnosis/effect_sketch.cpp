@@ -99,6 +99,10 @@ Sketches pressureSketches() {
                       return t > 0.12 && t < 0.56 ? 0.7 + 0.15 * std::exp(-(t - 0.12) / 0.08) : 0.13;
                     })}},
           {"pressure_calibration", {"time", "pressure", graphOf(pulse), graphOf([](double t) { return 0.8 * pulse(t) + 0.1; })}},
+          {"regulator_tail",
+           {"time", "pressure", graphOf(pulse), graphOf([](double t) {
+              return pulse(t) + (t < 0.12 ? 0 : t < 0.56 ? -0.2 * std::exp(-(t - 0.12) / 0.15) : 0.2 * std::exp(-(t - 0.56) / 0.15));
+            })}},
           {"supply_droop", {"time", "supply", graphOf([](double) { return 0.85; }), graphOf([](double t) {
                               return t > 0.12 ? 0.85 - 0.5 * std::exp(-(t - 0.12) / 0.15) : 0.85;
                             })}},
@@ -139,6 +143,9 @@ Sketches bodySketches() {
       {"joint_coulomb_friction", {"angle", "torque", graphOf(spring), loopOf([spring](double q, double direction) {
                                     return spring(q) + 0.13 * std::tanh(8 * direction);
                                   })}},
+      {"slide_friction", {"position", "force", graphOf(spring), loopOf([spring](double x, double direction) {
+                            return spring(x) + 0.13 * std::tanh(8 * direction);
+                          })}},
       {"joint_viscous_friction",
        {"angle", "torque", graphOf(spring), loopOf([spring](double q, double direction) { return spring(q) + 0.15 * direction; })}},
       {"joint_stiffness", {"angle", "torque", graphOf(spring), graphOf([](double q) { return 0.95 - 0.9 * q; })}},

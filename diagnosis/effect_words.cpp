@@ -97,8 +97,10 @@ std::string signalUnitWords(const std::string& signal) {
 
 std::string ownerWords(const std::string& id, const std::string& component) {
   const bool is_sensor = id.starts_with("sensor_"), is_joint = id.starts_with("joint_");
-  if (component == "all") return is_sensor ? "every sensor" : is_joint ? "every joint" : "every muscle";
+  const bool is_slide = id.starts_with("slide_");
+  if (component == "all") return is_sensor ? "every sensor" : is_joint ? "every joint" : is_slide ? "every slide" : "every muscle";
   if (component.starts_with("joint_")) return "the " + spaced(component.substr(6)) + " joint";
+  if (component.starts_with("slide_")) return "the load on the " + spaced(component.substr(6));
   if (component.starts_with("signal_")) return "the " + signalTitle(component.substr(7));
   if (component == "hand" || component == "base") return "the " + component;
   if (const auto plus = component.find('+'); plus != std::string::npos)

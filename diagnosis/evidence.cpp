@@ -17,6 +17,7 @@ Part partOf(const Hypothesis& hypothesis) {
     case ComponentKind::signal:
       return Part::sensor;
     case ComponentKind::joint:
+    case ComponentKind::slide:
     case ComponentKind::hand:
     case ComponentKind::base:
       return Part::body;

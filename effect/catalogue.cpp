@@ -16,6 +16,7 @@
 #include "body/joint_stop_offset.h"
 #include "body/joint_viscous_friction.h"
 #include "body/payload.h"
+#include "body/slide_friction.h"
 #include "command/channel_swap.h"
 #include "command/command_dead_band.h"
 #include "command/command_quantisation.h"
@@ -33,6 +34,7 @@
 #include "pressure/flow_limit.h"
 #include "pressure/leak.h"
 #include "pressure/pressure_calibration.h"
+#include "pressure/regulator_tail.h"
 #include "pressure/supply_droop.h"
 #include "pressure/valve_lag.h"
 #include "pressure/volume_coupling.h"
@@ -55,6 +57,7 @@ std::vector<EffectInfo> builtInEffects() {
       // pressure: from the supply to the muscle
       SupplyDroop::info(),
       PressureCalibration::info(),
+      RegulatorTail::info(),
       ValveLag::info(),
       FlowLimit::info(),
       Leak::info(),
@@ -77,6 +80,7 @@ std::vector<EffectInfo> builtInEffects() {
       JointCoulombFriction::info(),
       JointViscousFriction::info(),
       JointStiffness::info(),
+      SlideFriction::info(),
       ExternalForce::info(),
       Contact::info(),
       // sensor: from the motion to the recording

@@ -49,6 +49,9 @@ std::vector<NamedPlace> namedPlaces(const EffectInfo& info, const Robot& robot) 
       case ComponentKind::joint:
         for (const auto& angle : robot.angles()) places.push_back({kind, "joint_" + angle.name, -1, -1, angle.name});
         break;
+      case ComponentKind::slide:
+        for (const auto& slide : robot.slides()) places.push_back({kind, "slide_" + slide.name, -1, -1, slide.name});
+        break;
       case ComponentKind::hand:
         if (robot.hand()) places.push_back({kind, "hand"});
         break;

@@ -74,6 +74,21 @@ void JointEffect::addTorqueNm(double torque_Nm) const {
   dJointAddHingeTorque(joint_->id(), torque_Nm * mm_per_m * force_per_N_);
 }
 
+void SlideEffect::attach(const EffectPlace& place) {
+  for (const auto& slide : place.robot.slides())
+    if (slide.name == place.joint) joint_ = slide.joint;
+  if (!joint_) throw BadParameter(fmt::format("effect on {}: the robot has no such slide", place.component));
+  force_per_N_ = place.world.physics().force_per_N;
+}
+
+double SlideEffect::rateMmPerS() const {
+  return dJointGetSliderPositionRate(joint_->id());
+}
+
+void SlideEffect::addForceN(double force_N) const {
+  dJointAddSliderForce(joint_->id(), force_N * force_per_N_);
+}
+
 void HandEffect::attach(const EffectPlace& place) {
   robot_ = &place.robot;
   force_per_N_ = place.world.physics().force_per_N;

@@ -83,6 +83,10 @@ void Robot::addAngle(const std::string& name, Joint* joint, int axis) {
   angles_.push_back({name, joint, axis});
 }
 
+void Robot::addSlide(const std::string& name, Joint* joint) {
+  slides_.push_back({name, joint});
+}
+
 void Robot::countTurns(bool from_zero) const {
   for (const Angle& angle : angles_) angle.joint->countTurns(from_zero);
 }

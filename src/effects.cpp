@@ -19,8 +19,14 @@ struct EffectsArguments {
 std::string componentsOf(const EffectInfo& info) {
   std::string names;
   for (const ComponentKind kind : info.acts_on) {
-    static const char* const forms[] = {
-        "all, muscle_<i>", "muscle_<i>+muscle_<j>", "all", "all, joint_<name>", "hand", "base", "all, signal_<column without unit>"};
+    static const char* const forms[] = {"all, muscle_<i>",
+                                        "muscle_<i>+muscle_<j>",
+                                        "all",
+                                        "all, joint_<name>",
+                                        "all, slide_<name>",
+                                        "hand",
+                                        "base",
+                                        "all, signal_<column without unit>"};
     names += (names.empty() ? "" : "; ") + std::string(forms[static_cast<std::size_t>(kind)]);
   }
   return names;

@@ -36,9 +36,9 @@ const std::vector<LookAlikes>& lookAlikes() {
   const auto by_motion = [](const Measured&) { return false; };  // pairs on other components: see acceptableAnswers
   static const std::vector<LookAlikes> classes = {{{"valve_lag", "viscous_loss", "joint_viscous_friction"}, without_both},
                                                   {{"force_gain", "pressure_calibration"}, without_pressure},
-                                                  {{"leak", "creep"}, without_pressure},
+                                                  {{"leak", "creep", "regulator_tail"}, without_pressure},
                                                   {{"transport_delay", "sensor_delay"}, by_motion},
-                                                  {{"braid_hysteresis", "joint_coulomb_friction"}, by_motion},
+                                                  {{"braid_hysteresis", "joint_coulomb_friction", "slide_friction"}, by_motion},
                                                   {{"length_offset", "attachment_offset"}, by_motion},
                                                   {{"payload", "force_gain"}, by_motion},
                                                   {{"base_tilt", "external_force", "sensor_bias"}, by_motion},

@@ -1,6 +1,6 @@
-/// Out-of-catalogue laws of the body stage: LuGre friction with a Stribeck curve (Canudas de Wit et al. 1995), damping that grows with
-/// speed, a hardening spring, a payload with air drag, a swaying base, attachments shifted in an oblique direction, rubber stops, a force
-/// from a weak spring, contact after Hunt and Crossley (1975).
+/// Out-of-catalogue laws of the body stage: LuGre friction with a Stribeck curve (Canudas de Wit et al. 1995) of joints and slides, damping
+/// that grows with speed, a hardening spring, a payload with air drag, a swaying base, attachments shifted in an oblique direction, rubber
+/// stops, a force from a weak spring, contact after Hunt and Crossley (1975).
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -35,6 +35,27 @@ class LuGre final : public JointEffect {
 
  private:
   double torque_Nm_, bristle_rad_ = 0;
+};
+
+/// LuGre on a slide: force = -(s_0 z + s_1 dz/dt),  dz/dt = v - s_0 |v| z / g(v),  g = F_c (1 + 0.3 exp(-(v / 20 mm/s)^2))
+class LuGreSlide final : public SlideEffect {
+ public:
+  explicit LuGreSlide(const EffectValues& v) : force_N_(v["force_N"]) {}
+  void reset() override { bristle_mm_ = 0; }
+  void apply(const StepTime& time) override {
+    if (!(time.h_s > 0)) return;  // friction does not shift an equilibrium
+    constexpr double stribeck_mm_per_s = 20, excess = 0.3, presliding_mm = 0.1, damping_s = 5e-3;
+    const double v = rateMmPerS(), x = v / stribeck_mm_per_s;
+    const double largest_N = force_N_ * (1 + excess * std::exp(-x * x)), stiffness = force_N_ / presliding_mm;
+    const double decay = stiffness * std::abs(v) / largest_N;
+    const double next = (bristle_mm_ + time.h_s * v) / (1 + time.h_s * decay);
+    const double rate = (next - bristle_mm_) / time.h_s;
+    bristle_mm_ = next;
+    addForceN(-stiffness * (bristle_mm_ + damping_s * rate));
+  }
+
+ private:
+  double force_N_, bristle_mm_ = 0;
 };
 
 /// torque = -b w (1 + |w| / 3 rad/s)
@@ -182,6 +203,9 @@ std::vector<OutOfCatalogueLaw> bodyLaws() {
       {entry("lugre", Stage::body, joint, "LuGre friction with Stribeck excess of 0.3",
              {{"torque_Nm", "N m", 0, 0, 100, 0.05, 0.6, "sliding"}}, [](const EffectValues& v) { return std::make_unique<LuGre>(v); }),
        "joint_coulomb_friction"},
+      {entry("lugre_slide", Stage::body, {ComponentKind::slide}, "LuGre friction of a slide with Stribeck excess of 0.3",
+             {{"force_N", "N", 0, 0, 1e4, 1, 10, "sliding"}}, [](const EffectValues& v) { return std::make_unique<LuGreSlide>(v); }),
+       "slide_friction"},
       {entry("growing_damping", Stage::body, joint, "torque = -b w (1 + |w| / 3 rad/s)",
              {{"damping_Nms_per_rad", "N m s/rad", 0, 0, 10, 0.01, 0.3, "b"}},
              [](const EffectValues& v) { return std::make_unique<GrowingDamping>(v); }),

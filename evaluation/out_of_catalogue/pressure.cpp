@@ -1,5 +1,6 @@
 /// Out-of-catalogue laws of the pressure stage: a lag of a line and of a growing volume, an orifice with choked and subsonic flow (ISO
-/// 6358), a choked leak, a tank that empties, the volume of an ideal braid (Chou and Hannaford 1996), a bowed calibration.
+/// 6358), a choked leak, a tail that large changes shorten, a tank that empties, the volume of an ideal braid (Chou and Hannaford 1996), a
+/// bowed calibration.
 #include <algorithm>
 #include <cmath>
 
@@ -124,6 +125,24 @@ class BraidVolume final : public MuscleRatioEffect {
   double coupling_, regulator_s_, pressure_ = 0;
 };
 
+/// p = u - s (u - w),  dw/dt = (u - w) |u - w| / (0.2 tau) + (u - w) / (4 tau): large changes end sooner than small ones
+class HurriedTail final : public MuscleRatioEffect {
+ public:
+  explicit HurriedTail(const EffectValues& v) : share_(v["share"]), time_constant_s_(v["time_constant_s"]) {}
+
+ private:
+  double output(double input, const StepTime& time) override {
+    constexpr double full_change = 0.2, slow_factor = 4;
+    const double left = input - slow_;
+    const double rate_per_s = (std::abs(left) / full_change + 1 / slow_factor) / time_constant_s_;
+    slow_ = input - left * std::exp(-rate_per_s * time.h_s);
+    return input - share_ * (input - slow_);
+  }
+  double settled(double input) override { return slow_ = input; }
+
+  double share_, time_constant_s_, slow_ = 0;
+};
+
 /// p' = g p + o + c p (1 - p)
 class BowedCalibration final : public MuscleRatioEffect {
  public:
@@ -157,6 +176,10 @@ std::vector<OutOfCatalogueLaw> pressureLaws() {
               {"exponent", "", 1, 0.3, 1.5, 0.5, 1, "n", true}},
              [](const EffectValues& v) { return std::make_unique<ChokedLeak>(v); }),
        "leak"},
+      {entry("hurried_tail", Stage::pressure, muscle, "p = u - s (u - w), dw/dt = (u - w) (|u - w| / 0.2 + 1 / 4) / tau",
+             {{"share", "", 0, 0, 1, 0.04, 0.3, "s"}, {"time_constant_s", "s", 1, 0.01, 1000, 0.4, 2, "tau", true}},
+             [](const EffectValues& v) { return std::make_unique<HurriedTail>(v); }),
+       "regulator_tail"},
       {entry("tank", Stage::pressure, {ComponentKind::all_muscles}, "ds/dt = (1 - s) / T - c sum max(0, du/dt), p = min(u, s)",
              {{"loss_per_fill", "", 0, 0, 10, 0.2, 0.8, "c"}, {"recovery_s", "s", 0.3, 0.01, 100, 0.1, 0.6, "T", true}},
              [](const EffectValues& v) { return std::make_unique<Tank>(v); }),

@@ -222,6 +222,7 @@ void FileRobot::buildJoint(const JointEntry& entry) {
   Joint* joint = attach(entry, body, other);
   joint->setName(entry.name);
   joints_[entry.name] = joint;
+  if (entry.type == "slider") addSlide(entry.name, joint);
   if (entry.report && (entry.type == "hinge2" || entry.type == "universal")) {
     addAngle(entry.name + "_1", joint, 0);
     addAngle(entry.name + "_2", joint, 1);

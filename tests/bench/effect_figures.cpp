@@ -30,6 +30,7 @@ struct Case {
 Case caseOf(const EffectInfo& info) {
   const bool on_rig =
       info.stage == Stage::force || info.stage == Stage::pressure || (info.stage == Stage::command && info.id != "channel_swap");
+  if (info.id == "slide_friction") return {"rig", "slide_guide", {"force_0_N", "length_0_mm"}};
   if (on_rig) return {"rig", "all", {info.stage == Stage::force ? "force_0_N" : "pressure_0", "length_0_mm"}};
   if (info.stage == Stage::sensor) return {"elbow", "signal_angle_elbow", {"angle_elbow_deg", "length_0_mm"}};
   Simulation simulation;

@@ -228,6 +228,54 @@ TEST(JointCoulombFriction, TakesNoMoreThanItsTorqueOnceItSlides) {
   for (std::size_t i = 1; i < 4; ++i) EXPECT_NEAR(amplitudes[i - 1] - amplitudes[i], loss_deg, 0.07 * loss_deg);
 }
 
+/// A ball on a horizontal guide along x.
+class Carriage : public Robot {
+ public:
+  explicit Carriage(World& world) : Robot(world) {
+    auto* ball = new Sphere(world, nullptr, Vector::Zero(), mass_kg * g_per_kg, 0, 1);
+    addSlide("rail", ball->attachSlider(nullptr, Vector::UnitX()));
+    setHand(ball);
+  }
+};
+
+class Slid {
+ public:
+  explicit Slid(std::vector<ActiveEffect> effects)
+      : simulation_(optionsWith(std::move(effects))), robot_(simulation_.build<Carriage>()) {
+    simulation_.start("built", {});
+  }
+  double positionMm() const { return robot_.handMm().x(); }
+  void run(double duration_s) { simulation_.advance(duration_s); }
+  void push(double velocity_mm_per_s) { dBodySetLinearVel(robot_.hand()->body().id, velocity_mm_per_s, 0, 0); }
+
+ private:
+  Simulation simulation_;
+  Carriage& robot_;
+};
+
+TEST(SlideFriction, StopsAMovingLoadAndHoldsIt) {
+  // s = m v^2 / (2 F_c); the spring of 0.05 mm before it slides changes the way by no more than that.
+  const double force_N = 0.8, velocity_mm_per_s = 200;
+  const double way_mm = mass_kg * velocity_mm_per_s * velocity_mm_per_s / (2 * force_N * mm_per_m);
+  for (const double presliding_mm : {0.0, 0.05}) {
+    Slid load({{"slide_friction", "all", {{"force_N", force_N}, {"presliding_mm", presliding_mm}}}});
+    load.push(velocity_mm_per_s);
+    load.run(1);
+    EXPECT_NEAR(load.positionMm(), way_mm, 0.02 * way_mm) << presliding_mm;
+    const double stuck_mm = load.positionMm();
+    load.run(1);
+    EXPECT_NEAR(load.positionMm(), stuck_mm, 2 * presliding_mm + 1e-5) << presliding_mm;
+  }
+}
+
+TEST(SlideFriction, HoldsUpToItsForce) {
+  for (const double share : {0.95, 1.05}) {
+    Slid load({{"slide_friction", "slide_rail", {{"force_N", 2.0}}}, {"external_force", "hand", {{"force_x_N", share * 2}}}});
+    load.run(0.5);
+    EXPECT_EQ(std::abs(load.positionMm()) > 0.1, share > 1) << share;
+  }
+}
+
 TEST(DissipativeBodies, NeverAddEnergy) {
   const std::vector<ActiveEffect> kinds = {{"joint_coulomb_friction", "all", {{"torque_Nm", 0.05}}},
                                            {"joint_viscous_friction", "all", {{"damping_Nms_per_rad", 0.5}}},

@@ -64,8 +64,11 @@ TEST(Catalogue, ListsTheComponentsOfARobot) {
   EXPECT_EQ(signals.front(), "all");
   EXPECT_EQ(signals.back(), "signal_hand_z");
   EXPECT_EQ(signals.size(), 1u + 2 + 2 + 2 + 1 + 3);
+  EXPECT_TRUE(componentsFor(effectInfo("slide_friction"), robot).empty());
   Simulation rig;
-  EXPECT_TRUE(componentsFor(effectInfo("joint_viscous_friction"), rig.build("rig")).empty());
+  const Robot& frame = rig.build("rig");
+  EXPECT_TRUE(componentsFor(effectInfo("joint_viscous_friction"), frame).empty());
+  EXPECT_EQ(componentsFor(effectInfo("slide_friction"), frame), (std::vector<std::string>{"slide_guide"}));
 }
 
 std::vector<std::string> relevantNames(const std::string& id, const std::string& component) {

@@ -172,6 +172,17 @@ TEST(VolumeCoupling, VanishesWithAFastValve) {
     EXPECT_NEAR(valuesOf(run, "pressure_0")[row], commands.signals[0].values[row - 1], 1e-3);
 }
 
+TEST(RegulatorTail, MakesAShareOfEachChangeLate) {
+  const std::vector<ActiveEffect> tail = {{"regulator_tail", "all", {{"share", 0.1}, {"time_constant_s", 0.2}}}};
+  const ReplayResult filling = replayWith(stepOf("rig", {0.3}, {0.5}), tail), venting = replayWith(stepOf("rig", {0.5}, {0.3}), tail);
+  for (std::size_t row = 0; row < filling.simulated.time_s.size(); ++row) {
+    const double time_s = filling.simulated.time_s[row], t = sinceStep(time_s), left = 0.1 * 0.2 * std::exp(-t / 0.2);
+    if (std::abs(time_s - 0.1) < 1e-4) continue;  // the row of the step itself
+    EXPECT_NEAR(valuesOf(filling, "pressure_0")[row], time_s < 0.1 ? 0.3 : 0.5 - left, 1e-12);
+    EXPECT_NEAR(valuesOf(venting, "pressure_0")[row], time_s < 0.1 ? 0.5 : 0.3 + left, 1e-12);
+  }
+}
+
 TEST(PressureCalibration, IsAStraightLineAboveZero) {
   const std::vector<ActiveEffect> calibration = {{"pressure_calibration", "all", {{"gain", 0.9}, {"offset", -0.05}}}};
   const ReplayResult run = replayWith(stepOf("rig", {0.02}, {0.5}), calibration);

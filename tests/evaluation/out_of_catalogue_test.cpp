@@ -40,6 +40,11 @@ TEST(OutOfCatalogue, HasALawForEveryEffectAndSixCausesMore) {
   }
 }
 
+/// For effects that only a rig can have: a load on a guide.
+Recording rigCommands() {
+  return commandsFor("rig", 0.5, [](double t) { return Action{0.3 + 0.2 * std::sin(7 * t)}; });
+}
+
 Recording elbowCommands() {
   return commandsFor("elbow", 0.5, [](double t) {
     return Action{0.1 + 0.7 * std::min(1.0, 2 * std::abs(std::sin(7 * t))), 0.15 + 0.1 * t};
@@ -54,13 +59,15 @@ double largestDifference(const ReplayResult& one, const ReplayResult& other) {
 
 /// The same parameters, as far as both laws have them, give another motion or reading: the law is not the catalogue's.
 TEST(OutOfCatalogue, IsAnotherLaw) {
-  const Recording commands = elbowCommands();
-  Simulation probe;
-  const Robot& robot = probe.build("elbow");
+  const Recording elbow_commands = elbowCommands(), rig_commands = rigCommands();
+  Simulation elbow, rig;
+  const Robot &elbow_robot = elbow.build("elbow"), &rig_robot = rig.build("rig");
   for (const OutOfCatalogueLaw& foreign : outOfCatalogueLaws()) {
     if (foreign.stands_for.empty()) continue;
     const EffectInfo own = effectInfo(foreign.stands_for);
-    const std::string component = componentsFor(own, robot).front();
+    const bool on_elbow = !componentsFor(own, elbow_robot).empty();
+    const Recording& commands = on_elbow ? elbow_commands : rig_commands;
+    const std::string component = componentsFor(own, on_elbow ? elbow_robot : rig_robot).front();
     std::vector<double> values;
     for (const EffectParameter& p : foreign.info.parameters) values.push_back(p.shape ? p.neutral : p.usual_high);
     ActiveEffect truth = activeEffect(foreign.info, component, values), candidate{own.id, component, {}};

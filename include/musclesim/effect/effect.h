@@ -25,7 +25,7 @@ enum class Stage { command, pressure, force, body, sensor };
 std::string nameOf(Stage stage);
 
 /// What one object of an effect acts on.
-enum class ComponentKind { muscle, muscle_pair, all_muscles, joint, hand, base, signal };
+enum class ComponentKind { muscle, muscle_pair, all_muscles, joint, slide, hand, base, signal };
 
 /// One number of an effect, for users and for fits.
 struct EffectParameter {
@@ -66,7 +66,7 @@ struct EffectPlace {
   Robot& robot;
   ComponentKind kind;
   int muscle, other_muscle;                 ///< numbers in the robot's order; -1: none
-  std::string joint;                        ///< name in angle_<joint>_deg
+  std::string joint;                        ///< name in angle_<joint>_deg, or of the guide of a slide
   int signal;                               ///< number in Robot::signalNames(); -1: none
   std::string component;                    ///< of this place, for messages
   bool one_of_all;                          ///< the effect was asked for on "all"
@@ -174,6 +174,22 @@ class JointEffect : public BodyEffect {
   double angleDeg() const;
   double rateRadPerS() const;
   void addTorqueNm(double torque_Nm) const;
+  const Joint& joint() const { return *joint_; }
+  double forcePerN() const { return force_per_N_; }
+
+ private:
+  const Joint* joint_ = nullptr;
+  double force_per_N_ = 0;
+};
+
+/// A BodyEffect on a body that slides on a guide (Robot::slides).
+class SlideEffect : public BodyEffect {
+ public:
+  void attach(const EffectPlace& place) override;
+
+ protected:
+  double rateMmPerS() const;
+  void addForceN(double force_N) const;
   const Joint& joint() const { return *joint_; }
   double forcePerN() const { return force_per_N_; }
 

@@ -69,6 +69,12 @@ class Robot {
     int axis;
   };
   const std::vector<Angle>& angles() const { return angles_; }
+  /// A body that slides on a guide, by the name of the guide.
+  struct Slide {
+    std::string name;
+    Joint* joint;
+  };
+  const std::vector<Slide>& slides() const { return slides_; }
   /// Joint::countTurns for all joints whose angles are reported.
   void countTurns(bool from_zero = false) const;
   /// The colours that the robot gave to its muscles; muscles without a name for their colour are left out.
@@ -126,6 +132,8 @@ class Robot {
   void addActuator(Actuator* actuator);
   /// A joint whose angle is reported as angle_<name>_deg.
   void addAngle(const std::string& name, Joint* joint, int axis = 0);
+  /// A slider on which effects may act as slide_<name>. Robots from files list all of theirs.
+  void addSlide(const std::string& name, Joint* joint);
   /// The reported point: a point of a primitive's body, given in the body's frame relative to its centre of mass, mm.
   void setHand(Primitive* primitive, const Vector& offset_mm = Vector::Zero());
   /// A point that carries what effects hang on the hand, but is not reported; given as for setHand.
@@ -141,6 +149,7 @@ class Robot {
   World& world_;
   std::vector<Actuator*> actuators_;
   std::vector<Angle> angles_;
+  std::vector<Slide> slides_;
   std::set<std::pair<int, MuscleEnd>> mounted_ends_;
   Primitive* hand_ = nullptr;
   bool hand_reported_ = false;
