@@ -240,8 +240,7 @@ class Carriage : public Robot {
 
 class Slid {
  public:
-  explicit Slid(std::vector<ActiveEffect> effects)
-      : simulation_(optionsWith(std::move(effects))), robot_(simulation_.build<Carriage>()) {
+  explicit Slid(std::vector<ActiveEffect> effects) : simulation_(optionsWith(std::move(effects))), robot_(simulation_.build<Carriage>()) {
     simulation_.start("built", {});
   }
   double positionMm() const { return robot_.handMm().x(); }
