@@ -31,7 +31,7 @@ std::vector<LoadedEngine> loadEngines() {
   std::error_code ignored;
   const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path() / "peers";
   std::vector<LoadedEngine> engines;
-  for (const char* name : {"MuJoCo", "Simbody"}) engines.push_back(load(folder, name));
+  for (const char* name : {"MuJoCo", "Simbody", "Bullet"}) engines.push_back(load(folder, name));
   return engines;
 }
 

@@ -9,7 +9,7 @@
 namespace musclesim::peers {
 
 struct LoadedEngine {
-  std::string name;                    ///< MuJoCo, Simbody
+  std::string name;                    ///< MuJoCo, Simbody, Bullet
   const PeerEngine* engine = nullptr;  ///< null: not there
   std::string reason;                  ///< why not
 };

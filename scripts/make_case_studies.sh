@@ -66,6 +66,7 @@ excluded=""
 diagnose bench_loop $load,force_law.bore_N,force_law.threshold_N bench_loop
 diagnose bench_loop_corrected $load,force_law.bore_N,force_law.threshold_N bench_loop_corrected
 diagnose bench_step $load bench_step
+diagnose bench_step_whole $load,force_law.bore_N,force_law.threshold_N bench_step bench_loop
 for stop_mm in 72 90 120; do diagnose cavatappi_$stop_mm "" hold_$stop_mm; done
 diagnose bellows elbow.forearm_kg,elbow.forearm_inertia_kgm2,force_law.c_kgf bellows_7 bellows_9 bellows_11
 

@@ -165,7 +165,7 @@ Action addBench(CLI::App& command, ModelOptions& model) {
   auto arguments = std::make_shared<BenchArguments>();
   command.add_flag(
       "--peers", arguments->peers,
-      "Instead: the same arm in MuJoCo and Simbody, as far as they were installed when musclesim was built, each at its best step");
+      "Instead: the same arm in MuJoCo, Simbody and Bullet, as far as they were installed when musclesim was built, each at its best step");
   command.add_option("--duration", arguments->duration_s, "Simulated time per run, in true s; without --peers")->capture_default_str();
   command.add_option("--time-limit", arguments->time_limit_s,
                      fmt::format("A run that has used this much CPU time, in s, is cut short (default: {:g}, with --peers {:g})",

@@ -92,16 +92,18 @@ std::string peersSection(const std::vector<PeerResult>& results, int repeat_coun
       peer_rule_early_s, peer_rule_late_s, repeat_count, time_limit_s);
   text += table(results, true) + table(results, false) + verdict(results);
   text +=
-      "\nWhat is not the same. Two balls between the same two bones are one hinge in the other engines, whose joints need no constraint "
-      "and "
-      "cannot open except where a chain closes a loop. Hinges between links do not bounce off their stops there. At a stop musclesim's "
+      "\nWhat is not the same. Two balls between the same two bones are one hinge in the other engines. Joints of MuJoCo and Simbody need "
+      "no constraint and cannot open except where a chain closes a loop; all joints of Bullet are constraints, as musclesim's are. Hinges "
+      "between links do not bounce off their stops there. At a stop musclesim's "
       "friction presses into it, as ODE's does.\n\nMuJoCo: stops and friction are springs and dampers with its default impedance. \"Added "
       "inertia\": beads gain what musclesim's gain, in proportion to the square of the step, which allows longer steps.\n\nSimbody: a "
       "joint "
       "has neither dry friction nor stops, only forces. Friction is F tanh(v/v0), v0 = 50 mm/s or 2 rad/s, and stops are springs of 1 "
       "kN/mm "
       "in sliders, 33 N m/rad between links and 5 kN m/rad between bones; they let the elbow, which begins at its stop, give way by some "
-      "millimetres at the hand.\n";
+      "millimetres at the hand.\n\nBullet: double precision, its usual world of rigid bodies. Dry friction is a motor with bounded force; "
+      "errors of position are corrected by a fifth in each step, its default. The number is that of its solver's sweeps; Dantzig solves "
+      "exactly, at a cost that grows with the cube of the number of joints.\n";
   return text + "\n![r over the number of muscles, musclesim and other engines](figures/peers.svg)\n\n" + last_line + "\n";
 }
 
