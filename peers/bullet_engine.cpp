@@ -26,15 +26,6 @@ btMatrix3x3 toBullet(const Eigen::Matrix3d& m) {
   return {m(0, 0), m(0, 1), m(0, 2), m(1, 0), m(1, 1), m(1, 2), m(2, 0), m(2, 1), m(2, 2)};
 }
 
-/// Columns: a direction as the x axis (a slider's) or as the z axis (a hinge's), and two directions across.
-Eigen::Matrix3d frameAlong(const Vector& direction, int column) {
-  Eigen::Matrix3d frame;
-  frame.col(column) = direction;
-  frame.col((column + 1) % 3) = direction.unitOrthogonal();
-  frame.col((column + 2) % 3) = direction.cross(frame.col((column + 1) % 3));
-  return frame;
-}
-
 /// A solver and its number of sweeps.
 struct Method {
   const char* name;

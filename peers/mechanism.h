@@ -47,6 +47,16 @@ struct BodyJoint {
   const Joint* source = nullptr;
 };
 
+/// A frame for a joint. Columns: the axis as the x axis (of a slider: column 0) or as the z axis (of a hinge: column 2), and two directions
+/// across.
+inline Eigen::Matrix3d frameAlong(const Vector& axis, int column) {
+  Eigen::Matrix3d frame;
+  frame.col(column) = axis;
+  frame.col((column + 1) % 3) = axis.unitOrthogonal();
+  frame.col((column + 2) % 3) = axis.cross(frame.col((column + 1) % 3));
+  return frame;
+}
+
 /// A point on a body, in its frame, or in the world.
 struct BodyPoint {
   int body = environment;

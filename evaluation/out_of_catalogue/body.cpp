@@ -16,46 +16,46 @@ namespace musclesim::out_of_catalogue {
 
 namespace {
 
-/// torque = -(s_0 z + s_1 dz/dt),  dz/dt = w - s_0 |w| z / g(w),  g = tc (1 + 0.3 exp(-(w / 0.3)^2))
-class LuGre final : public JointEffect {
- public:
-  explicit LuGre(const EffectValues& v) : torque_Nm_(v["torque_Nm"]) {}
-  void reset() override { bristle_rad_ = 0; }
-  void apply(const StepTime& time) override {
-    if (!(time.h_s > 0)) return;  // friction does not shift an equilibrium
-    constexpr double stribeck_rad_per_s = 0.3, excess = 0.3, presliding_rad = 0.004, damping_s = 5e-3;
-    const double w = rateRadPerS(), x = w / stribeck_rad_per_s;
-    const double largest_Nm = torque_Nm_ * (1 + excess * std::exp(-x * x)), stiffness = torque_Nm_ / presliding_rad;
-    const double decay = stiffness * std::abs(w) / largest_Nm;
-    const double next = (bristle_rad_ + time.h_s * w) / (1 + time.h_s * decay);
-    const double rate = (next - bristle_rad_) / time.h_s;
-    bristle_rad_ = next;
-    addTorqueNm(-stiffness * (bristle_rad_ + damping_s * rate));
-  }
+/// LuGre friction: F = s_0 z + s_1 dz/dt,  dz/dt = v - s_0 |v| z / g(v),  g = F_c (1 + 0.3 exp(-(v / v_s)^2)),  s_0 = F_c / presliding,
+/// s_1 = 5 ms s_0
+struct Bristle {
+  double full, presliding, stribeck_speed;  ///< N and mm, or N m and rad
+  double bend = 0;                          ///< z
 
- private:
-  double torque_Nm_, bristle_rad_ = 0;
+  /// The friction against a speed that is kept for h_s.
+  double friction(double speed, double h_s) {
+    constexpr double excess = 0.3, damping_s = 5e-3;
+    const double x = speed / stribeck_speed, largest = full * (1 + excess * std::exp(-x * x)), stiffness = full / presliding;
+    const double decay = stiffness * std::abs(speed) / largest;
+    const double next = (bend + h_s * speed) / (1 + h_s * decay);
+    const double rate = (next - bend) / h_s;
+    bend = next;
+    return stiffness * (bend + damping_s * rate);
+  }
 };
 
-/// LuGre on a slide: force = -(s_0 z + s_1 dz/dt),  dz/dt = v - s_0 |v| z / g(v),  g = F_c (1 + 0.3 exp(-(v / 20 mm/s)^2))
-class LuGreSlide final : public SlideEffect {
+class LuGre final : public JointEffect {
  public:
-  explicit LuGreSlide(const EffectValues& v) : force_N_(v["force_N"]) {}
-  void reset() override { bristle_mm_ = 0; }
+  explicit LuGre(const EffectValues& v) : bristle_{v["torque_Nm"], 0.004, 0.3} {}
+  void reset() override { bristle_.bend = 0; }
   void apply(const StepTime& time) override {
-    if (!(time.h_s > 0)) return;  // friction does not shift an equilibrium
-    constexpr double stribeck_mm_per_s = 20, excess = 0.3, presliding_mm = 0.1, damping_s = 5e-3;
-    const double v = rateMmPerS(), x = v / stribeck_mm_per_s;
-    const double largest_N = force_N_ * (1 + excess * std::exp(-x * x)), stiffness = force_N_ / presliding_mm;
-    const double decay = stiffness * std::abs(v) / largest_N;
-    const double next = (bristle_mm_ + time.h_s * v) / (1 + time.h_s * decay);
-    const double rate = (next - bristle_mm_) / time.h_s;
-    bristle_mm_ = next;
-    addForceN(-stiffness * (bristle_mm_ + damping_s * rate));
+    if (time.h_s > 0) addTorqueNm(-bristle_.friction(rateRadPerS(), time.h_s));  // friction does not shift an equilibrium
   }
 
  private:
-  double force_N_, bristle_mm_ = 0;
+  Bristle bristle_;
+};
+
+class LuGreSlide final : public SlideEffect {
+ public:
+  explicit LuGreSlide(const EffectValues& v) : bristle_{v["force_N"], 0.1, 20} {}
+  void reset() override { bristle_.bend = 0; }
+  void apply(const StepTime& time) override {
+    if (time.h_s > 0) addForceN(-bristle_.friction(rateMmPerS(), time.h_s));
+  }
+
+ private:
+  Bristle bristle_;
 };
 
 /// torque = -b w (1 + |w| / 3 rad/s)
