@@ -164,14 +164,29 @@ std::string diagnosisJson(const Diagnosis& d, const std::string& schedule_file) 
 }
 
 std::string diagnosisSummary(const Diagnosis& d) {
+  constexpr double worth_listing = 0.1;   ///< probability of an effect that is not in the chosen set
+  constexpr std::size_t most_listed = 6;  ///< lines of effects, and of sets
   std::string text = verdictSentence(d) + "\n";
   if (d.partial) text = "Interrupted: these are only the results up to the interruption.\n" + text;
   if (!d.tuned.empty()) text += fmt::format("tuned     {} of the model first, see nominal.toml\n", counted(d.tuned.size(), "parameter"));
   if (!d.where.empty()) text += fmt::format("where     {}\n", whereSentence(d));
-  for (std::size_t i = 0; i < std::min<std::size_t>(3, d.effects.size()); ++i)
-    text +=
-        fmt::format("{:<9} {:>11}  {}\n", i == 0 ? "which" : "", probabilityWords(d.effects[i].probability), effectSentence(d.effects[i]));
-  if (d.none_of_these > 0) text += fmt::format("{:<9} {:>11}  none of these\n", "", probabilityWords(d.none_of_these));
+  const auto listed = [&](const char* title, double probability, const std::string& words) {
+    text += fmt::format("{:<9} {:>11}  {}\n", title, probabilityWords(probability), words);
+  };
+  std::size_t count = 0;
+  for (const FoundEffect& effect : d.effects) {
+    const bool is_chosen = std::ranges::find(d.chosen, effect.label()) != d.chosen.end();
+    if (is_chosen || (effect.probability >= worth_listing && count < most_listed) || count == 0)
+      listed(count++ == 0 ? "which" : "", effect.probability, effectSentence(effect));
+  }
+  if (d.none_of_these > 0) listed("", d.none_of_these, "none of these");
+  if (d.ambiguity_sets.size() > 1)
+    for (std::size_t i = 0; i < std::min(most_listed, d.ambiguity_sets.size()); ++i) {
+      const auto set = std::ranges::find_if(
+          d.explanations, [&](const ExplanationProbability& one) { return std::ranges::is_permutation(one.effects, d.ambiguity_sets[i]); });
+      listed(i == 0 ? "sets" : "", set == d.explanations.end() ? 0 : set->probability,
+             fmt::format("{}", fmt::join(d.ambiguity_sets[i], " + ")));
+    }
   if (!d.chosen.empty())
     text += fmt::format("how far   {} of the gap on {}; nominal refit {:.1f} %, negative control {:.1f} %\n          {}\n",
                         percentWords(d.reduction_percent), d.held_out, d.nominal_refit_percent, d.negative_control_percent,

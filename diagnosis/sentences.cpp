@@ -197,15 +197,17 @@ std::string effectWords(const Diagnosis& d, const std::string& label) {
   return parameters.empty() ? words : words + " with " + parameters;
 }
 
-/// "valve lag on muscle 1 together with payload on hand".
+/// "valve lag on muscle 1 together with payload on hand"; "creep on muscle 1, leak on muscle 1 and payload on hand together".
 std::string listWords(const std::vector<std::string>& labels) {
   std::vector<std::string> words;
   for (const std::string& label : labels) words.push_back(labelWords(label));
-  return fmt::format("{}", fmt::join(words, " together with "));
+  if (words.size() < 3) return fmt::format("{}", fmt::join(words, " together with "));
+  return fmt::format("{} and {} together", fmt::join(words.begin(), words.end() - 1, ", "), words.back());
 }
 
-/// The same with parameters.
+/// One effect or two with their parameters. Those of more would hide what the sentence says; they are listed elsewhere.
 std::string chosenWords(const Diagnosis& d) {
+  if (d.chosen.size() > 2) return listWords(d.chosen);
   std::vector<std::string> words;
   for (const std::string& label : d.chosen) words.push_back(effectWords(d, label));
   return fmt::format("{}", fmt::join(words, " together with "));
@@ -241,19 +243,21 @@ std::string numbersWords(const Diagnosis& d) {
 /// "valve lag on muscle 1 together with payload on hand" of "valve_lag@muscle_1 + payload@hand".
 std::string explanationWords(const std::string& labels) {
   const std::string link = " + ";
-  std::string words;
+  std::vector<std::string> each;
   for (std::size_t first = 0, end = 0; end != std::string::npos; first = end + link.size()) {
     end = labels.find(link, first);
-    words += (words.empty() ? "" : " together with ") + labelWords(labels.substr(first, end - first));
+    each.push_back(labels.substr(first, end - first));
   }
-  return words;
+  return listWords(each);
 }
 
 /// What the next experiment distinguishes, and how clearly.
 std::string separatedWords(const Diagnosis& d) {
   const std::vector<std::string>& separates = d.next_experiment.separates;
   std::string words = "them apart";
-  if (separates.size() < d.alternatives.size()) {
+  if (separates.size() > 2 && separates.size() < d.alternatives.size()) {
+    words = "the likeliest of them apart";
+  } else if (separates.size() < d.alternatives.size()) {
     std::vector<std::string> others;
     for (auto other = separates.begin() + 1; other != separates.end(); ++other) others.push_back(explanationWords(*other));
     words = fmt::format("{} from {}", explanationWords(separates.front()), fmt::join(others, " and "));
@@ -266,14 +270,18 @@ std::string separatedWords(const Diagnosis& d) {
 
 /// The alternatives, and how to distinguish them.
 std::string otherwise(const Diagnosis& d) {
+  constexpr std::ptrdiff_t most_named = 2;
   if (d.alternatives.size() < 2) return "";
   std::vector<std::string> others;
-  for (auto other = d.alternatives.begin() + 1; other != d.alternatives.end(); ++other) others.push_back(explanationWords(*other));
+  const auto first = d.alternatives.begin() + 1, end = first + std::min(most_named, d.alternatives.end() - first);
+  for (auto other = first; other != end; ++other) others.push_back(explanationWords(*other));
   others.front().front() = static_cast<char>(std::toupper(static_cast<unsigned char>(others.front().front())));
   const bool pairs = std::ranges::any_of(d.alternatives, [](const std::string& labels) { return labels.find(" + ") != std::string::npos; });
   std::string experiment;
   if (!d.next_experiment.commands.empty()) experiment = "; record the schedule in next.csv to tell " + separatedWords(d);
-  return fmt::format("{} would explain the gap as well{}.", fmt::join(others, pairs ? "; or " : " or "), experiment);
+  const auto more = static_cast<std::size_t>(d.alternatives.end() - end);
+  return fmt::format("{} would explain the gap as well{}{}.", fmt::join(others, pairs ? "; or " : " or "),
+                     more > 0 ? ", and so would " + counted(more, "other explanation") : "", experiment);
 }
 
 /// A warning if the motion is so sensitive that the time step changes it by a noticeable share of the gap.

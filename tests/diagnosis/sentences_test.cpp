@@ -202,6 +202,31 @@ TEST(VerdictSentence, NamesOtherSetsInFull) {
       << verdictSentence(d);
 }
 
+TEST(VerdictSentence, CountsWhatItDoesNotName) {
+  Diagnosis d = lagFound();
+  d.chosen = {"creep@muscle_1", "payload@hand", "valve_lag@muscle_1"};
+  d.alternatives = {"creep@muscle_1 + payload@hand + valve_lag@muscle_1", "leak@muscle_1", "creep@muscle_1", "payload@hand",
+                    "leak@muscle_1 + payload@hand"};
+  const std::string text = verdictSentence(d);
+  EXPECT_TRUE(contains(text, "is creep on muscle 1, payload on hand and valve lag on muscle 1 together; adding them")) << text;
+  EXPECT_TRUE(contains(text, "Leak on muscle 1; or creep on muscle 1 would explain the gap as well, and so would 2 other explanations."))
+      << text;
+}
+
+TEST(DiagnosisSummary, ListsAllChosenEffectsAndTheSetsBesideThem) {
+  Diagnosis d = lagFound();
+  d.effects = {{"leak", "muscle_0", 0.6, {}, 5},      {"creep", "muscle_0", 0.55, {}, 5}, {"payload", "hand", 0.5, {}, 5},
+               {"valve_lag", "muscle_1", 0.4, {}, 5}, {"base_tilt", "base", 0.2, {}, 5},  {"force_gain", "all", 0.05, {}, 5}};
+  d.chosen = {"leak@muscle_0", "creep@muscle_0", "payload@hand", "valve_lag@muscle_1"};
+  d.explanations = {{d.chosen, 0.4}, {{"leak@muscle_0", "base_tilt@base"}, 0.2}};
+  d.ambiguity_sets = {{"payload@hand", "creep@muscle_0", "leak@muscle_0", "valve_lag@muscle_1"}, {"base_tilt@base", "leak@muscle_0"}};
+  const std::string text = diagnosisSummary(d);
+  for (const char* line : {"40 %  valve_lag@muscle_1\n", "20 %  base_tilt@base\n", "40 %  payload@hand + creep@muscle_0 + leak@muscle_0 + ",
+                           "20 %  base_tilt@base + leak@muscle_0\n"})
+    EXPECT_TRUE(contains(text, line)) << line << text;
+  EXPECT_FALSE(contains(text, "force_gain"));
+}
+
 TEST(VerdictSentence, SaysHowLikelyNoneOfTheKnownEffectsIs) {
   Diagnosis d = lagFound();
   d.none_of_these = 0.09;
