@@ -138,6 +138,7 @@ State Robot::getState() const {
 State Robot::truth() const {
   State state;
   state.time_s = world_.clock().time_s();
+  for (auto* quantity : {&state.command, &state.pressure, &state.force_N, &state.length_mm}) quantity->reserve(actuators_.size());
   for (const Actuator* actuator : actuators_) {
     state.command.push_back(actuator->command());
     state.pressure.push_back(actuator->pressure());

@@ -210,9 +210,9 @@ ReplayResult replayRecording(const Recording& recording, const ReplayOptions& op
   }
   try {
     for (std::size_t row = 0; row < recording.time_s.size(); ++row) {
-      State state = robot.getState();
-      state.time_s = recording.time_s[row];
-      const Action action = commands.output(state);
+      State now;  // recorded commands depend on the time alone
+      now.time_s = recording.time_s[row];
+      const Action action = commands.output(now);
       if (row == 0)
         simulation.start(*result.simulated.info.initial_state, action);
       else
