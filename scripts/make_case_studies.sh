@@ -60,7 +60,7 @@ diagnose wrist_sweep_as_published $lever,wrist.own_inertia_kgm2 wrist_step wrist
 diagnose wrist_sweep_by_itself $lever,wrist.own_inertia_kgm2 wrist_sweep_as_published
 diagnose wrist_step $lever,wrist.own_inertia_kgm2 wrist_release wrist_sweep_start wrist_sweep wrist_step
 # The measured pressure stands for the command there: nothing before the force stage can be seen.
-excluded=transport_delay,command_quantisation,command_dead_band,channel_swap,valve_lag,flow_limit,leak,supply_droop,volume_coupling,pressure_calibration
+excluded=transport_delay,command_quantisation,command_dead_band,channel_swap,valve_lag,flow_limit,leak,supply_droop,volume_coupling,pressure_calibration,regulator_tail
 diagnose wrist_loop $lever wrist_loop
 excluded=""
 diagnose bench_loop $load,force_law.bore_N,force_law.threshold_N bench_loop

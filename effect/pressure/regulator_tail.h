@@ -2,9 +2,9 @@
 ///     p = u - s (u - w),    tau dw/dt = u - w
 /// u requested, p delivered pressure, fractions of full scale; s = share, tau = time_constant_s; w, the slow part, follows u with a lag.
 /// Exact if u is constant over the step.
-/// Neutral: s = 0. Range 0 .. 1, usually 0.02 .. 0.2; tau 0.01 .. 1000 s, usually 0.3 .. 3.  Source: first-order relaxation of the pressure
-/// error, as an integrating pilot stage or gas that cools after a fast change leaves one; 2.5 % of a step between 0.5 and 4 s after it
-/// measured on a proportional valve with a fluidic muscle.
+/// Neutral: s = 0. Range 0 .. 0.5, usually 0.02 .. 0.2: what makes more than half of a change late is a lag (valve_lag). tau 0.01 ..
+/// 1000 s, usually 0.3 .. 3.  Source: first-order relaxation of the pressure error, as an integrating pilot stage or gas that cools after a
+/// fast change leaves one; 2.5 % of a step between 0.5 and 4 s after it measured on a proportional valve with a fluidic muscle.
 #pragma once
 
 #include "musclesim/effect/effect_info.h"

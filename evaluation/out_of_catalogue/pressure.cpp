@@ -177,7 +177,7 @@ std::vector<OutOfCatalogueLaw> pressureLaws() {
              [](const EffectValues& v) { return std::make_unique<ChokedLeak>(v); }),
        "leak"},
       {entry("hurried_tail", Stage::pressure, muscle, "p = u - s (u - w), dw/dt = (u - w) (|u - w| / 0.2 + 1 / 4) / tau",
-             {{"share", "", 0, 0, 1, 0.04, 0.3, "s"}, {"time_constant_s", "s", 1, 0.01, 1000, 0.4, 2, "tau", true}},
+             {{"share", "", 0, 0, 0.5, 0.04, 0.3, "s"}, {"time_constant_s", "s", 1, 0.01, 1000, 0.4, 2, "tau", true}},
              [](const EffectValues& v) { return std::make_unique<HurriedTail>(v); }),
        "regulator_tail"},
       {entry("tank", Stage::pressure, {ComponentKind::all_muscles}, "ds/dt = (1 - s) / T - c sum max(0, du/dt), p = min(u, s)",
