@@ -198,7 +198,7 @@ const std::vector<EffectWords> effect_words = {
      {{"mass_kg", "additional mass", "by {}"}}},
     {"slide_friction",
      "friction of a slide",
-     "{} rubs on its guide",
+     "{} rubs",
      nullptr,
      "The load resists with the same force at any speed, and sticks where the motion turns round.",
      {{"force_N", "force", "a force of {}"},

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <map>
 
+#include "../base/short_names.h"
 #include "../effect/components.h"
 #include "data_checks.h"
 #include "drawing.h"
@@ -64,26 +64,24 @@ void requireDiagnosable(const std::vector<Recording>& recordings) {
   requireDifferentMeasurements(recordings);
 }
 
-/// The file name without its folder.
-std::string nameOf(const Recording& recording) {
-  return std::filesystem::path(recording.file).filename().string();
-}
-
 /// Of several recordings the last is held out; of one recording, the last two fifths of its rows.
 Split splitOf(const std::vector<Recording>& recordings) {
   Split split;
   const int count = static_cast<int>(recordings.size());
+  std::vector<std::string> files;
+  for (const Recording& recording : recordings) files.push_back(recording.file);
+  const std::vector<std::string> names = shortNames(files);
   auto rows = [&](int i) { return static_cast<int>(recordings[static_cast<std::size_t>(i)].time_s.size()); };
   if (count == 1) {
     const int border = rows(0) * 3 / 5;
     split.fit = {{0, 0, border}};
     split.held_out = {{0, border, rows(0)}};
-    split.held_out_words = fmt::format("the last two fifths of {}", nameOf(recordings[0]));
+    split.held_out_words = fmt::format("the last two fifths of {}", names.front());
     return split;
   }
   for (int i = 0; i + 1 < count; ++i) split.fit.push_back({i, 0, rows(i)});
   split.held_out = {{count - 1, 0, rows(count - 1)}};
-  split.held_out_words = fmt::format("{}, held out from fitting and choosing", nameOf(recordings.back()));
+  split.held_out_words = fmt::format("{}, held out from fitting and choosing", names.back());
   return split;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "../base/short_names.h"
 #include "../log/svg.h"
 #include "effect_words.h"
 #include "musclesim/diagnosis/diagnosis.h"
@@ -139,9 +140,8 @@ std::string whatElse(const Diagnosis& d) {
 
 /// "Robot elbow; recordings r1.csv, r2.csv, r3.csv."
 std::string subject(const Diagnosis& d) {
-  std::vector<std::string> names;
-  for (const std::string& file : d.recordings) names.push_back(std::filesystem::path(file).filename().string());
-  return fmt::format("Robot {}; recordings {}.", std::filesystem::path(d.robot).filename().string(), fmt::join(names, ", "));
+  return fmt::format("Robot {}; recordings {}.", std::filesystem::path(d.robot).filename().string(),
+                     fmt::join(shortNames(d.recordings), ", "));
 }
 
 std::string foot(const Diagnosis& d, const ReportOrigin& origin) {

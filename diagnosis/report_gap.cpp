@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <functional>
 
+#include "../base/short_names.h"
 #include "../log/svg.h"
 #include "effect_words.h"
 #include "musclesim/effect/catalogue.h"
@@ -140,7 +140,7 @@ std::string howFar(const Diagnosis& d) {
   std::string text = heading(hasAfter(d) ? "How far" : "How close the model comes");
   text += lead(escapedXml(searched ? "Measured on " + d.held_out + "."
                                    : fmt::format("All {} recordings were compared; the figures below are of {}.", d.recordings.size(),
-                                                 std::filesystem::path(d.recordings.back()).filename().string())));
+                                                 shortNames(d.recordings).back())));
   if (hasAfter(d) && d.chosen.empty()) text += paragraph("No explanation was accepted: below, \"after\" means with the best rejected one.");
   if (hasAfter(d)) text += removalFigure(d) + controlsFigure(d);
   text += phaseFigure(d) + signalTable(d);
