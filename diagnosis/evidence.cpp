@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numeric>
 
 namespace musclesim {
@@ -57,25 +56,6 @@ Complexity Evidence::complexityOf(const Explanation& explanation) const {
     first += count;
   }
   return result;
-}
-
-std::size_t safestSet(const std::vector<std::set<std::string>>& sets, const std::vector<double>& probabilities) {
-  constexpr double as_likely_absent = 0.5;
-  constexpr double worth_a_mention = 0.316;  // odds of 1 to sqrt(10) and less are "not worth more than a bare mention" (Jeffreys 1961)
-  std::map<std::string, double> of_effect;
-  for (std::size_t i = 0; i < sets.size(); ++i)
-    for (const std::string& effect : sets[i]) of_effect[effect] += probabilities[i];
-  const auto likeliest = std::ranges::max_element(probabilities);
-  std::size_t safest = static_cast<std::size_t>(likeliest - probabilities.begin());
-  double least_errors = 0;  // expected, beyond those of naming nothing
-  for (std::size_t i = 0; i < sets.size(); ++i) {
-    double errors = 0;
-    for (const std::string& effect : sets[i]) errors += as_likely_absent - of_effect[effect];
-    if (errors >= least_errors || probabilities[i] < worth_a_mention * *likeliest) continue;
-    least_errors = errors;
-    safest = i;
-  }
-  return safest;
 }
 
 double Evidence::price(const Explanation& explanation) const {

@@ -2,9 +2,6 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
-#include <set>
-#include <string>
 #include <vector>
 
 #include "comparison.h"
@@ -27,14 +24,6 @@ inline constexpr Complexity prices = {
     .parameters = 1.0, .effects = 3.1, .same_place = 1.0, .excess = 2.0, .shared_sensor = 4.0, .places = 1.0};
 /// ln odds of something else per share of the misfit that an explanation leaves, and the share at which it is as likely as not.
 inline constexpr double per_share_left = 12, share_of_unknown = 0.3;
-
-/// Index of the set of effects that is named. It has the largest
-///     sum over its effects j of (P(j) - 1/2),   P(j) = sum of the probabilities of the sets that contain j
-/// so that the fewest wrong and missing names are expected (Hamming loss; median probability model, Barbieri and Berger 2004). The
-/// likeliest set may contain an effect with P(j) < 1/2. A set that is more than sqrt(10) times less likely than the likeliest is never
-/// named: it lacks an effect that is needed, even if several effects could be that one. If no set has a positive sum, the likeliest is
-/// named. `sets` and `probabilities` have the same size, at least 1.
-std::size_t safestSet(const std::vector<std::set<std::string>>& sets, const std::vector<double>& probabilities);
 
 class Evidence {
  public:

@@ -46,10 +46,8 @@ class Search {
   const std::vector<Hypothesis>& hypotheses() const { return causes_.hypotheses; }
   const ScreenedCatalogue& catalogue() const { return catalogue_; }
   const Causes& causes() const { return causes_; }
-  /// Fitted to all recordings. The chosen one is first, the others follow by probability.
+  /// Fitted to all recordings, by probability. The first one is chosen.
   const std::vector<Explanation>& explanations() const { return explanations_; }
-  /// The most probable one; there must be one.
-  const Explanation& likeliest() const { return *std::ranges::max_element(explanations_, {}, &Explanation::probability); }
   /// Probability that something else acts, judged by what the best explanation leaves.
   double noneOfThese() const { return none_of_these_; }
   /// Single effects as fitted to the screening segments.
@@ -164,7 +162,6 @@ class Search {
   void polish();
   void weigh();
   void takeOutNothing();
-  void choose();
 
   const Plant& plant_;
   const DiagnosisOptions& options_;

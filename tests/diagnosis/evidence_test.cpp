@@ -222,17 +222,6 @@ TEST_F(EvidenceOnARig, InactiveEffectsAndFailedFitsHaveNone) {
   EXPECT_EQ(evidence_.score(failed), -std::numeric_limits<double>::infinity());
 }
 
-TEST(SafestSet, HasNoEffectThatIsLikelierAbsent) {
-  // Three sets agree on a lag and a delay, and each has its own third effect.
-  EXPECT_EQ(safestSet({{"lag", "delay", "creep"}, {"lag", "delay", "offset"}, {"lag", "delay"}}, {0.4, 0.35, 0.25}), 2U);
-  EXPECT_EQ(safestSet({{"lag", "creep"}, {"lag", "creep", "offset"}}, {0.6, 0.4}), 0U) << "the likeliest, where it is the safest";
-  // A second effect that is likelier present than absent, in two sets that are less likely than the first one.
-  EXPECT_EQ(safestSet({{"lag"}, {"lag", "gain", "bias"}, {"lag", "gain"}}, {0.4, 0.35, 0.25}), 2U);
-  EXPECT_EQ(safestSet({{"lag"}, {"delay"}, {"creep"}}, {0.3, 0.4, 0.3}), 1U) << "nothing is likelier present";
-  EXPECT_EQ(safestSet({{"lag", "gain"}, {"lag", "bias"}, {"lag", "leak"}, {"lag"}}, {0.37, 0.33, 0.22, 0.08}), 0U)
-      << "a second effect acts, though it is not clear which";
-}
-
 TEST_F(EvidenceOnARig, SomethingElseIsLikelyWhereTheExplanationsLeaveMuch) {
   const auto somethingElse = [&](double sigmas, double other_sigmas, double probability_of_other) {
     std::vector<Explanation> explanations = {fitted({gain}, other_sigmas), fitted({payload}, sigmas)};
