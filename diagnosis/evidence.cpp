@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 
 namespace musclesim {
@@ -56,6 +57,25 @@ Complexity Evidence::complexityOf(const Explanation& explanation) const {
     first += count;
   }
   return result;
+}
+
+std::size_t namedSet(const std::vector<std::set<std::string>>& sets, const std::vector<double>& probabilities) {
+  constexpr double as_likely_absent = 0.5;
+  constexpr double tie = 0.2;  // nats: fits that rank explanations are no more exact
+  std::map<std::string, double> of_effect;
+  for (std::size_t i = 0; i < sets.size(); ++i)
+    for (const std::string& effect : sets[i]) of_effect[effect] += probabilities[i];
+  const auto likeliest = std::ranges::max_element(probabilities);
+  std::size_t named = static_cast<std::size_t>(likeliest - probabilities.begin());
+  double least_errors = 0;  // expected, beyond those of naming nothing
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    double errors = 0;
+    for (const std::string& effect : sets[i]) errors += as_likely_absent - of_effect[effect];
+    if (errors >= least_errors || probabilities[i] < std::exp(-tie) * *likeliest) continue;
+    least_errors = errors;
+    named = i;
+  }
+  return named;
 }
 
 double Evidence::price(const Explanation& explanation) const {

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "comparison.h"
@@ -24,6 +27,13 @@ inline constexpr Complexity prices = {
     .parameters = 1.0, .effects = 3.1, .same_place = 1.0, .excess = 2.0, .shared_sensor = 4.0, .places = 1.0};
 /// ln odds of something else per share of the misfit that an explanation leaves, and the share at which it is as likely as not.
 inline constexpr double per_share_left = 12, share_of_unknown = 0.3;
+
+/// Index of the set of effects that is named: the likeliest one. Among sets that tie with it, which are less likely by 0.2 nats or less,
+/// the one with the largest
+///     sum over its effects j of (P(j) - 1/2),   P(j) = sum of the probabilities of the sets that contain j
+/// so that the fewest wrong and missing names are expected (Hamming loss; Barbieri and Berger 2004). If no set has a positive sum, the
+/// likeliest is named. `sets` and `probabilities` have the same size, at least 1.
+std::size_t namedSet(const std::vector<std::set<std::string>>& sets, const std::vector<double>& probabilities);
 
 class Evidence {
  public:

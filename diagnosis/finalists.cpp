@@ -95,6 +95,7 @@ void Search::fitFinalists() {
   polish();
   weigh();
   takeOutNothing();
+  choose();
 }
 
 /// Exact parameters, scores and fresh intervals for the explanations that are listed, and for the numbers without any effect.
@@ -302,6 +303,20 @@ void Search::weigh() {
   for (Explanation& explanation : explanations_) explanation.probability /= sum;
   none_of_these_ = evidence().ofSomethingElse(explanations_);
   std::ranges::stable_sort(explanations_, std::greater<>{}, &Explanation::probability);
+}
+
+/// Moves the explanation that namedSet() selects to the front. Only explanations with a probability of `listed` or more can be selected.
+void Search::choose() {
+  std::vector<std::set<std::string>> sets;
+  std::vector<double> probabilities;
+  for (const Explanation& explanation : explanations_) {
+    if (explanation.probability < listed && !sets.empty()) break;
+    sets.push_back(causes_.labelsOf(explanation.members));
+    probabilities.push_back(explanation.probability);
+  }
+  if (sets.empty()) return;
+  const auto chosen = explanations_.begin() + static_cast<std::ptrdiff_t>(namedSet(sets, probabilities));
+  std::rotate(explanations_.begin(), chosen, chosen + 1);
 }
 
 void Search::takeOutNothing() {

@@ -10,7 +10,7 @@
 
 namespace musclesim {
 
-/// The best explanation, and all that the recordings cannot distinguish from it.
+/// The chosen explanation, and all that the recordings cannot distinguish from the likeliest one.
 std::vector<const Explanation*> asGood(const Search& search);
 /// "a@x + b@y"
 std::string wordsOf(const Search& search, const Explanation& explanation);

@@ -46,8 +46,10 @@ class Search {
   const std::vector<Hypothesis>& hypotheses() const { return causes_.hypotheses; }
   const ScreenedCatalogue& catalogue() const { return catalogue_; }
   const Causes& causes() const { return causes_; }
-  /// Fitted to all recordings, by probability. The first one is chosen.
+  /// Fitted to all recordings. The chosen one is first, the others follow by probability.
   const std::vector<Explanation>& explanations() const { return explanations_; }
+  /// The most probable one; there must be one.
+  const Explanation& likeliest() const { return *std::ranges::max_element(explanations_, {}, &Explanation::probability); }
   /// Probability that something else acts, judged by what the best explanation leaves.
   double noneOfThese() const { return none_of_these_; }
   /// Single effects as fitted to the screening segments.
@@ -162,6 +164,7 @@ class Search {
   void polish();
   void weigh();
   void takeOutNothing();
+  void choose();
 
   const Plant& plant_;
   const DiagnosisOptions& options_;

@@ -56,7 +56,7 @@ bool measureControls(const Search& search, const HeldOut& held_out, const Diagno
   const auto percentOf = [&](const Eigen::VectorXd& residual) { return residual.size() ? held_out.reductionPercent(residual) : 0.0; };
   diagnosis.nominal_refit_percent = percentOf(nominal.held_out);
   diagnosis.negative_control_percent = percentOf(negative_control);
-  return numbersDoAsWell(search, nominal.fitted, best.score);
+  return numbersDoAsWell(search, nominal.fitted, search.likeliest().score);
 }
 
 /// Offers the model without effects, with its numbers fitted, and its residual on the held-out rows. Offers nothing if it diverges.
@@ -85,8 +85,8 @@ Offer judge(const Search& search, const HeldOut& held_out, const DiagnosisOption
             Diagnosis& diagnosis) {
   if (search.explanations().empty()) return {};
   const Explanation& best = search.explanations().front();
-  const double ahead = std::log(best.probability / search.nothing().probability);  // nats
-  if (ahead < 0 || (ahead < clearly && best.probability <= named)) {
+  const double likeliest = search.likeliest().probability, ahead = std::log(likeliest / search.nothing().probability);  // nats
+  if (ahead < 0 || (ahead < clearly && likeliest <= named)) {
     Offer numbers = numbersAlone(search, held_out);
     const bool are_all = numbers.after.size() > 0 && isWithinNoise(held_out.comparison, numbers.after);
     if (are_all || ahead < 0) {

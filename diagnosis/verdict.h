@@ -20,7 +20,7 @@ struct Offer {
   Eigen::VectorXd after;
 };
 
-/// Predicts the held-out rows with the best explanation, measures the controls, and writes the verdict, the gap reduction and its
+/// Predicts the held-out rows with the chosen explanation, measures the controls, and writes the verdict, the gap reduction and its
 /// interval, or the attempt that is not believed. Without an effect that explains more than the tolerances of the model's numbers, the gap
 /// with these numbers.
 Offer judge(const Search& search, const HeldOut& held_out, const DiagnosisOptions& options, const OnSimulation& on_simulation,

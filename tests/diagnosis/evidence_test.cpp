@@ -222,6 +222,20 @@ TEST_F(EvidenceOnARig, InactiveEffectsAndFailedFitsHaveNone) {
   EXPECT_EQ(evidence_.score(failed), -std::numeric_limits<double>::infinity());
 }
 
+TEST(NamedSet, IsTheLikeliestOne) {
+  EXPECT_EQ(namedSet({{"lag"}, {"lag", "gain"}}, {0.44, 0.56}), 1U);
+  EXPECT_EQ(namedSet({{"lag", "backlash"}, {"gain", "threshold"}, {"gain", "threshold", "creep"}}, {0.4, 0.3, 0.3}), 0U)
+      << "though each of its effects is likelier absent";
+  EXPECT_EQ(namedSet({{"lag"}, {"delay"}, {"creep"}}, {0.3, 0.4, 0.3}), 1U);
+}
+
+TEST(NamedSet, HasTheFewestExpectedErrorsWhereSetsTie) {
+  // Three sets agree on a lag and a delay, and two have a third effect each.
+  EXPECT_EQ(namedSet({{"lag", "delay", "creep"}, {"lag", "delay", "offset"}, {"lag", "delay"}}, {0.36, 0.33, 0.31}), 2U);
+  EXPECT_EQ(namedSet({{"lag"}, {"lag", "gain", "bias"}, {"lag", "gain"}}, {0.36, 0.33, 0.31}), 2U) << "a gain is likelier present";
+  EXPECT_EQ(namedSet({{"lag", "gain"}, {"lag", "bias"}, {"lag", "leak"}}, {0.36, 0.33, 0.31}), 0U);
+}
+
 TEST_F(EvidenceOnARig, SomethingElseIsLikelyWhereTheExplanationsLeaveMuch) {
   const auto somethingElse = [&](double sigmas, double other_sigmas, double probability_of_other) {
     std::vector<Explanation> explanations = {fitted({gain}, other_sigmas), fitted({payload}, sigmas)};
