@@ -61,7 +61,7 @@ Complexity Evidence::complexityOf(const Explanation& explanation) const {
 
 std::size_t namedSet(const std::vector<std::set<std::string>>& sets, const std::vector<double>& probabilities) {
   constexpr double as_likely_absent = 0.5;
-  constexpr double tie = 0.2;  // nats: fits that rank explanations are no more exact
+  constexpr double tie = 0.2;  // nats, about 5 to 4: where it comes from is told in docs/developer/diagnosis.md
   std::map<std::string, double> of_effect;
   for (std::size_t i = 0; i < sets.size(); ++i)
     for (const std::string& effect : sets[i]) of_effect[effect] += probabilities[i];

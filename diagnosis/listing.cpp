@@ -110,8 +110,7 @@ std::vector<const Explanation*> asGood(const Search& search) {
   std::vector<const Explanation*> result;
   const auto& all = search.explanations();
   for (const Explanation& fitted : all)
-    if (&fitted == &all.front() || (fitted.probability > 0 && fitted.probability >= as_good * search.likeliest().probability))
-      result.push_back(&fitted);
+    if (fitted.probability > 0 && fitted.probability >= as_good * search.likeliest().probability) result.push_back(&fitted);
   return result;
 }
 

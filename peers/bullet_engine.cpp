@@ -5,7 +5,9 @@
 #include <btBulletDynamicsCommon.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 
 #include "engine.h"
@@ -199,10 +201,16 @@ class BulletPeer final : public Peer {
     constraints_.push_back(std::move(made));
   }
 
-  static double finite(double limit) { return std::clamp(limit, -1e3, 1e3); }
-  static void limit(btHingeConstraint& hinge, double low, double high) {
-    constexpr double softness = 0.9, bias = 0.3, restitution = 0;
-    if (std::isfinite(low) || std::isfinite(high)) hinge.setLimit(std::max(low, -3.1), std::min(high, 3.1), softness, bias, restitution);
+  /// A stop of a slider that has only the other one.
+  static double finite(double limit_m) {
+    constexpr double out_of_reach_m = 1e3;
+    return std::clamp(limit_m, -out_of_reach_m, out_of_reach_m);
+  }
+  static void limit(btHingeConstraint& hinge, double low_rad, double high_rad) {
+    constexpr double softness = 0.9, bias = 0.3, restitution = 0;  // the first two are Bullet's defaults
+    constexpr double nearly_half_turn_rad = 3.1;
+    if (std::isfinite(low_rad) || std::isfinite(high_rad))
+      hinge.setLimit(std::max(low_rad, -nearly_half_turn_rad), std::min(high_rad, nearly_half_turn_rad), softness, bias, restitution);
   }
 
   void addMuscle(const MuscleParts& parts) {
