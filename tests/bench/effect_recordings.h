@@ -81,6 +81,7 @@ inline ActiveEffect shownEffect(const EffectInfo& info, const std::string& compo
   if (info.id == "viscous_loss") return {info.id, component, {{"damping_Ns_per_m", 150.0}}};
   if (info.id == "series_elasticity") return {info.id, component, {{"stiffness_N_per_mm", 1.0}}};
   if (info.id == "joint_coulomb_friction") return {info.id, component, {{"torque_Nm", 0.05}}};
+  if (info.id == "slide_friction") return {info.id, component, {{"force_N", 3.0}}};
   if (info.id == "force_drift") return {info.id, component, {{"rate_per_min", -2.0}}};
   if (info.id == "force_law") return {info.id, component, {{"law", "chou-hannaford"}}};
   if (info.id == "joint_stop_offset") return {info.id, component, {{"offset_deg", -60.0}}};
