@@ -100,7 +100,7 @@ TEST(BenchCommand, ComparesWithOtherEnginesThatAreThere) {
       {"bench", "--peers", "--muscles", "1", "--repeats", "1", "--time-limit", "0.02", "--out", ".", "--quiet", "--json"}, folder);
   EXPECT_EQ(result.status, 0) << result.err;
   const auto json = nlohmann::json::parse(result.out.substr(result.out.rfind("\n{") + 1));
-  ASSERT_EQ(json["peers"].size(), 6u);  // three engines, chains and lines
+  ASSERT_EQ(json["peers"].size(), 8u);  // four engines, ours among them, chains and lines
   for (const auto& entry : json["peers"]) EXPECT_TRUE(entry.contains("failure") || entry["over_ours"].get<double>() > 0) << entry;
   EXPECT_TRUE(fs::exists(folder / "figures" / "peers.svg"));
   fs::remove_all(folder);
