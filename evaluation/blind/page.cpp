@@ -109,10 +109,10 @@ std::string overview(const json& totals) {
 /// The benchmark, and how often effects acted that had a probability.
 std::string severalCauses(const json& totals) {
   std::string text =
-      "## Several causes\n\nA cause is *demanded* if, with it left out and everything else refitted to stand in for it, at least three "
-      "noise "
-      "floors and a tenth of the plant's gap remain in some signal; others are neither missed nor wrong. A set is *full* if it holds every "
-      "demanded cause, or a look-alike that the measured signals cannot separate from it, and nothing that does not act.\n\n" +
+      "## Several causes\n\nA cause is *demanded* if, with it left out and everything else refitted to stand in for it, at least "
+      "three noise floors and a tenth of the plant's gap remain in some signal; others are neither missed nor wrong. A set is *full* "
+      "if it holds every demanded cause, or a look-alike that the measured signals cannot separate from it, and nothing that does not "
+      "act.\n\n" +
       benchmarkTable(totals) +
       "\nThe probability of an effect (look-alikes of one cause together) and how often it acted:\n\n| mean probability | effects | "
       "acted |\n|---|---|---|\n";
