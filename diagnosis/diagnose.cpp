@@ -26,17 +26,19 @@ namespace musclesim {
 
 namespace {
 
-/// The options of the program for the diagnosed model, without the values in nominal.toml. A robot without a hand has no task.
-std::string modelOptions(const Plant& plant, const std::optional<std::string>& initial_state) {
+/// The options of the program for the diagnosed model, without the numbers in nominal.toml. A robot without a hand has no task.
+std::string modelOptions(const Plant& plant, const std::optional<std::string>& initial_state, const Diagnosis& diagnosis) {
+  const auto isIn = [](const auto& numbers, const std::string& name) {
+    return std::ranges::any_of(numbers, [&](const auto& number) { return number.name == name; });
+  };
   std::string options = "--robot " + plant.robot();
   if (!plant.hasHand()) options += " --controller hold";
   if (const PhysicsKind kind = plant.model().physics().kind; kind != PhysicsKind::si) options += " --physics " + nameOf(kind);
   if (initial_state) options += " --initial-state " + *initial_state;
   for (const Parameter& parameter : plant.model().parameters().declared()) {
     if (parameter.name == "world.plane_height_mm") options += " --plane";
-    const bool is_tuned = std::ranges::any_of(
-        plant.numbers(), [&](const UncertainNumber& number) { return number.is_tuned && number.parameter.name == parameter.name; });
-    if (parameter.value == parameter.default_value || is_tuned) continue;
+    const bool is_fitted = isIn(diagnosis.tuned, parameter.name) || isIn(diagnosis.numbers, parameter.name);
+    if (parameter.value == parameter.default_value || is_fitted) continue;
     options += fmt::format(" --set {}=", parameter.name);
     options += std::visit([](const auto& any) { return fmt::format("{}", any); }, parameter.value);
   }
@@ -100,8 +102,6 @@ class Run {
  private:
   void describe() {
     diagnosis_.robot = plant_.robot();
-    const auto& given = options_.model.initial_state;
-    diagnosis_.model_options = modelOptions(plant_, given ? given : plant_.recordings().front().info.initial_state);
     for (const Recording& recording : plant_.recordings()) {
       diagnosis_.recordings.push_back(recording.file);
       for (const std::string& note : recording.notes) diagnosis_.notes.push_back(note);
@@ -205,6 +205,8 @@ class Run {
     if (diagnosis_.before.normalised > 0) diagnosis_.unexplained_percent = 100 * diagnosis_.after.normalised / diagnosis_.before.normalised;
     if (before_residual_.size()) listHeldOut(search_, heldOut(), offer_.after, diagnosis_);
     diagnosis_.drawing = plant_.drawing();
+    const auto& given = options_.model.initial_state;
+    diagnosis_.model_options = modelOptions(plant_, given ? given : plant_.recordings().front().info.initial_state, diagnosis_);
   }
 
   HeldOut heldOut() const { return {held_out_, before_residual_}; }

@@ -116,6 +116,7 @@ std::string useIt(const Diagnosis& d) {
   return heading("Use it") + "<p>" + command("musclesim replay NEW.csv " + options) + " and " +
          command("musclesim " + d.model_options + " " + options) + " run the model with " +
          (d.chosen.empty() ? "the best rejected explanation" : "the effects found") +
+         (fittedNumbersToml(d).empty() ? "" : " and with the numbers of the model that were fitted together with them (nominal.toml)") +
          (d.model_options.find("--set") == std::string::npos ? "" : "; replay takes the robot's parameters from the recording's sidecar") +
          ".</p>\n";
 }

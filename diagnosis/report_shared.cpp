@@ -132,7 +132,8 @@ std::string effectTitles(const std::vector<std::string>& labels) {
 }
 
 std::string fileOptions(const Diagnosis& d) {
-  return std::string(d.tuned.empty() ? "" : "--config nominal.toml ") + "--effects " + (d.chosen.empty() ? "attempt.json" : "effects.json");
+  return std::string(fittedNumbersToml(d).empty() ? "" : "--config nominal.toml ") + "--effects " +
+         (d.chosen.empty() ? "attempt.json" : "effects.json");
 }
 
 }  // namespace musclesim::report

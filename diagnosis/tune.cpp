@@ -65,12 +65,16 @@ std::vector<TunedParameter> tunedParameters(const Plant& plant, const Eigen::Vec
   return result;
 }
 
-std::string tunedToml(const std::vector<TunedParameter>& parameters) {
-  std::string text =
-      "# Parameters of the model that musclesim diagnose --tune fitted to recordings, together with the effects in effects.json.\n";
-  for (const TunedParameter& parameter : parameters)
-    text += fmt::format("{} = {}  # {}; {:.4g} .. {:.4g}, from {:.4g}\n", parameter.name, parameter.with_effects.value, parameter.unit,
-                        parameter.with_effects.low, parameter.with_effects.high, parameter.start);
+std::string fittedNumbersToml(const Diagnosis& diagnosis) {
+  if (diagnosis.tuned.empty() && diagnosis.numbers.empty()) return "";
+  std::string text = fmt::format("# Numbers of the model that musclesim diagnose fitted to recordings, together with the effects in {}.\n",
+                                 diagnosis.attempt.effects.empty() ? "effects.json" : "attempt.json");
+  const auto add = [&](const auto& number, const Estimate& fitted) {
+    text += fmt::format("{} = {}  # {}; {:.4g} .. {:.4g}, from {:.4g}\n", number.name, fitted.value, number.unit, fitted.low, fitted.high,
+                        number.start);
+  };
+  for (const TunedParameter& number : diagnosis.tuned) add(number, number.with_effects);
+  for (const FittedNumber& number : diagnosis.numbers) add(number, number.fitted);
   return text;
 }
 

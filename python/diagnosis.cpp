@@ -35,7 +35,7 @@ class ProgressBox {
 py::dict filesOf(const Diagnosis& diagnosis, const RecordingInfo& plant) {
   py::dict files;
   if (!diagnosis.attempt.effects.empty()) files["attempt.json"] = effectsText(diagnosis.attempt.active_effects);
-  if (!diagnosis.tuned.empty()) files["nominal.toml"] = tunedToml(diagnosis.tuned);
+  if (const std::string numbers = fittedNumbersToml(diagnosis); !numbers.empty()) files["nominal.toml"] = numbers;
   if (const ProposedRecording next = proposedRecording(diagnosis, plant); !next.csv.empty()) {
     files["next.csv"] = next.csv;
     files["next.json"] = next.json;

@@ -66,7 +66,7 @@ void writeAll(const Diagnosis& diagnosis, const std::filesystem::path& folder, c
   files.add(folder / "report.html", diagnosisReport(diagnosis, {localTime(), command_line}));
   addEffects("effects.json", diagnosis.chosen_effects);
   if (!diagnosis.attempt.effects.empty()) addEffects("attempt.json", diagnosis.attempt.active_effects);
-  if (!diagnosis.tuned.empty()) files.add(folder / "nominal.toml", tunedToml(diagnosis.tuned));
+  if (const std::string numbers = fittedNumbersToml(diagnosis); !numbers.empty()) files.add(folder / "nominal.toml", numbers);
   if (const ProposedRecording next = proposedRecording(diagnosis, plant); !next.csv.empty()) {
     files.add(folder / "next.csv", next.csv);
     files.add(folder / "next.json", next.json);

@@ -107,11 +107,20 @@ Recording backwards(const Recording& recording) {
   return schedule;
 }
 
-/// Gap reduction on a motion that the diagnosis has not seen, of the same kind as the held-out one.
+/// The numbers of the model that the answer fits together with its effects.
+Parameters fittedNumbers(const json& answer) {
+  Parameters numbers;
+  for (const json& number : answer.value("numbers", json::array()))
+    numbers.set(number.at("name").get<std::string>(), number.at("value").get<double>(), "answer");
+  return numbers;
+}
+
+/// Gap reduction by the answer's effects and numbers on a motion that the diagnosis has not seen, of the same kind as the held-out one.
 json freshReduction(const Answered& one, const fs::path& effects_file) {
   const Recording measured = measuredUnder(backwards(one.recordings.back()), one, "fresh.csv", 2);
   ReplayOptions with;
   with.effects = readEffects(effects_file.string());
+  with.parameters = fittedNumbers(one.answer);
   const ReplayResult without = replayRecording(measured), added = replayRecording(measured, with);
   const double before = meanSquareOverNoise(measured, without.simulated, one.key.at("noise_std")),
                after = meanSquareOverNoise(measured, added.simulated, one.key.at("noise_std"));

@@ -261,8 +261,9 @@ struct ReportOrigin {
 /// report.html: a self-contained page.
 std::string diagnosisReport(const Diagnosis& diagnosis, const ReportOrigin& origin = {});
 
-/// The tuned parameters as a file for --config.
-std::string tunedToml(const std::vector<TunedParameter>& parameters);
+/// nominal.toml: the numbers of the model that were fitted together with the effects, as a file for --config; empty if none was. The gap
+/// reduction is that of effects and numbers together.
+std::string fittedNumbersToml(const Diagnosis& diagnosis);
 
 /// A summary for the terminal that takes ten seconds to read.
 std::string diagnosisSummary(const Diagnosis& diagnosis);
