@@ -87,6 +87,7 @@ void Search::fitFinalists() {
   fitAll(explanations_, [this](Explanation& explanation) { fitRoughly(explanation); });
   dropHopeless();
   fitAll(explanations_, [this](Explanation& explanation) { fitFinely(explanation); });
+  tryEarlier();
   tryOtherStrengths();
   tryVariants();
   tryLikeTheBest();
@@ -201,26 +202,33 @@ void Search::tryWithoutOne() {
     const Explanation best = explanations_.front();
     std::vector<Explanation> smaller;
     for (std::size_t m = 0; m < best.members.size() && best.members.size() > 1; ++m) smaller.push_back(causes_.without(best, m));
-    fitAll(smaller, [this](Explanation& one) {
-      causes_.refit(one, fit_, 0, Fidelity::fine, Accuracy::ranking);
-      if (one.residual.size() == fit_.size()) one.score = evidence().score(one);
-    });
-    for (Explanation& one : smaller) keepIfBetter(std::move(one));
+    keepIfBetter(std::move(smaller));
     if (std::ranges::max_element(explanations_, {}, &Explanation::score)->members == best.members) return;
   }
 }
 
-/// Fits on an explanation that is better than the same set's where it stands, and puts it in the place of that.
-void Search::keepIfBetter(Explanation one) {
-  const auto same = std::ranges::find_if(
-      explanations_, [&](const Explanation& other) { return causes_.labelsOf(other.members) == causes_.labelsOf(one.members); });
-  if (same != explanations_.end() && same->score >= one.score) return;
-  fitFinely(one);
-  if (one.residual.size() != fit_.size()) return;
-  if (same == explanations_.end())
-    explanations_.push_back(std::move(one));
-  else
-    *same = std::move(one);
+/// The earlier finding with the values that were given: the search fitted it in coarse steps, from where another minimum may be nearer.
+void Search::tryEarlier() {
+  if (!options_.earlier.empty()) keepIfBetter({earlierFinding()});
+}
+
+/// Fits on the explanations that are better, as they are, than the same sets' where they stand, and puts them in the place of those.
+void Search::keepIfBetter(std::vector<Explanation> ones) {
+  fitAll(ones, [this](Explanation& one) {
+    causes_.refit(one, fit_, 0, Fidelity::fine, Accuracy::ranking);
+    if (one.residual.size() == fit_.size()) one.score = evidence().score(one);
+  });
+  for (Explanation& one : ones) {
+    const auto same = std::ranges::find_if(
+        explanations_, [&](const Explanation& other) { return causes_.labelsOf(other.members) == causes_.labelsOf(one.members); });
+    if (same != explanations_.end() && same->score >= one.score) continue;
+    fitFinely(one);
+    if (one.residual.size() != fit_.size()) continue;
+    if (same == explanations_.end())
+      explanations_.push_back(std::move(one));
+    else
+      *same = std::move(one);
+  }
 }
 
 /// In coarse steps. Ends early where no score above the least one is promised.

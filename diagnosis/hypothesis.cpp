@@ -227,6 +227,16 @@ Eigen::VectorXd Hypothesis::coordinatesOf(const std::map<std::string, Parameter:
   return clamped(z);
 }
 
+std::pair<Eigen::VectorXd, int> Hypothesis::nearestTo(const ActiveEffect& effect) const {
+  constexpr double same = 1e-6;  // relative
+  const std::vector<double> wanted = effectValues(info_, effect);
+  const Eigen::VectorXd z = coordinatesOf(activeEffect(info_, component_, wanted).parameters);
+  const std::vector<double> reached = effectValues(info_, at(z));
+  int others = 0;
+  for (std::size_t i = 0; i < wanted.size(); ++i) others += std::abs(reached[i] - wanted[i]) > same * std::abs(wanted[i]) ? 1 : 0;
+  return {z, others};
+}
+
 std::map<std::string, std::string> Hypothesis::choices() const {
   std::map<std::string, std::string> result;
   for (const std::size_t i : relevantParameters(info_, component_))

@@ -53,6 +53,8 @@ class Hypothesis {
   std::vector<std::pair<std::string, double>> valuesAt(const Eigen::VectorXd& z) const;
   /// The inverse of valuesAt: parameters that are not given are neutral or, if they are shapes, usual.
   Eigen::VectorXd coordinatesOf(const std::map<std::string, Parameter::Value>& values) const;
+  /// The coordinates that come nearest to an effect of this kind, and how many of its numbers are others there.
+  std::pair<Eigen::VectorXd, int> nearestTo(const ActiveEffect& effect) const;
   /// Names and words of the parameters that are words and matter on this component.
   std::map<std::string, std::string> choices() const;
   /// How far parameters leave their usual range, 0 within it: for strengths the sum of ln(distance from neutral / largest usual distance),

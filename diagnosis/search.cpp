@@ -6,6 +6,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "../base/parallel.h"
 #include "musclesim/base/error.h"
@@ -366,18 +367,30 @@ std::vector<Explanation> Search::singles() const {
   return result;
 }
 
+/// Index of the candidate, one of the variants of an effect, that comes nearest to it, and its coordinates there. Throws BadParameter if
+/// there is none.
+std::pair<std::size_t, Eigen::VectorXd> Search::nearestTo(const ActiveEffect& effect) const {
+  const std::string label = effect.id + "@" + effect.component;
+  std::optional<std::pair<std::size_t, Eigen::VectorXd>> nearest;
+  int fewest = 0;
+  for (std::size_t i = 0; i < causes_.hypotheses.size(); ++i) {
+    if (causes_.hypotheses[i].label() != label || !catalogue_.allowed[i]) continue;
+    const auto [z, others] = causes_.hypotheses[i].nearestTo(effect);
+    if (nearest && others >= fewest) continue;
+    nearest = {i, z};
+    fewest = others;
+  }
+  if (nearest) return *nearest;
+  throw BadParameter("--effects", label, "be a candidate that these recordings can show; --fixed-effects takes any effect");
+}
+
 /// DiagnosisOptions::earlier as the start of a fit.
 Explanation Search::earlierFinding() const {
   Explanation result;
   std::vector<double> z;
   for (const ActiveEffect& effect : options_.earlier) {
-    const std::string label = effect.id + "@" + effect.component;
-    const auto found = std::ranges::find(causes_.hypotheses, label, &Hypothesis::label);
-    const auto index = static_cast<std::size_t>(found - causes_.hypotheses.begin());
-    if (found == causes_.hypotheses.end() || !catalogue_.allowed[index])
-      throw BadParameter("--effects", label, "be a candidate that these recordings can show; --fixed-effects takes any effect");
-    result.members.push_back(index);
-    const Eigen::VectorXd own = found->coordinatesOf(effect.parameters);
+    const auto [member, own] = nearestTo(effect);
+    result.members.push_back(member);
     z.insert(z.end(), own.begin(), own.end());
   }
   result.z = Eigen::Map<const Eigen::VectorXd>(z.data(), static_cast<Eigen::Index>(z.size()));

@@ -141,6 +141,7 @@ class Search {
   void tryStandIns();
   bool changesFocus(std::size_t hypothesis) const;
   std::vector<Explanation> explainPressures();
+  std::pair<std::size_t, Eigen::VectorXd> nearestTo(const ActiveEffect& effect) const;
   Explanation earlierFinding() const;
   Evidence screeningEvidence() const { return {screening_, screening_residual_, causes_}; }
 
@@ -160,7 +161,8 @@ class Search {
   void tryVariants();
   void tryLikeTheBest();
   void tryWithoutOne();
-  void keepIfBetter(Explanation one);
+  void tryEarlier();
+  void keepIfBetter(std::vector<Explanation> ones);
   void polish();
   void weigh();
   void takeOutNothing();

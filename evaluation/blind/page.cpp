@@ -172,7 +172,7 @@ std::string followed(const Score& score) {
   row("... after the proposed schedule", ">= 80 %", "experiment_truth_first");
   row("... after it, if the ambiguity set held the truth", "", "experiment_truth_first_where_covered");
   row("... after it, and the ambiguity set holds nothing else", "", "experiment_alone");
-  row("the gap reduction by effects.json on a new recording is within the reported interval", "", "fresh_within");
+  row("the gap reduction by the effects and numbers of the answer on a new recording is within the reported interval", "", "fresh_within");
   row("... the interval is no wider than 20 points", "", "fresh_narrow");
   row("... of these within the interval", "", "fresh_within_narrow");
   text += fmt::format("| median width of the interval, points | | {} |\n", numberText(totals, "fresh_median_width_points", "{:.1f}"));

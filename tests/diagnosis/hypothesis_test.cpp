@@ -51,6 +51,19 @@ TEST_F(PlantedRig, BoundsAreThoseOfTheUsualRange) {
   }
 }
 
+/// The variants of a lag are one with a second lag and one without.
+TEST_F(PlantedRig, AnEffectIsNearestToTheVariantThatCanBeIt) {
+  const ActiveEffect plain{"valve_lag", "muscle_0", {{"fill_time_constant_s", 0.06}, {"vent_time_constant_s", 0.09}}};
+  ActiveEffect twice = plain;
+  twice.parameters["next_lag_ratio"] = 0.4;
+  const std::vector<Hypothesis> lags = hypothesis("valve_lag", "muscle_0").variants(plant_);
+  EXPECT_EQ(lags[0].nearestTo(twice).second, 0);
+  EXPECT_EQ(lags[1].nearestTo(twice).second, 1) << "the second lag";
+  const auto [z, others] = lags[1].nearestTo(plain);
+  EXPECT_EQ(others, 0);
+  EXPECT_NEAR(std::get<double>(lags[1].at(z).parameters.at("vent_time_constant_s")), 0.09, 1e-9);
+}
+
 TEST_F(PlantedRig, ALawWithAShareOfSomethingHasAVariantWithout) {
   const std::vector<Hypothesis> lags = hypothesis("valve_lag", "muscle_0").variants(plant_);
   ASSERT_EQ(lags.size(), 2);
