@@ -104,11 +104,12 @@ Offer judge(const Search& search, const HeldOut& held_out, const DiagnosisOption
                                                  {search.fitComparison(), search.nominalResidual(), best.residual}, options.seed);
   const Gap gap_after = held_out.comparison.gap(after);
   const Attempt attempt{labelsOf(model), model.effects, gap_after, held_out.reductionPercent(after), interval.low, interval.high};
-  // The share of the RMS that they leave on unseen data bounds the probability that none of these effects acts.
-  const double none = std::min(std::sqrt(std::max(0.0, 1 - attempt.reduction_percent / 100)), search.noneOfThese());
-  const bool found = none <= named && !numbers_do_as_well && attempt.reduction_percent > diagnosis.nominal_refit_percent &&
+  const double left_of_rms = std::sqrt(std::max(0.0, 1 - attempt.reduction_percent / 100));
+  // An explanation that removes most of the RMS on unseen data is of use, whatever its causes really are.
+  const bool is_of_use = std::min(left_of_rms, search.noneOfThese()) <= named;
+  const bool found = is_of_use && !numbers_do_as_well && attempt.reduction_percent > diagnosis.nominal_refit_percent &&
                      clearlyBeats(attempt.reduction_percent, diagnosis.negative_control_percent);
-  if (found) diagnosis.none_of_these = none;
+  if (found) diagnosis.none_of_these = std::min(named, search.noneOfThese());
   // Not offered, because it does not hold on the held-out data or gains no more than a control.
   if (!found && attempt.reduction_percent <= std::max({0.0, diagnosis.nominal_refit_percent, diagnosis.negative_control_percent}))
     return {};
