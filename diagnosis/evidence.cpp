@@ -59,6 +59,15 @@ Complexity Evidence::complexityOf(const Explanation& explanation) const {
   return result;
 }
 
+double probabilityOfUnknown(double share_left) {
+  return 1 / (1 + std::exp(-per_share_left * (share_left - share_of_unknown)));
+}
+
+double shareOfMisfitLeft(const Comparison& comparison, const Eigen::VectorXd& before, const Eigen::VectorXd& after) {
+  const double of_gap = comparison.misfit(before);
+  return of_gap > 0 ? std::max(0.0, comparison.misfit(after)) / of_gap : 0;
+}
+
 std::size_t namedSet(const std::vector<std::set<std::string>>& sets, const std::vector<double>& probabilities) {
   constexpr double as_likely_absent = 0.5;
   constexpr double tie = 0.2;  // nats, about 5 to 4: where it comes from is told in docs/developer/diagnosis.md
@@ -89,12 +98,9 @@ double Evidence::score(const Explanation& explanation) const {
 }
 
 double Evidence::ofSomethingElse(const std::vector<Explanation>& explanations) const {
-  const double gap = comparison_.misfit(nominal_residual_);
   double sum = 0;
-  for (const Explanation& explanation : explanations) {
-    const double share_left = gap > 0 ? std::max(0.0, comparison_.misfit(explanation.residual)) / gap : 0;
-    sum += explanation.probability / (1 + std::exp(-per_share_left * (share_left - share_of_unknown)));
-  }
+  for (const Explanation& explanation : explanations)
+    sum += explanation.probability * probabilityOfUnknown(shareOfMisfitLeft(comparison_, nominal_residual_, explanation.residual));
   return sum;
 }
 

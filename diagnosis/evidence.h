@@ -28,6 +28,13 @@ inline constexpr Complexity prices = {
 /// ln odds of something else per share of the misfit that an explanation leaves, and the share at which it is as likely as not.
 inline constexpr double per_share_left = 12, share_of_unknown = 0.3;
 
+/// The probability that something else acts, 1 / (1 + exp(-per_share_left (share_left - share_of_unknown))), where an explanation leaves a
+/// share of the misfit of the model without effects: the right one leaves a small one.
+double probabilityOfUnknown(double share_left);
+
+/// The share of the misfit of a residual that is left in another one.
+double shareOfMisfitLeft(const Comparison& comparison, const Eigen::VectorXd& before, const Eigen::VectorXd& after);
+
 /// Index of the set of effects that is named: the likeliest one. Among sets that tie with it, which are less likely by 0.2 nats or less,
 /// the one with the largest
 ///     sum over its effects j of (P(j) - 1/2),   P(j) = sum of the probabilities of the sets that contain j
@@ -48,9 +55,8 @@ class Evidence {
   double score(const Explanation& explanation) const;
   /// The largest misfit and sum of numbers^2 / 2, in nats, with which an explanation that is not fitted yet may come up to a score.
   double largestCost(const Explanation& explanation, double least_score) const { return -least_score - price(explanation); }
-  /// The probability that something acts beside what the explanations hold,
-  ///     sum over explanations S of P(S) / (1 + exp(-per_share_left (share_S - share_of_unknown))),
-  /// share_S the share of the misfit that S leaves: the right one leaves a small one. Needs Explanation::probability, of sum 1.
+  /// The probability that something acts beside what the explanations hold: the sum over explanations S of P(S) times
+  /// probabilityOfUnknown() of the share of the misfit that S leaves. Needs Explanation::probability, of sum 1.
   double ofSomethingElse(const std::vector<Explanation>& explanations) const;
 
  private:

@@ -109,7 +109,10 @@ Offer judge(const Search& search, const HeldOut& held_out, const DiagnosisOption
   const bool is_of_use = std::min(left_of_rms, search.noneOfThese()) <= named;
   const bool found = is_of_use && !numbers_do_as_well && attempt.reduction_percent > diagnosis.nominal_refit_percent &&
                      clearlyBeats(attempt.reduction_percent, diagnosis.negative_control_percent);
-  if (found) diagnosis.none_of_these = std::min(named, search.noneOfThese());
+  if (found) {
+    const double on_held_out = probabilityOfUnknown(shareOfMisfitLeft(held_out.comparison, held_out.before, after));
+    diagnosis.none_of_these = std::min(named, std::max(search.noneOfThese(), on_held_out));
+  }
   // Not offered, because it does not hold on the held-out data or gains no more than a control.
   if (!found && attempt.reduction_percent <= std::max({0.0, diagnosis.nominal_refit_percent, diagnosis.negative_control_percent}))
     return {};
