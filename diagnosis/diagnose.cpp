@@ -147,6 +147,7 @@ class Run {
     if (!predicted.size() || !held.size())
       throw Diverged(0, plant_.robot(), "the model without further effects cannot follow the recordings");
     before_residual_ = held_out_.measured() - held;
+    held_out_.setGap(before_residual_);
     diagnosis_.before = diagnosis_.after = held_out_.gap(before_residual_);
     const Eigen::VectorXd residual = all.measured() - predicted;
     const bool small = isWithinNoise(all, residual);

@@ -40,6 +40,24 @@ TEST(Diagnose, FindsAPlantedPayload) {
   EXPECT_GT(found.reduction_percent, found.nominal_refit_percent);
 }
 
+/// On the held-out recording the payload is a twentieth heavier, which its gap shows clearly.
+TEST(Diagnose, DoubtsWhatLeavesMuchOnTheHeldOutRecording) {
+  const auto heldOutWith = [&](double mass_kg) {
+    const std::vector<ActiveEffect> fitted = {{"payload", "hand", {{"mass_kg", 0.2}}}},
+                                    held_out = {{"payload", "hand", {{"mass_kg", mass_kg}}}};
+    return diagnose(withExactModel({recorded(fitted, 0.15, 1), recorded(fitted, 0.1, 3), recorded(held_out, 0.2, 2)}), few({"payload"}));
+  };
+  const Diagnosis holds = heldOutWith(0.2), fails = heldOutWith(0.21);
+  for (const Diagnosis& found : {holds, fails})
+    ASSERT_EQ(found.chosen, std::vector<std::string>{"payload@hand"}) << diagnosisSummary(found);
+  EXPECT_LT(holds.none_of_these, 0.05);
+  EXPECT_GT(fails.none_of_these, 0.15);
+  EXPECT_LT(fails.none_of_these, 0.4);
+  EXPECT_LT(fails.remainder.probability, 0.05) << "by the fitted recordings";
+  EXPECT_NEAR(fails.effects.front().probability / holds.effects.front().probability, (1 - fails.none_of_these) / (1 - holds.none_of_these),
+              1e-6);
+}
+
 /// The load of 2 kg itself may be off by 2 %, so the payload is known to 0.08 kg at best.
 TEST(Diagnose, KnowsAPayloadNoBetterThanTheModelsNumbers) {
   const Diagnosis found = diagnose(plant({{"payload", "hand", {{"mass_kg", 0.4}}}}), few({"payload", "valve_lag", "force_gain", "creep"}));
