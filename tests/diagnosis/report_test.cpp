@@ -48,6 +48,9 @@ TEST(Report, SignTellsHowFarTheAnswerCanBeBelieved) {
   d.alternatives = {"leak@muscle_0", "creep@muscle_0"};
   EXPECT_TRUE(contains(diagnosisReport(d), "<strong>Explained in part</strong>")) << "another cause is as good";
   d = sampleDiagnosis();
+  d.none_of_these = 0.5;
+  EXPECT_TRUE(contains(diagnosisReport(d), "<strong>Explained in part</strong>")) << "it holds too little on the held-out recording";
+  d = sampleDiagnosis();
   d.partial = true;
   EXPECT_TRUE(contains(diagnosisReport(d), "<strong>Cannot tell</strong>"));
   EXPECT_TRUE(contains(diagnosisReport(answer(Verdict::unexplained)), "<strong>Cannot tell</strong>"));
