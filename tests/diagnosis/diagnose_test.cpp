@@ -128,7 +128,8 @@ TEST(Diagnose, FindsATiltThatSmallStepsDoNotShow) {
 }
 
 /// After a few rounds the misfit of one is far behind that of the other, and both are far from their optimum. Fitted to the end, both
-/// remove nearly everything, and neither can be excluded.
+/// remove nearly everything, and neither can be excluded. The plant follows the law of neither, so that "none of these" is possible, but
+/// less likely than either: the named one leaves a twenty-fifth of the RMS, a ninth of the misfit.
 TEST(Diagnose, FitsLookAlikesToTheEnd) {
   const Diagnosis found =
       diagnose(elbow({"foreign.power_loss", "all", {{"loss_at_100_mm_per_s_N", 6.0}}}), few({"viscous_loss", "joint_viscous_friction"}));
@@ -148,11 +149,10 @@ TEST(Diagnose, FitsLookAlikesToTheEnd) {
   for (const std::string& label : look_alikes) EXPECT_TRUE(lists(found.ambiguity_set, label)) << diagnosisSummary(found);
   for (const FoundEffect& effect : found.effects) {
     if (lists(look_alikes, effect.label()))
-      EXPECT_GT(effect.probability, 0.1) << effect.label();
+      EXPECT_GT(effect.probability, std::max(0.1, found.none_of_these)) << effect.label();
     else
       EXPECT_LT(effect.probability, 0.05) << effect.label();
   }
-  EXPECT_LT(found.none_of_these, 0.05);
 }
 
 TEST(Diagnose, SaysNoGapWhereThereIsOnlyNoise) {
