@@ -37,7 +37,9 @@ class Diagnoses(unittest.TestCase):
                 of_an_earlier_diagnosis.write("{}")
             answer.save(folder)
             proposal = ["next.csv", "next.json"] if answer.data.get("next_experiment") else []
-            self.assertEqual(sorted(os.listdir(folder)), ["diagnosis.json", "effects.json", *proposal, "report.html"])
+            self.assertEqual(sorted(os.listdir(folder)), sorted(["diagnosis.json", "effects.json", "nominal.toml", *proposal, "report.html"]))
+            with open(os.path.join(folder, "nominal.toml"), encoding="utf-8") as file:
+                self.assertIn("rig.load_kg = ", file.read())
             with open(os.path.join(folder, "diagnosis.json"), encoding="utf-8") as file:
                 self.assertEqual(json.load(file)["format"], "musclesim-diagnosis-1")
             gone = musclesim.replay(measured(3), effects=os.path.join(folder, "effects.json")).errors["length_0_mm"]["rmse"]
