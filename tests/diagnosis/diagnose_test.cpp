@@ -134,6 +134,7 @@ TEST(Diagnose, FitsLookAlikesToTheEnd) {
     else
       EXPECT_LT(effect.probability, 0.05) << effect.label();
   }
+  EXPECT_LT(found.remainder.probability, 0.05);
 }
 
 TEST(Diagnose, SaysNoGapWhereThereIsOnlyNoise) {
