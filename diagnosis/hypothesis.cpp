@@ -130,6 +130,11 @@ void Hypothesis::leaveOut(int coordinate) {
   for (int& strength : strengths_) strength -= strength > coordinate;
 }
 
+std::string Hypothesis::place() const {
+  const Stage stage = info_.stage;
+  return component_ + (stage == Stage::sensor ? " sensor" : stage == Stage::command || stage == Stage::pressure ? " pressure" : " motion");
+}
+
 std::vector<std::string> Hypothesis::strengthNames() const {
   std::vector<std::string> names;
   for (const int strength : strengths_) names.push_back(info_.parameters[coordinates_[static_cast<std::size_t>(strength)].parameter].name);

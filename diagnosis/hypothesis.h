@@ -25,6 +25,9 @@ class Hypothesis {
   const EffectInfo& info() const { return info_; }
   const std::string& component() const { return component_; }
   std::string label() const { return info_.id + "@" + component_; }
+  /// Component and part of the machine: how the pressure follows the command, what the pressure moves, or the sensors. Effects of one place
+  /// may act alike.
+  std::string place() const;
   int coordinateCount() const { return static_cast<int>(coordinates_.size()); }
   /// Numbers that were counted in the recordings or tried one by one instead of fitted.
   int countedParameters() const { return coordinates_.empty() ? static_cast<int>(info_.parameters.size()) : 0; }

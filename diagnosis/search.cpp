@@ -19,17 +19,8 @@ constexpr std::size_t single_count = 9;                    ///< single effects t
 constexpr std::size_t per_stage_count = 2;                 ///< and at least so many of every stage
 constexpr std::size_t beam_width = 5;                      ///< sets of each size that the linear search keeps
 constexpr std::size_t addition_count = 3, drop_count = 4;  ///< sets that are fitted about one explanation, besides one of each stage
-constexpr std::size_t wide_count = 4;  ///< sets of one size of which widened forms are fitted, and so many forms of each
 constexpr std::size_t base_counts[] = {3, 2, 2, 1, 1, 1};  ///< explanations of each size that are extended
-constexpr std::size_t neighbour_count = 30;                ///< effects that are simulated beside an explanation that is extended,
-constexpr std::size_t beside_all_count = 40;               ///< beside a set whose members are replaced,
-constexpr std::size_t stand_in_neighbour_count = 20;       ///< and beside the rest of it without one of them
-constexpr std::size_t stood_in_count = 4;                  ///< best sets of whose members each is replaced
-constexpr std::size_t stand_in_count = 4, pair_count = 2;  ///< by so many single effects, and by so many pairs,
-constexpr int stand_in_variants = 2;                       ///< in so many variants
-constexpr int most_stood_in = 12;                          ///< sets in all, while better ones come up
-constexpr std::size_t pair_base_count = 8;                 ///< effects that do best alone, one of which every such pair has
-constexpr double hopeless = 4;                             ///< nats behind the best: sets of this size are not extended any more
+constexpr std::size_t neighbour_count = 30;                ///< effects that are simulated beside an explanation that is extended
 constexpr int screening_rounds = 4;
 
 }  // namespace
@@ -142,68 +133,10 @@ std::vector<Search::Proposal> Search::additions(const Surroundings& around) cons
   return result;
 }
 
-/// Two further effects: one often takes in what two make, so that neither lowers the cost alone. Pairs are formed of the effects that cost
-/// least if added alone (pair_base_count) with any other.
-std::vector<Search::Proposal> Search::pairs(const Surroundings& around) const {
-  const std::size_t count = around.base.members.size();
-  if (static_cast<int>(count) + 2 > options_.max_effects) return {};
-  std::vector<std::size_t> order;
-  std::set<std::string> labels;
-  for (const std::size_t index : inOrderOf(costsOfAdding(around)))
-    if (labels.insert(causes_.hypotheses[index].label()).second) order.push_back(index);
-  std::vector<std::vector<std::size_t>> pairs;
-  for (std::size_t i = 0; i < std::min(pair_base_count, order.size()); ++i)
-    for (std::size_t k = i + 1; k < order.size(); ++k)
-      if (!causes_.clash(order[i], order[k])) pairs.push_back({order[i], order[k]});
-  std::vector<Proposal> result(pairs.size());
-  parallelFor(static_cast<int>(pairs.size()), options_.job_count, [&](int i) {
-    const auto index = static_cast<std::size_t>(i);
-    result[index] = proposed(around, allBut(count, count), pairs[index]);
-  });
-  return result;
-}
-
 std::vector<Search::Proposal> Search::drops(const Surroundings& around) const {
   const std::vector<std::size_t>& members = around.base.members;
   std::vector<Proposal> result;
   for (std::size_t m = 0; m < members.size() && members.size() > 1; ++m) result.push_back(proposed(around, allBut(m, members.size()), {}));
-  return result;
-}
-
-/// One effect on a single component put on all of them, in place of all members of its kind: faults of muscles of one build often are
-/// alike, and two of them on single muscles cost more than one on all. There is no estimate of what such a set costs: with 0 it promises
-/// everything, so that it is fitted from here even if it is known.
-std::vector<Search::Proposal> Search::widened(const Explanation& base) const {
-  std::vector<Proposal> result;
-  const Model model = causes_.modelOf(base);
-  for (std::size_t m = 0; m < base.members.size(); ++m)
-    for (std::size_t i = 0; i < causes_.hypotheses.size(); ++i) {
-      const Hypothesis &one = causes_.hypotheses[base.members[m]], &on_all = causes_.hypotheses[i];
-      if (on_all.component() != "all" || one.component() == "all" || on_all.info().id != one.info().id || !catalogue_.allowed[i]) continue;
-      Explanation wide = base;
-      for (std::size_t k = wide.members.size(); k-- > 0;)
-        if (causes_.clash(i, wide.members[k])) wide = causes_.without(wide, k);
-      result.push_back({causes_.with(wide, i, model.effects[m].parameters), 0});
-    }
-  return result;
-}
-
-/// Each member replaced by every effect whose strengths have the same names, at the same values. Example: a dead time of all commands and
-/// one of all sensors act alike, but if commands jump, the misfit jumps with the dead time, and a fit that begins at another time may end
-/// in another minimum. Only effects that could act on a single place ("all", or the only muscle) are exchanged. As for widened(), nothing
-/// estimates the cost.
-std::vector<Search::Proposal> Search::exchanged(const Explanation& base) const {
-  std::vector<Proposal> result;
-  const Model model = causes_.modelOf(base);
-  for (std::size_t m = 0; m < base.members.size(); ++m)
-    for (std::size_t i = 0; i < causes_.hypotheses.size(); ++i) {
-      const Hypothesis &one = causes_.hypotheses[base.members[m]], &other = causes_.hypotheses[i];
-      const Explanation rest = causes_.without(base, m);
-      if (one.info().id == other.info().id || one.placeCount() > 1 || other.placeCount() > 1 || one.strengths().empty() ||
-          one.strengthNames() != other.strengthNames() || !fitsBeside(i, rest.members))
-        continue;
-      result.push_back({causes_.with(rest, i, model.effects[m].parameters), 0});
-    }
   return result;
 }
 
@@ -288,50 +221,6 @@ void Search::expand(const Explanation& base) {
     if (std::optional<Proposal> simple = withoutFurtherMechanisms(proposals[i])) proposals.push_back(std::move(*simple));
   std::ranges::move(nearest(drops(around), drop_count), std::back_inserter(proposals));
   fitOnScreening(std::move(proposals));
-}
-
-/// The effects that, alone or as a pair, explain best what the set leaves unexplained since one member was taken away. `beside_all` are the
-/// changes that the catalogue makes beside all members. Every set is tried once.
-std::vector<Search::Proposal> Search::standIns(Explanation kept, const std::vector<Sensitivity>& beside_all) {
-  if (kept.members.empty() || plant_.interrupted() || !stood_in_.insert(causes_.labelsOf(kept.members)).second) return {};
-  const Eigen::VectorXd predicted = screening_.predicted(causes_.modelOf(kept));
-  on_simulation_();
-  if (predicted.size() != screening_.size()) return {};
-  kept.residual = screening_.measured() - predicted;
-  return bestAdded(surroundingsOf(kept, {stand_in_neighbour_count, stand_in_variants, &beside_all}));
-}
-
-/// The best additions of one effect and of two.
-std::vector<Search::Proposal> Search::bestAdded(const Surroundings& around) const {
-  std::vector<Proposal> result = nearest(additions(around), stand_in_count, stand_in_variants);
-  std::ranges::move(nearest(pairs(around), pair_count), std::back_inserter(result));
-  return result;
-}
-
-/// Tries stand-ins of every member of the best sets, what is missing beside all members, and the sets' widened and exchanged forms. A swap
-/// that is estimated where the member acts takes the change that the stand-in makes there as proportional, up to all that the member
-/// explains; friction beside friction, for one, is far from that. So the member is taken away first, and what promises most there, by its
-/// changes beside nothing or beside all members, is simulated there.
-void Search::tryStandIns() {
-  std::set<std::set<std::string>> done;
-  std::vector<Sensitivity> beside;  // the set before
-  for (int count = 0; count < most_stood_in && !plant_.interrupted(); ++count) {
-    const std::vector<std::size_t> order = bestOnScreening(0, stood_in_count);
-    const auto next = std::ranges::find_if(order, [&](std::size_t i) { return !done.contains(causes_.labelsOf(pool_[i].members)); });
-    if (next == order.end() || pool_[*next].score < pool_[order.front()].score - hopeless) return;
-    const Explanation base = pool_[*next];  // the pool grows below
-    done.insert(causes_.labelsOf(base.members));
-    const Surroundings around = surroundingsOf(base, {beside_all_count, stand_in_variants, beside.empty() ? nullptr : &beside});
-    beside = around.sensitivities;
-    std::vector<Proposal> proposals;
-    if (static_cast<int>(base.members.size()) < options_.max_effects && stood_in_.insert(causes_.labelsOf(base.members)).second)
-      proposals = bestAdded(around);
-    for (std::size_t m = 0; m < base.members.size(); ++m)
-      std::ranges::move(standIns(causes_.without(base, m), around.sensitivities), std::back_inserter(proposals));
-    std::ranges::move(nearest(widened(base), wide_count, 2), std::back_inserter(proposals));
-    std::ranges::move(nearest(exchanged(base), wide_count), std::back_inserter(proposals));
-    fitOnScreening(std::move(proposals));
-  }
 }
 
 /// Indices of the best explanations of one size (0: of any).

@@ -66,6 +66,8 @@ class Search {
   /// fits ended above the best set, or less than 4 nats behind it; all had been promised an end that was not lower than that by more than
   /// this.
   static constexpr double promise_error = 6;
+  static constexpr double hopeless = 4;         ///< nats behind the best: such sets are not extended, nor their members replaced
+  static constexpr std::size_t wide_count = 4;  ///< sets of one size of which widened forms are fitted, and so many forms of each
 
   /// A set whose fit has not begun, and the linear estimate of what it will cost.
   struct Proposal {
@@ -79,6 +81,7 @@ class Search {
     std::size_t count;                                      ///< labels at most, besides some of each stage
     int variants;                                           ///< of each label
     const std::vector<Sensitivity>* beside_near = nullptr;  ///< known changes beside an explanation that is near, where there are any
+    std::string place = {};                                 ///< Hypothesis::place() of which all are simulated, whatever they promise
   };
   /// A linear model about one explanation, and the meaning of its columns.
   struct Surroundings {
@@ -125,25 +128,28 @@ class Search {
   std::vector<Proposal> singleEffects(const Surroundings& around) const;
   std::vector<Proposal> largerSets(const Surroundings& around) const;
   std::vector<Proposal> additions(const Surroundings& around) const;
-  std::vector<Proposal> pairs(const Surroundings& around) const;
   std::vector<Proposal> drops(const Surroundings& around) const;
   std::optional<Proposal> withoutFurtherMechanisms(const Proposal& proposal) const;
-  std::vector<Proposal> widened(const Explanation& base) const;
-  std::vector<Proposal> exchanged(const Explanation& base) const;
   void fitOnScreening(std::vector<Proposal> proposals);
   void nearToOrigin(Proposal& proposal) const;
   void expand(const Explanation& base);
   std::vector<std::size_t> bestOnScreening(std::size_t member_count, std::size_t count) const;
   std::vector<std::size_t> unlikeOnScreening(std::size_t member_count, std::size_t count) const;
   void extendBySize();
-  std::vector<Proposal> standIns(Explanation kept, const std::vector<Sensitivity>& beside_all);
-  std::vector<Proposal> bestAdded(const Surroundings& around) const;
-  void tryStandIns();
   bool changesFocus(std::size_t hypothesis) const;
   std::vector<Explanation> explainPressures();
   std::pair<std::size_t, Eigen::VectorXd> nearestTo(const ActiveEffect& effect) const;
   Explanation earlierFinding() const;
   Evidence screeningEvidence() const { return {screening_, screening_residual_, causes_}; }
+
+  // stand_ins.cpp
+  std::vector<Proposal> pairs(const Surroundings& around) const;
+  std::vector<Proposal> widened(const Explanation& base) const;
+  std::vector<Proposal> exchanged(const Explanation& base) const;
+  std::vector<Proposal> standIns(const Explanation& base, std::size_t member, const std::vector<Sensitivity>& beside_all);
+  std::vector<Proposal> additionsAt(const std::string& place, const Surroundings& around, std::size_t count) const;
+  std::vector<Proposal> bestAdded(const Surroundings& around) const;
+  void tryStandIns();
 
   // finalists.cpp
   void fitFinalists();
@@ -179,6 +185,7 @@ class Search {
   std::vector<Surroundings> about_nothing_;
   std::vector<Explanation> pool_;  ///< fitted to the screening segments
   std::set<std::set<std::string>> expanded_, stood_in_;
+  std::set<std::pair<std::set<std::string>, std::string>> places_tried_;  ///< beside these effects, for another one of this place
   std::vector<Explanation> explanations_;
   Explanation nothing_;
   double none_of_these_ = 0;

@@ -166,7 +166,8 @@ std::vector<std::size_t> Search::worthSimulatingBeside(const Surroundings& aroun
     const Hypothesis& hypothesis = causes_.hypotheses[index];
     std::size_t& of_stage = per_stage[hypothesis.info().stage];
     int& chosen = variants_of_label[hypothesis.label()];
-    const bool is_left_out = variants_of_label.size() > neighbours.count && of_stage >= beside_per_stage_count;
+    const bool is_left_out =
+        hypothesis.place() != neighbours.place && variants_of_label.size() > neighbours.count && of_stage >= beside_per_stage_count;
     if (chosen == 0 && is_left_out) chosen = neighbours.variants;  // its other variants are left out, too
     if (chosen >= neighbours.variants) continue;
     of_stage += chosen == 0 ? 1 : 0;

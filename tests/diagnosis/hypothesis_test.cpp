@@ -51,6 +51,16 @@ TEST_F(PlantedRig, BoundsAreThoseOfTheUsualRange) {
   }
 }
 
+TEST_F(PlantedRig, APlaceIsAComponentAndAPartOfTheMachine) {
+  const std::string of_lag = hypothesis("valve_lag", "muscle_0").place();
+  EXPECT_EQ(hypothesis("transport_delay", "muscle_0").place(), of_lag);
+  EXPECT_EQ(hypothesis("flow_limit", "muscle_0").place(), of_lag);
+  EXPECT_NE(hypothesis("valve_lag", "all").place(), of_lag);
+  EXPECT_NE(hypothesis("force_gain", "muscle_0").place(), of_lag);
+  EXPECT_EQ(hypothesis("attachment_offset", "muscle_0").place(), hypothesis("length_offset", "muscle_0").place());
+  EXPECT_NE(hypothesis("sensor_gain", "signal_length_0").place(), hypothesis("sensor_gain", "signal_pressure_0").place());
+}
+
 /// The variants of a lag are one with a second lag and one without.
 TEST_F(PlantedRig, AnEffectIsNearestToTheVariantThatCanBeIt) {
   const ActiveEffect plain{"valve_lag", "muscle_0", {{"fill_time_constant_s", 0.06}, {"vent_time_constant_s", 0.09}}};
