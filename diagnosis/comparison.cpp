@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "../base/parallel.h"
@@ -55,7 +57,7 @@ double averagedShareOfSigma(const std::vector<double>& values) {
 
 /// Adds a block of parity for each signal of motion of which other signals tell something.
 void Comparison::addParity() {
-  constexpr double least_share = 0.05;  // of the noise's variance; below it, nothing of the signal remains beside the pose it determines
+  constexpr double least_share = 0.05;  // of a signal; below it, nothing remains of it beside the pose that it determines
   for (std::size_t k = 0; k < segments_.size(); ++k) {
     const ParityRelations& parity = plant_.parity(segments_[k].recording);
     if (parity.count() == 0) continue;
@@ -67,11 +69,13 @@ void Comparison::addParity() {
         rows.push_back(row);
     if (rows.size() < fewest_compared_rows) continue;
     for (std::size_t s = 0; s < parity.signals().size(); ++s) {
-      double share = 0;
-      for (const int row : rows) share += parity.shareOfVariance(row, static_cast<Eigen::Index>(s)) / static_cast<double>(rows.size());
-      if (share < least_share) continue;
-      const double sigma = plant_.signals()[static_cast<std::size_t>(parity.signals()[s])].sigma.value;
-      Block block{k, parity.signals()[s], rows, size_, sigma * std::sqrt(share)};
+      const auto position = static_cast<Eigen::Index>(s);
+      const auto meanOf = [&](auto value) {
+        return std::transform_reduce(rows.begin(), rows.end(), 0.0, std::plus<>{}, value) / static_cast<double>(rows.size());
+      };
+      if (meanOf([&](int row) { return parity.shareBeyondPose(row, position); }) < least_share) continue;
+      const double variance = meanOf([&](int row) { return parity.noiseVariance(row, position); });
+      Block block{k, parity.signals()[s], rows, size_, std::sqrt(variance)};
       block.is_parity = true;
       size_ += block.count();
       blocks_.push_back(std::move(block));

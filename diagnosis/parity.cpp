@@ -2,6 +2,7 @@
 
 #include <Eigen/SVD>
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "../simulation/measured_pose.h"
@@ -12,6 +13,7 @@ namespace {
 
 /// A coordinate that moves the readings by less than this share of what another one does is not seen by them.
 constexpr double rank_ratio = 1e-3;
+constexpr double straight_mm = 5;  ///< D; 0.05 rad: within about 3 degrees, signals are taken as straight
 
 }  // namespace
 
@@ -37,15 +39,19 @@ ParityRelations::ParityRelations(const Recording& recording, const ReplayOptions
       rows_.clear();
       return;
     }
-    Eigen::JacobiSVD<Eigen::MatrixXd> svd(sigma.cwiseInverse().asDiagonal() * near->slope, Eigen::ComputeThinU | Eigen::ComputeThinV);
+    Eigen::VectorXd scale = sigma;
+    for (Eigen::Index i = 0; i < scale.size(); ++i)
+      scale[i] = std::hypot(sigma[i], 0.5 * straight_mm * straight_mm * near->bend[static_cast<std::size_t>(i)].norm());
+    Eigen::JacobiSVD<Eigen::MatrixXd> svd(scale.cwiseInverse().asDiagonal() * near->slope, Eigen::ComputeThinU | Eigen::ComputeThinV);
     svd.setThreshold(rank_ratio);
     const Eigen::Index rank = svd.rank();
     const Eigen::MatrixXd seen = svd.matrixU().leftCols(rank);
     const Eigen::MatrixXd beyond = Eigen::MatrixXd::Identity(sigma.size(), sigma.size()) - seen * seen.transpose();
     const Eigen::MatrixXd inverse =
         svd.matrixV().leftCols(rank) * svd.singularValues().head(rank).cwiseInverse().asDiagonal() * seen.transpose();
-    rows_.push_back({sigma.asDiagonal() * beyond * sigma.cwiseInverse().asDiagonal(), inverse * sigma.cwiseInverse().asDiagonal(),
-                     std::move(near->bend)});
+    const Eigen::MatrixXd relation = scale.asDiagonal() * beyond * scale.cwiseInverse().asDiagonal();
+    const Eigen::VectorXd noise_variance = (relation * sigma.asDiagonal()).rowwise().squaredNorm();
+    rows_.push_back({relation, noise_variance, inverse * scale.cwiseInverse().asDiagonal(), std::move(near->bend)});
     largest_rank = std::max(largest_rank, rank);
   }
   count_ = static_cast<int>(sigma.size() - largest_rank);
@@ -59,8 +65,12 @@ Eigen::VectorXd ParityRelations::at(int row, const Eigen::VectorXd& readings, co
   return at.relation * straight;
 }
 
-double ParityRelations::shareOfVariance(int row, Eigen::Index position) const {
+double ParityRelations::shareBeyondPose(int row, Eigen::Index position) const {
   return rows_[static_cast<std::size_t>(row)].relation(position, position);
+}
+
+double ParityRelations::noiseVariance(int row, Eigen::Index position) const {
+  return rows_[static_cast<std::size_t>(row)].noise_variance[position];
 }
 
 }  // namespace musclesim

@@ -294,16 +294,17 @@ std::string unsteadyWords(const Unsteady& unsteady) {
       unsteady.signal, unsteady.in_sigmas, 100 * unsteady.share_of_gap);
 }
 
-/// The probability that the cause is not among the candidates, if it is worth saying.
+/// The probability that something else acts than the candidates, if it is worth saying.
 std::string noneWords(const Diagnosis& d) {
   constexpr double worth_saying = 0.1;
   if (d.none_of_these < worth_saying) return "";
-  if (d.candidates.empty())
-    return fmt::format("The probability that none of the known effects is the cause is {}.", probabilityWords(d.none_of_these));
-  return fmt::format("The probability that {} is {}; other effects were not considered.",
-                     d.candidates.size() == 1 ? d.candidates.front() + " is not the cause"
-                                              : fmt::format("none of {} is the cause", fmt::join(d.candidates, ", ")),
-                     probabilityWords(d.none_of_these));
+  std::string words = fmt::format("With a probability of {}, something acts that is ", probabilityWords(d.none_of_these));
+  if (d.candidates.empty()) return words + "none of the known effects, alone or beside them.";
+  if (d.candidates.size() == 1)
+    words += fmt::format("not {}, alone or beside it", d.candidates.front());
+  else
+    words += fmt::format("none of {}, alone or beside them", fmt::join(d.candidates, ", "));
+  return words + "; other effects were not considered.";
 }
 
 std::string mostProbable(const Diagnosis& d) {

@@ -232,11 +232,12 @@ TEST(VerdictSentence, SaysHowLikelyNoneOfTheKnownEffectsIs) {
   d.none_of_these = 0.09;
   EXPECT_FALSE(contains(verdictSentence(d), "none of the known effects"));
   d.none_of_these = 0.48;
-  EXPECT_TRUE(contains(verdictSentence(d), "The probability that none of the known effects is the cause is 48 %."));
+  EXPECT_TRUE(
+      contains(verdictSentence(d), "With a probability of 48 %, something acts that is none of the known effects, alone or beside them."));
   d.candidates = {"creep"};
-  EXPECT_TRUE(contains(verdictSentence(d), "The probability that creep is not the cause is 48 %; other effects were not considered."));
+  EXPECT_TRUE(contains(verdictSentence(d), "something acts that is not creep, alone or beside it; other effects were not considered."));
   d.candidates = {"creep", "valve_lag"};
-  EXPECT_TRUE(contains(verdictSentence(d), "The probability that none of creep, valve_lag is the cause is 48 %; other effects"));
+  EXPECT_TRUE(contains(verdictSentence(d), "something acts that is none of creep, valve_lag, alone or beside them; other effects"));
 }
 
 TEST(VerdictSentence, SaysWhatAnUnexplainedGapLooksLike) {
@@ -271,7 +272,7 @@ TEST(VerdictSentence, AdmitsWhatItCannotTell) {
   d.verdict = Verdict::unexplained;
   EXPECT_TRUE(contains(verdictSentence(d), "cannot explain"));
   d.none_of_these = 0.79;
-  EXPECT_TRUE(contains(verdictSentence(d), "The probability that none of the known effects is the cause is 79 %."));
+  EXPECT_TRUE(contains(verdictSentence(d), "With a probability of 79 %, something acts that is none of the known effects"));
   d.effects = lagFound().effects;
   d.effects.front().probability = 0.21;
   EXPECT_TRUE(contains(verdictSentence(d), "valve lag on muscle 1, has a probability of 21 %"));
