@@ -40,6 +40,52 @@ std::map<std::string, Estimate> estimates(const Hypothesis& hypothesis, const Ex
   return result;
 }
 
+/// How much less likely the readings are with one residual than with another one, in nats of white noise; noise that is more than a block's
+/// floor counts as what is left in it.
+double lessLikelyNats(const Comparison& comparison, const Eigen::VectorXd& residual, const Eigen::VectorXd& best) {
+  double nats = 0;
+  for (const Comparison::Block& block : comparison.blocks()) {
+    if (!block.isReading()) continue;
+    const double least = comparison.meanSquare(block, best);
+    nats += 0.5 * static_cast<double>(block.count()) * (comparison.meanSquare(block, residual) - least) /
+            std::max(least, block.sigma * block.sigma);
+  }
+  return nats;
+}
+
+/// Widens the intervals of times that can change by up to an internal step of the model without a noticeable loss: a limited flow moves on
+/// by whole steps, so that nothing changes with the dead time before it as long as that stays within one. Derivatives do not show the ends
+/// of such a plateau.
+void widenWithinStep(const Search& search, const Explanation& fitted, std::size_t member, std::map<std::string, Estimate>& estimates) {
+  constexpr double noticeable_nats = 1.92;  // half of the 95 % quantile of chi square with one degree of freedom
+  constexpr int parts = 4;                  // of an internal step
+  const Comparison& comparison = search.fitComparison();
+  const double part_s = search.causes().plant().model().internalStepS() / parts;
+  const auto isNoticeable = [&](const std::string& parameter, double value) {
+    Model model = search.modelOf(fitted);
+    model.effects[member].parameters[parameter] = value;
+    const Eigen::VectorXd predicted = comparison.predicted(model, Fidelity::fine);
+    return search.causes().plant().interrupted() || !predicted.size() ||
+           lessLikelyNats(comparison, comparison.measured() - predicted, fitted.residual) > noticeable_nats;
+  };
+  for (const EffectParameter& parameter : search.hypotheses()[fitted.members[member]].info().parameters) {
+    const auto found = estimates.find(parameter.name);
+    if (parameter.unit != "s" || found == estimates.end() || !found->second.is_determined) continue;
+    Estimate& time = found->second;
+    for (const double part : {-part_s, part_s}) {
+      int moved = 0;  // parts to the first noticeable one
+      while (moved < parts &&
+             !isNoticeable(parameter.name, std::clamp(time.value + (moved + 1) * part, parameter.minimum, parameter.maximum)))
+        ++moved;
+      const double last = time.value + moved * part;
+      if (last >= time.low && last <= time.high) continue;
+      const double end = std::clamp(last + (moved < parts ? part : 0), parameter.minimum, parameter.maximum);  // the plateau ends before
+      time.low = std::min(time.low, end);
+      time.high = std::max(time.high, end);
+    }
+  }
+}
+
 /// What each chosen effect removes while the others are present.
 std::map<std::string, double> shares(const Search& search, const HeldOut& held_out, const Diagnosis& diagnosis) {
   std::map<std::string, double> result;
@@ -139,14 +185,15 @@ void listEffects(const Search& search, const HeldOut& held_out, const DiagnosisO
   for (const Explanation& fitted : search.explanations()) {
     ExplanationProbability entry{{}, known * fitted.probability};
     Eigen::Index first = 0;
-    for (const std::size_t index : fitted.members) {
-      const Hypothesis& hypothesis = search.hypotheses()[index];
+    for (std::size_t member = 0; member < fitted.members.size(); ++member) {
+      const Hypothesis& hypothesis = search.hypotheses()[fitted.members[member]];
       entry.effects.push_back(hypothesis.label());
       FoundEffect& effect = found[hypothesis.label()];
       if (effect.id.empty()) {
         effect.id = hypothesis.info().id;
         effect.component = hypothesis.component();
         effect.parameters = estimates(hypothesis, fitted, first);
+        if (entry.probability >= least_listed) widenWithinStep(search, fitted, member, effect.parameters);
         effect.choices = hypothesis.choices();
         if (const auto share = removed.find(hypothesis.label()); share != removed.end()) effect.removes_percent = share->second;
       }
