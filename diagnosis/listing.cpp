@@ -60,6 +60,7 @@ void widenWithinStep(const Search& search, const Explanation& fitted, std::size_
   constexpr double noticeable_nats = 1.92;  // half of the 95 % quantile of chi square with one degree of freedom
   constexpr int parts = 4;                  // of an internal step
   const Comparison& comparison = search.fitComparison();
+  if (fitted.residual.size() != comparison.size()) return;  // interrupted before it was fitted to all recordings
   const double part_s = search.causes().plant().model().internalStepS() / parts;
   const auto isNoticeable = [&](const std::string& parameter, double value) {
     Model model = search.modelOf(fitted);
