@@ -65,22 +65,28 @@ disturb() {
     sleep 0.05
   done
   ((${#found[@]} >= 2)) || fail "no two workers were seen at work"
-  # Its run is halted first, so that the worker is killed within a row and not between two.
-  for ((i = 0; i < 200; ++i)); do
-    run=$(pgrep -P "${found[0]}" | head -n 1 || true)
-    [[ -n $run ]] && kill -STOP "$run" 2>/dev/null && break
-    run=''
-    sleep 0.02
-  done
-  [[ -n $run ]] || fail "no run of worker ${found[0]} could be halted"
+  # Runs are halted first, so that they are killed within a row and not after it.
+  run=$(halted_run "${found[0]}")
   kill -9 "${found[0]}" "$run"
   say "killed worker ${found[0]}"
+  run=$(halted_run "${found[1]}")
+  kill -SEGV "$run"
+  kill -CONT "$run"
+  say "crashed a run of worker ${found[1]}"
+}
+
+# Halts the present run of a worker and prints its process; a run that has ended cannot be halted, though it can be signalled.
+halted_run() {
+  local run i
   for ((i = 0; i < 200; ++i)); do
-    run=$(pgrep -P "${found[1]}" | head -n 1 || true)
-    [[ -n $run ]] && kill -SEGV "$run" 2>/dev/null && say "crashed a run of worker ${found[1]}" && return
+    run=$(pgrep -P "$1" | head -n 1 || true)
+    if [[ -n $run ]] && kill -STOP "$run" 2>/dev/null; then
+      sleep 0.02
+      [[ $(ps -o stat= -p "$run" 2>/dev/null) == T* ]] && echo "$run" && return
+    fi
     sleep 0.02
   done
-  fail "no run could be crashed"
+  fail "no run of worker $1 could be halted" >&2
 }
 
 compare() {
