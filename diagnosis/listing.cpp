@@ -40,8 +40,8 @@ std::map<std::string, Estimate> estimates(const Hypothesis& hypothesis, const Ex
   return result;
 }
 
-/// How much less likely the readings are with one residual than with another one, in nats of white noise; noise that is more than a block's
-/// floor counts as what is left in it.
+/// How much less likely the readings are with `residual` than with `best`, in nats, if what they leave is white noise. The noise of a block
+/// is its floor, or what `best` leaves there if that is more.
 double lessLikelyNats(const Comparison& comparison, const Eigen::VectorXd& residual, const Eigen::VectorXd& best) {
   double nats = 0;
   for (const Comparison::Block& block : comparison.blocks()) {
