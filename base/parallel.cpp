@@ -17,6 +17,7 @@ struct Batch {
   int count;
   int next = 0;      ///< the first piece that no thread has taken
   int open = count;  ///< pieces that have not ended
+  long number = 0;   ///< in the order of addition
   std::vector<std::exception_ptr> failures = std::vector<std::exception_ptr>(static_cast<std::size_t>(count));
 
   void rethrow() const {
@@ -25,7 +26,8 @@ struct Batch {
   }
 };
 
-/// Threads that work on the pieces of all batches, oldest batch first. The thread that adds a batch works on it, too.
+/// Threads that work on the pieces of all batches, oldest batch first. The thread that adds a batch works on it, too, and then on batches
+/// that were added later, until its own has ended: those are mostly parts of the pieces of its own batch that other threads work on.
 class Crew {
  public:
   explicit Crew(int thread_count) : before_(current_) {
@@ -38,7 +40,7 @@ class Crew {
       const std::lock_guard lock(mutex_);
       stopping_ = true;
     }
-    wake_.notify_all();
+    changed_.notify_all();
     for (std::thread& thread : threads_) thread.join();
   }
   Crew(const Crew&) = delete;
@@ -49,10 +51,17 @@ class Crew {
 
   void run(Batch& batch) {
     std::unique_lock lock(mutex_);
+    batch.number = next_number_++;
     batches_.push_back(&batch);
-    wake_.notify_all();
-    while (batch.next < batch.count) takeTurn(batch, lock);
-    ended_.wait(lock, [&] { return batch.open == 0; });
+    changed_.notify_all();
+    while (batch.open > 0) {
+      if (batch.next < batch.count)
+        takeTurn(batch, lock);
+      else if (!batches_.empty() && batches_.back()->number > batch.number)
+        takeTurn(*batches_.back(), lock);
+      else
+        changed_.wait(lock);
+    }
   }
 
  private:
@@ -60,7 +69,7 @@ class Crew {
     current_ = this;
     std::unique_lock lock(mutex_);
     for (;;) {
-      wake_.wait(lock, [this] { return stopping_ || !batches_.empty(); });
+      changed_.wait(lock, [this] { return stopping_ || !batches_.empty(); });
       if (batches_.empty()) return;
       takeTurn(*batches_.front(), lock);
     }
@@ -76,14 +85,15 @@ class Crew {
       batch.failures[static_cast<std::size_t>(piece)] = std::current_exception();
     }
     lock.lock();
-    if (--batch.open == 0) ended_.notify_all();
+    if (--batch.open == 0) changed_.notify_all();
   }
 
   static thread_local Crew* current_;
   Crew* before_;
   std::mutex mutex_;
-  std::condition_variable wake_, ended_;
-  std::list<Batch*> batches_;  ///< batches with pieces that no thread has taken
+  std::condition_variable changed_;  ///< a batch was added or has ended, or the crew stops
+  std::list<Batch*> batches_;        ///< batches with pieces that no thread has taken
+  long next_number_ = 0;
   bool stopping_ = false;
   std::vector<std::thread> threads_;
 };

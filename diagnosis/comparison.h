@@ -4,11 +4,19 @@
 #include <Eigen/Core>
 #include <array>
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "plant.h"
 
 namespace musclesim {
+
+/// A vector over all compared rows that several keep without copies of it.
+using SharedVector = std::shared_ptr<const Eigen::VectorXd>;
+/// Null for an empty vector.
+inline SharedVector shared(Eigen::VectorXd values) {
+  return values.size() ? std::make_shared<const Eigen::VectorXd>(std::move(values)) : nullptr;
+}
 
 inline constexpr std::size_t averaging_rows = 16;  ///< rows per averaging block
 inline constexpr double steady_share = 0.2;        ///< share of sigma that averaging does not reduce: errors of the model's own time steps

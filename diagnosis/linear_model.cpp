@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../base/parallel.h"
+
 namespace musclesim {
 
 namespace {
@@ -28,12 +30,17 @@ void descend(const Eigen::MatrixXd& normal, const Eigen::VectorXd& slope, const 
 LinearModel::LinearModel(const Comparison& comparison, const Eigen::VectorXd& residual, std::vector<Column> columns)
     : comparison_(comparison), columns_(std::move(columns)) {
   const auto count = static_cast<Eigen::Index>(columns_.size());
-  for (const Comparison::Block& block : comparison.blocks()) {
-    Eigen::MatrixXd part(block.count(), count + 1);
-    for (Eigen::Index i = 0; i < count; ++i) part.col(i) = columns_[static_cast<std::size_t>(i)].change.segment(block.first, block.count());
+  grams_.resize(comparison.blocks().size());
+  parallelFor(static_cast<int>(grams_.size()), comparison.plant().jobCount(), [&](int b) {
+    const auto index = static_cast<std::size_t>(b);
+    const Comparison::Block& block = comparison.blocks()[index];
+    Eigen::MatrixXd part(block.count(), count + 1), lower = Eigen::MatrixXd::Zero(count + 1, count + 1);
+    for (Eigen::Index i = 0; i < count; ++i)
+      part.col(i) = columns_[static_cast<std::size_t>(i)].change->segment(block.first, block.count());
     part.col(count) = residual.segment(block.first, block.count());
-    grams_.push_back(part.transpose() * part / static_cast<double>(block.count()));
-  }
+    lower.selfadjointView<Eigen::Lower>().rankUpdate(part.transpose(), 1 / static_cast<double>(block.count()));
+    grams_[index] = lower.selfadjointView<Eigen::Lower>();
+  });
 }
 
 LinearModel::Normal LinearModel::normalOf(const std::vector<std::size_t>& columns, const std::vector<double>& weights) const {

@@ -12,7 +12,7 @@ class LinearModel {
  public:
   /// A change of the prediction per unit of an amount, and what the amount may be.
   struct Column {
-    Eigen::VectorXd change;
+    SharedVector change;
     double least, most;
     double precision;  ///< of a normal prior of start + amount about 0
     double start = 0;

@@ -61,7 +61,8 @@ Eigen::VectorXd ParityRelations::at(int row, const Eigen::VectorXd& readings, co
   const Row& at = rows_[static_cast<std::size_t>(row)];
   const Eigen::VectorXd moved = at.to_pose * (readings - measured);
   Eigen::VectorXd straight = readings;
-  for (Eigen::Index i = 0; i < straight.size(); ++i) straight[i] -= 0.5 * moved.dot(at.bend[static_cast<std::size_t>(i)] * moved);
+  for (Eigen::Index i = 0; i < straight.size(); ++i)
+    straight[i] -= 0.5 * moved.dot(at.bend[static_cast<std::size_t>(i)].lazyProduct(moved));
   return at.relation * straight;
 }
 

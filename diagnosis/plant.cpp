@@ -369,11 +369,13 @@ Prediction Plant::predict(int recording, const Model& model, int end_row, Fideli
   const Recording& recorded = recordings_[static_cast<std::size_t>(recording)];
   const std::size_t all_rows = recorded.time_s.size();
   const std::size_t rows = end_row > 0 ? std::min(static_cast<std::size_t>(end_row), all_rows) : all_rows;
-  std::string key = simulationKey(recording, rows, fidelity) + modelKey(model);
+  const Parts parts = partsOf(model);
+  std::string key = simulationKey(recording, rows, fidelity) + modelKey(parts.simulated);
   if (focus == Focus::pressures) key += " pressures";
   const bool is_new = store_.isNew(key);
-  Prediction prediction = store_.get(key, [&] { return replay(recorded, model, end_row, fidelity, focus); });
+  Prediction prediction = store_.get(key, [&] { return replay(recorded, parts.simulated, end_row, fidelity, focus); });
   if (is_new && !prediction.refused && focus == Focus::all_signals) count(recorded.time_s[rows - 1] - recorded.time_s.front());
+  read(parts.reading, prediction);
   holdSamples(recording, model, prediction);
   return prediction;
 }
@@ -442,6 +444,38 @@ std::optional<Recording> Plant::predictSchedule(const Recording& schedule, const
   std::optional<ReplayResult> result = simulated(schedule, model, fidelity, HeldSamples::drawn);
   if (!result || result->divergence || result->interrupted) return std::nullopt;
   return std::move(result->simulated);
+}
+
+/// Effects of sensors act in the order of the catalogue. One without memory can be left to read() where those with memory, which stand
+/// behind it there, act on other signals, and the user's model has none.
+Plant::Parts Plant::partsOf(const Model& model) const {
+  Parts parts{{{}, model.parameters}, {}};
+  const auto overlap = [](const std::string& one, const std::string& other) { return one == other || one == "all" || other == "all"; };
+  const auto hasMemory = [](const ActiveEffect& effect) {
+    const EffectInfo info = effectInfo(effect.id);
+    return info.stage == Stage::sensor && !info.is_memoryless && effect.id != held_effect;
+  };
+  for (const ActiveEffect& effect : model.effects) {
+    const bool can_be_read = effectInfo(effect.id).is_memoryless && compares(effect.component) && !holds(Stage::sensor) &&
+                             std::ranges::none_of(model.effects, [&](const ActiveEffect& other) {
+                               return overlap(effect.component, other.component) && hasMemory(other);
+                             });
+    (can_be_read ? parts.reading : parts.simulated.effects).push_back(effect);
+  }
+  return parts;
+}
+
+/// Turns the values of a prediction into the readings of sensors without memory.
+void Plant::read(std::vector<ActiveEffect> effects, Prediction& prediction) const {
+  std::ranges::stable_sort(effects, {}, [](const ActiveEffect& effect) { return effectRank(effect.id); });
+  for (const ActiveEffect& effect : effects) {
+    const EffectInfo info = effectInfo(effect.id);
+    const std::unique_ptr<Effect> made = info.make(EffectValues(info.parameters, effectValues(info, effect)));
+    auto& sensor = dynamic_cast<SensorEffect&>(*made);
+    for (std::size_t i = 0; i < signals_.size(); ++i)
+      if (effect.component == "all" || isComponentOf(effect.component, signals_[i].name))
+        for (double& value : prediction.values[i]) value = sensor.reading(value, {}, 0);
+  }
 }
 
 /// Applies held samples to a stored prediction, which does not depend on them.

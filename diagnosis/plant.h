@@ -113,8 +113,9 @@ class Plant {
   /// Tension of a muscle by the model's force law at a pressure and a length, N.
   double tensionN(int muscle, double pressure_ratio, double length_mm) const;
 
-  /// Simulates a recording up to `end_row` (0: all rows). Thread-safe. Repeated requests are not simulated again. With the focus on
-  /// pressures the values of all other signals may be anything.
+  /// Simulates a recording up to `end_row` (0: all rows). Thread-safe. Repeated requests are not simulated again, nor are those that differ
+  /// by faults of sensors without memory only (EffectInfo::is_memoryless). With the focus on pressures the values of all other signals may
+  /// be anything.
   Prediction predict(int recording, const Model& model, int end_row = 0, Fidelity fidelity = Fidelity::fine,
                      Focus focus = Focus::all_signals) const;
   /// The same with other commands in place of the recorded ones; `commands[row][muscle]`.
@@ -153,6 +154,13 @@ class Plant {
   enum class HeldSamples { as_measured, drawn };
   bool canBeBuilt(const Eigen::VectorXd& eta, double margin) const;
   bool pressuresNeedMotion(const Model& model) const;
+  /// What is simulated of a model, and the effects whose readings are computed from the simulated values.
+  struct Parts {
+    Model simulated;
+    std::vector<ActiveEffect> reading;
+  };
+  Parts partsOf(const Model& model) const;
+  void read(std::vector<ActiveEffect> effects, Prediction& prediction) const;
   std::optional<ReplayResult> simulated(const Recording& recording, const Model& model, Fidelity fidelity, HeldSamples held,
                                         Focus focus = Focus::all_signals) const;
   Prediction replay(Recording recording, const Model& model, int end_row, Fidelity fidelity, Focus focus = Focus::all_signals) const;

@@ -53,7 +53,7 @@ double promisedCost(const Comparison& comparison, const FitProblem& problem, con
     const double least = problem.clamped(movedBy(at.z, k, -farthest))[k], most = problem.clamped(movedBy(at.z, k, farthest))[k];
     const double precision = problem.precision.size() ? problem.precision[k] : 0;
     all.push_back(columns.size());
-    columns.push_back({jacobian.col(k), least - at.z[k], most - at.z[k], precision, at.z[k]});
+    columns.push_back({shared(jacobian.col(k)), least - at.z[k], most - at.z[k], precision, at.z[k]});
   }
   return LinearModel(comparison, at.residual, std::move(columns)).solve(all).cost;
 }

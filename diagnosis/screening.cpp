@@ -124,7 +124,7 @@ void Search::checkExcitation(const std::vector<Hypothesis>& typical) {
     const Hypothesis& hypothesis = typical[index];
     const Eigen::VectorXd predicted = fit_.predicted(Model{{hypothesis.at(hypothesis.typical())}, {}});
     if (predicted.size() == nominal.size() && predicted.allFinite())
-      catalogue_.sensitivities[index].excitation_ratio = excitationRatio(fit_, {predicted - nominal});
+      catalogue_.sensitivities[index].excitation_ratio = excitationRatio(fit_, predicted - nominal);
     on_simulation_();
   });
 }

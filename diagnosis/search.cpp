@@ -304,9 +304,9 @@ void Search::extendBySize() {
 /// Whether an effect changes a signal in focus by a noticeable part of its noise.
 bool Search::changesFocus(std::size_t hypothesis) const {
   constexpr double noticeable = 0.3;  // noise floors
-  return std::ranges::any_of(catalogue_.sensitivities[hypothesis].per_strength, [&](const Eigen::VectorXd& change) {
-    return change.size() == screening_.size() && std::ranges::any_of(screening_.blocks(), [&](const Comparison::Block& block) {
-             return block.power > 0 && std::sqrt(screening_.meanSquare(block, change)) > noticeable * block.sigma;
+  return std::ranges::any_of(catalogue_.sensitivities[hypothesis].per_strength, [&](const SharedVector& change) {
+    return change && std::ranges::any_of(screening_.blocks(), [&](const Comparison::Block& block) {
+             return block.power > 0 && std::sqrt(screening_.meanSquare(block, *change)) > noticeable * block.sigma;
            });
   });
 }

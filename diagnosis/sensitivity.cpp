@@ -79,12 +79,10 @@ Eigen::VectorXd boundedSolution(const Eigen::MatrixXd& normal, const Eigen::Vect
 
 }  // namespace
 
-double excitationRatio(const Comparison& comparison, const std::vector<Eigen::VectorXd>& changes) {
+double excitationRatio(const Comparison& comparison, const Eigen::VectorXd& change) {
   double largest = 0;
-  for (const Eigen::VectorXd& change : changes)
-    if (change.size())
-      for (const Comparison::Block& block : comparison.blocks())
-        if (block.isReading()) largest = std::max(largest, std::sqrt(comparison.meanSquare(block, change)) / block.sigma);
+  for (const Comparison::Block& block : comparison.blocks())
+    if (block.isReading()) largest = std::max(largest, std::sqrt(comparison.meanSquare(block, change)) / block.sigma);
   return largest;
 }
 
@@ -94,8 +92,9 @@ void fitLinearly(const Comparison& comparison, const Hypothesis& hypothesis, con
   sensitivity.misfit = comparison.misfit(residual);
   Eigen::MatrixXd columns(residual.size(), count);
   for (Eigen::Index i = 0; i < count; ++i) {
-    if (!sensitivity.per_strength[static_cast<std::size_t>(i)].size()) return;
-    columns.col(i) = sensitivity.per_strength[static_cast<std::size_t>(i)];
+    const SharedVector& change = sensitivity.per_strength[static_cast<std::size_t>(i)];
+    if (!change) return;
+    columns.col(i) = *change;
   }
   Eigen::VectorXd least = Eigen::VectorXd::Zero(count);
   for (std::size_t k = 0; k < hypothesis.strengths().size(); ++k)
@@ -140,7 +139,8 @@ std::vector<Eigen::VectorXd> changesBy(const Comparison& comparison, const std::
 /// Whether a strength at its typical value changes the prediction visibly.
 bool shows(const Comparison& comparison, const Hypothesis& hypothesis, std::size_t strength, const Sensitivity& sensitivity) {
   const double least = hypothesis.isSigned(hypothesis.strengths()[strength]) ? nothing : 1;
-  return excitationRatio(comparison, {sensitivity.per_strength[strength]}) >= least;
+  const SharedVector& change = sensitivity.per_strength[strength];
+  return (change ? excitationRatio(comparison, *change) : 0) >= least;
 }
 
 /// Probes of strengths that change nothing at their typical value but would if they were stronger, such as limits that nothing reaches.
@@ -182,8 +182,8 @@ std::vector<Probe> weakerProbes(const Comparison& comparison, std::vector<Hypoth
   for (std::size_t s = 0; s < hypotheses.size(); ++s) {
     if (hypotheses[s].info().stage == Stage::sensor || sensitivities[s].from_threshold) continue;
     for (std::size_t k = 0; k < hypotheses[s].strengths().size(); ++k) {
-      const Eigen::VectorXd& change = sensitivities[s].per_strength[k];
-      const double size = change.size() ? sizeOver(comparison, residual, change) : 1 / after_divergence;
+      const SharedVector& change = sensitivities[s].per_strength[k];
+      const double size = change ? sizeOver(comparison, residual, *change) : 1 / after_divergence;
       if (size < too_much) continue;
       const int coordinate = hypotheses[s].strengths()[k];
       hypotheses[s].rescale(coordinate, 1 / size);
@@ -229,7 +229,7 @@ class OnlyStrength {
     }
     if (best_.strength != 0 && best_.misfit < worth_refining * comparison_.misfit(residual())) refine();
     if (best_.strength == 0) return;
-    sensitivity_.per_strength = {changeAt(best_.strength)};
+    sensitivity_.per_strength = {shared(changeAt(best_.strength))};
     sensitivity_.from_threshold = true;
     hypothesis_.rescale(coordinate(), best_.strength);
   }
@@ -238,8 +238,8 @@ class OnlyStrength {
   void relinearise() {
     while (std::abs(sensitivity_.amount[0]) >= largest_amount && !isBound(sensitivity_.amount[0])) {
       Sensitivity farther = sensitivity_;
-      farther.per_strength = {changeAt(sensitivity_.amount[0])};
-      if (!farther.per_strength.front().size()) return;
+      farther.per_strength = {shared(changeAt(sensitivity_.amount[0]))};
+      if (!farther.per_strength.front()) return;
       fitLinearly(comparison_, hypothesis_, residual(), farther);
       if (!(farther.misfit < sensitivity_.misfit)) return;
       hypothesis_.rescale(coordinate(), sensitivity_.amount[0]);
@@ -276,7 +276,7 @@ class OnlyStrength {
   Showing showing(double strength) const {
     const Eigen::VectorXd change = changeAt(strength);
     if (!change.size()) return Showing::diverged;
-    return excitationRatio(comparison_, {change}) >= 1 ? Showing::some : Showing::none;
+    return excitationRatio(comparison_, change) >= 1 ? Showing::some : Showing::none;
   }
   void keepIfNearer(double strength) {
     if (showing(strength) != Showing::some) return;
@@ -301,9 +301,9 @@ class OnlyStrength {
 };
 
 /// Whether two changes are multiples of each other, up to a barely visible difference.
-bool actAlike(const Eigen::VectorXd& one, const Eigen::VectorXd& other) {
+bool actAlike(const SharedVector& one, const SharedVector& other) {
   constexpr double parallel = 0.999;
-  return one.size() && one.size() == other.size() && std::abs(one.dot(other)) > parallel * one.norm() * other.norm() && one.norm() > 0;
+  return one && other && std::abs(one->dot(*other)) > parallel * one->norm() * other->norm() && one->norm() > 0;
 }
 
 /// Drops signed strengths whose change is a small share of another strength's change, or a multiple of it: the recordings cannot determine
@@ -311,14 +311,14 @@ bool actAlike(const Eigen::VectorXd& one, const Eigen::VectorXd& other) {
 void leaveOutIdle(const Comparison& comparison, Hypothesis& hypothesis, Sensitivity& sensitivity) {
   constexpr double small_share = 0.1;
   std::vector<double> excitation;
-  for (const Eigen::VectorXd& change : sensitivity.per_strength)
-    excitation.push_back(change.size() ? excitationRatio(comparison, {change}) : std::numeric_limits<double>::quiet_NaN());
+  for (const SharedVector& change : sensitivity.per_strength)
+    excitation.push_back(change ? excitationRatio(comparison, *change) : std::numeric_limits<double>::quiet_NaN());
   for (std::size_t k = hypothesis.strengths().size(); k-- > 0;) {
     const int coordinate = hypothesis.strengths()[k];
     const bool idle = std::ranges::any_of(excitation, [&](double other) { return excitation[k] < small_share * other; });
     const auto before_k = sensitivity.per_strength.begin() + static_cast<std::ptrdiff_t>(k);
     const bool double_of_another =
-        std::any_of(sensitivity.per_strength.begin(), before_k, [&](const Eigen::VectorXd& other) { return actAlike(*before_k, other); });
+        std::any_of(sensitivity.per_strength.begin(), before_k, [&](const SharedVector& other) { return actAlike(*before_k, other); });
     if (!(idle || double_of_another) || !hypothesis.isSigned(coordinate)) continue;
     hypothesis.leaveOut(coordinate);
     sensitivity.per_strength.erase(sensitivity.per_strength.begin() + static_cast<std::ptrdiff_t>(k));
@@ -355,7 +355,7 @@ void probeInto(std::vector<Sensitivity>& sensitivities, const Comparison& compar
   for (std::size_t i = 0; i < probes.size(); ++i)
     for (const Probe::Target& target : probes[i].targets)
       if (changes[i].size())
-        sensitivities[target.hypothesis].per_strength[target.strength] = only(comparison, changes[i] / strength, target.signal);
+        sensitivities[target.hypothesis].per_strength[target.strength] = shared(only(comparison, changes[i] / strength, target.signal));
 }
 
 }  // namespace
@@ -376,8 +376,10 @@ std::vector<Sensitivity> sensitivitiesOf(const Comparison& comparison, std::vect
     probeInto(into, comparison, probes, strength, nominal, base, job_count, on_simulation);
   };
   for (Sensitivity& sensitivity : result)
-    if (std::ranges::all_of(sensitivity.per_strength, [](const Eigen::VectorXd& change) { return change.size() > 0; }))
-      sensitivity.excitation_ratio = excitationRatio(comparison, sensitivity.per_strength);
+    if (std::ranges::all_of(sensitivity.per_strength, [](const SharedVector& change) { return change != nullptr; })) {
+      double& largest = sensitivity.excitation_ratio.emplace(0);
+      for (const SharedVector& change : sensitivity.per_strength) largest = std::max(largest, excitationRatio(comparison, *change));
+    }
   const Eigen::VectorXd residual = comparison.measured() - nominal;
   auto adaptOnlyStrengths = [&](const std::function<bool(std::size_t)>& chosen, const std::function<void(OnlyStrength&)>& adapted) {
     std::vector<std::size_t> chosen_indices;
@@ -389,9 +391,8 @@ std::vector<Sensitivity> sensitivitiesOf(const Comparison& comparison, std::vect
       adapted(only_strength);
     });
   };
-  adaptOnlyStrengths(
-      [&](std::size_t s) { return result[s].per_strength.front().size() && !shows(comparison, hypotheses[s], 0, result[s]); },
-      [](OnlyStrength& it) { it.searchThreshold(); });
+  adaptOnlyStrengths([&](std::size_t s) { return result[s].per_strength.front() && !shows(comparison, hypotheses[s], 0, result[s]); },
+                     [](OnlyStrength& it) { it.searchThreshold(); });
   for (const int direction : {1, -1}) probe(result, strongerProbes(comparison, hypotheses, result, direction), direction * strong);
   for (std::size_t s = 0; s < hypotheses.size(); ++s) leaveOutIdle(comparison, hypotheses[s], result[s]);
   constexpr int weakenings = 3;

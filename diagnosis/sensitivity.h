@@ -15,8 +15,8 @@ inline constexpr double largest_amount = 5;  ///< typical strengths up to which 
 
 /// The change that one hypothesis makes in the predictions, and how much of the residual a multiple of it removes.
 struct Sensitivity {
-  /// Change of the prediction by each strength alone, at z = 1; empty columns if the model diverged.
-  std::vector<Eigen::VectorXd> per_strength;
+  /// Change of the prediction by each strength alone, at z = 1; null if it was not simulated, or the model diverged.
+  std::vector<SharedVector> per_strength;
   Eigen::VectorXd amount;       ///< multiple of each strength that removes most
   bool from_threshold = false;  ///< z = 1 was set at the threshold of the effect, below which it may do nothing
   double misfit = 0;            ///< log misfit of the remaining residual
@@ -41,8 +41,8 @@ std::vector<Sensitivity> sensitivitiesOf(const Comparison& comparison, std::vect
 std::vector<Sensitivity> changesOf(const Comparison& comparison, const std::vector<Hypothesis>& hypotheses, const Eigen::VectorXd& nominal,
                                    const Model& base, int job_count, const OnSimulation& on_simulation);
 
-/// Largest RMS over sigma of some changes in any residual block.
-double excitationRatio(const Comparison& comparison, const std::vector<Eigen::VectorXd>& changes);
+/// Largest RMS over sigma of a change in any residual block.
+double excitationRatio(const Comparison& comparison, const Eigen::VectorXd& change);
 
 /// Fits the amounts of a sensitivity to a residual by least squares, reweighted three times; amounts of unsigned strengths stay positive.
 /// Sets amount and misfit.

@@ -32,22 +32,28 @@ void Search::addOwnColumns(Surroundings& around, std::vector<LinearModel::Column
   const FitProblem problem = causes_.problemOf(base, screening_, Fidelity::coarse);
   const Eigen::MatrixXd slopes = derivatives(screening_, problem, problem.start);
   for (Eigen::Index k = 0; k < slopes.cols(); ++k) around.derivatives.push_back(std::make_shared<const Eigen::VectorXd>(slopes.col(k)));
+  std::vector<SharedVector> removals(base.members.size());
+  parallelFor(static_cast<int>(removals.size()), options_.job_count, [&](int m) {
+    const auto index = static_cast<std::size_t>(m);
+    const Eigen::VectorXd left = screening_.predicted(causes_.modelOf(causes_.without(base, index)));
+    on_simulation_();
+    removals[index] = shared(left.size() ? Eigen::VectorXd(left - predicted) : Eigen::VectorXd::Zero(predicted.size()));
+  });
   for (std::size_t m = 0; m < base.members.size(); ++m) {
     const Eigen::Index first = causes_.firstCoordinate(base, m);
     const int count = causes_.hypotheses[base.members[m]].coordinateCount();
     auto& own = around.of_member.emplace_back();
     for (Eigen::Index k = first; k < first + count; ++k) {
       own.push_back(columns.size());
-      columns.push_back({slopes.col(k), -largest_change, largest_change, strength_precision});
+      columns.push_back({around.derivatives[static_cast<std::size_t>(k)], -largest_change, largest_change, strength_precision});
     }
-    const Eigen::VectorXd left = screening_.predicted(causes_.modelOf(causes_.without(base, m)));
-    on_simulation_();
     around.removal_of_member.push_back(columns.size());
-    columns.push_back({left.size() ? Eigen::VectorXd(left - predicted) : Eigen::VectorXd::Zero(predicted.size()), 1, 1, 0});
+    columns.push_back({removals[m], 1, 1, 0});
   }
   for (Eigen::Index k = 0; k < plant_.numberCount(); ++k) {
     around.of_numbers.push_back(columns.size());
-    columns.push_back({slopes.col(base.z.size() + k), -largest_change, largest_change, 1, base.numbers[k]});
+    columns.push_back(
+        {around.derivatives[static_cast<std::size_t>(base.z.size() + k)], -largest_change, largest_change, 1, base.numbers[k]});
   }
 }
 
@@ -57,7 +63,7 @@ void Search::addOtherColumns(Surroundings& around, std::vector<LinearModel::Colu
   for (std::size_t i = 0; i < causes_.hypotheses.size(); ++i) {
     const Hypothesis& hypothesis = causes_.hypotheses[i];
     const auto& changes = around.sensitivities[i].per_strength;
-    const auto is_unknown = [&](const Eigen::VectorXd& change) { return change.size() != screening_.size(); };
+    const auto is_unknown = [](const SharedVector& change) { return !change; };
     if (!fitsBeside(i, around.base.members) || std::ranges::any_of(changes, is_unknown)) continue;
     for (std::size_t k = 0; k < changes.size(); ++k) {
       around.of_hypothesis[i].push_back(columns.size());
@@ -114,7 +120,7 @@ std::vector<Search::Surroundings> Search::surroundingsOfNothing() const {
 
 /// All screened hypotheses that may act beside the base.
 std::vector<std::size_t> Search::screenedBeside(const Explanation& base) const {
-  const auto is_known = [&](const Eigen::VectorXd& change) { return change.size() == screening_.size(); };
+  const auto is_known = [](const SharedVector& change) { return change != nullptr; };
   std::vector<std::size_t> result;
   for (std::size_t i = 0; i < causes_.hypotheses.size(); ++i)
     if (fitsBeside(i, base.members) && std::ranges::all_of(catalogue_.sensitivities[i].per_strength, is_known)) result.push_back(i);

@@ -137,6 +137,17 @@ std::vector<EffectInfo> effectCatalogue() {
   return listed;
 }
 
+std::size_t effectRank(const std::string& id) {
+  const std::lock_guard lock(registryMutex());
+  std::size_t rank = 0;
+  for (const EffectInfo& info : registry()) {
+    if (!info.listed) continue;
+    if (info.id == id) break;
+    ++rank;
+  }
+  return rank;
+}
+
 EffectInfo effectInfo(const std::string& id) {
   std::vector<std::string> ids;
   {

@@ -35,14 +35,11 @@ struct EffectChain::Muscle {
 
 EffectChain::EffectChain(World& world, std::vector<ActiveEffect> effects)
     : world_(world), given_(std::move(effects)), sensors_(std::make_unique<SensorStage>()) {
-  if (given_.empty()) return;
-  const std::vector<EffectInfo> catalogue = effectCatalogue();
   for (const ActiveEffect& effect : given_) {
     EffectInfo info = effectInfo(effect.id);
-    const auto found = std::find_if(catalogue.begin(), catalogue.end(), [&](const EffectInfo& entry) { return entry.id == effect.id; });
     const std::vector<double> values = effectValues(info, effect);
     if (isNeutral(info, values)) continue;
-    planned_.push_back({std::move(info), static_cast<std::size_t>(found - catalogue.begin()), effect.component, values});
+    planned_.push_back({std::move(info), effectRank(effect.id), effect.component, values});
   }
   std::stable_sort(planned_.begin(), planned_.end(), [](const Planned& a, const Planned& b) {
     return a.info.stage != b.info.stage ? a.info.stage < b.info.stage : a.rank < b.rank;

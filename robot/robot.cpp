@@ -145,6 +145,7 @@ State Robot::truth() const {
     state.force_N.push_back(actuator->tensionN());
     state.length_mm.push_back(actuator->lengthMm());
   }
+  state.angle_deg.reserve(angles_.size());
   for (const Angle& angle : angles_) state.angle_deg.push_back(angle.joint->angleDeg(angle.axis));
   if (hand_reported_) state.hand_mm = handMm();
   return state;
@@ -174,7 +175,9 @@ std::vector<std::string> Robot::signalNames() const {
 }
 
 std::vector<double> Robot::signalValues(const State& state) const {
+  constexpr std::size_t kinds_of_muscle_signals = 4, coordinates = 3;
   std::vector<double> values;
+  values.reserve(kinds_of_muscle_signals * actuators_.size() + angles_.size() + coordinates);
   for (const auto* quantity : {&state.command, &state.pressure, &state.force_N, &state.length_mm, &state.angle_deg})
     values.insert(values.end(), quantity->begin(), quantity->end());
   if (hand_reported_) {

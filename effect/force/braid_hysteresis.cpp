@@ -35,7 +35,11 @@ void BraidHysteresis::attach(const EffectPlace& place) {
 }
 
 double BraidHysteresis::playAt(double length_mm) const {
-  return slid(play_, (length_mm_ - length_mm) / presliding_mm_, exponent_);
+  if (length_mm != asked_length_mm_) {
+    asked_play_ = slid(play_, (length_mm_ - length_mm) / presliding_mm_, exponent_);
+    asked_length_mm_ = length_mm;
+  }
+  return asked_play_;
 }
 
 double BraidHysteresis::tensionN(const MuscleInput& input, const ForceBelow& below) const {
@@ -52,8 +56,8 @@ void BraidHysteresis::advance(const MuscleInput& input) {
 }
 
 void BraidHysteresis::settle(const MuscleInput& input) {
-  play_ = 0;
-  length_mm_ = input.length_mm;
+  play_ = asked_play_ = 0;
+  length_mm_ = asked_length_mm_ = input.length_mm;
 }
 
 }  // namespace musclesim

@@ -28,8 +28,9 @@ class BraidHysteresis final : public ForceEffect {
   double playAt(double length_mm) const;
 
   double width_, presliding_mm_, pressure_share_, exponent_;
-  double full_tension_N_ = 0;        ///< F_0
-  double play_ = 0, length_mm_ = 0;  ///< z, and the length for which it holds
+  double full_tension_N_ = 0;                            ///< F_0
+  double play_ = 0, length_mm_ = 0;                      ///< z, and the length for which it holds
+  mutable double asked_length_mm_ = 0, asked_play_ = 0;  ///< the last answer of playAt: a step asks for it two or three times
 };
 
 }  // namespace musclesim

@@ -11,7 +11,8 @@ EffectInfo SensorBias::info() {
           .signature = "the error is constant and does not depend on pressure",
           .source = "definition",
           .parameters = {{"offset", "unit of the signal", 0, -1e4, 1e4, -5, 5, "b"}},
-          .make = [](const EffectValues& values) { return std::make_unique<SensorBias>(values["offset"]); }};
+          .make = [](const EffectValues& values) { return std::make_unique<SensorBias>(values["offset"]); },
+          .is_memoryless = true};
 }
 
 }  // namespace musclesim

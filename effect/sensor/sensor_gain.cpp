@@ -11,7 +11,8 @@ EffectInfo SensorGain::info() {
           .signature = "the error is proportional to the reading",
           .source = "definition",
           .parameters = {{"gain", "", 1, -10, 10, 0.85, 1.15, "g"}},
-          .make = [](const EffectValues& values) { return std::make_unique<SensorGain>(values["gain"]); }};
+          .make = [](const EffectValues& values) { return std::make_unique<SensorGain>(values["gain"]); },
+          .is_memoryless = true};
 }
 
 }  // namespace musclesim

@@ -67,6 +67,21 @@ TEST(ParallelFor, IdleThreadsHelpWithin) {
   });
 }
 
+/// The thread whose own piece ends at once helps with the pieces within the other one, each of which waits for the other.
+TEST(ParallelFor, ThreadsThatWaitHelpWithin) {
+  std::atomic<int> begun = 0;
+  parallelFor(2, 2, [&](int i) {
+    if (i == 0) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    parallelFor(2, 2, [&](int) {
+      ++begun;
+      const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+      while (begun < 2 && std::chrono::steady_clock::now() < deadline) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      EXPECT_EQ(begun, 2);
+    });
+  });
+}
+
 TEST(ParallelFor, OneJobKeepsToItsThread) {
   parallelFor(2, 2, [&](int) {
     const std::thread::id own = std::this_thread::get_id();

@@ -40,7 +40,10 @@ class LinearModelOnARig : public testing::Test {
   Eigen::VectorXd similar() const {
     return along([](double row) { return 20 * std::sin(0.03 * row + 0.7); });
   }
-  static Column free(Eigen::VectorXd change) { return {std::move(change), -5, 5, 0}; }
+  static Column column(Eigen::VectorXd change, double least, double most, double precision = 0, double start = 0) {
+    return {shared(std::move(change)), least, most, precision, start};
+  }
+  static Column free(Eigen::VectorXd change) { return column(std::move(change), -5, 5); }
 
   DiagnosisOptions options_;
   Plant plant_{planted::plant({}), options_};
@@ -67,7 +70,7 @@ TEST_F(LinearModelOnARig, FindsTheAmounts) {
 TEST_F(LinearModelOnARig, CostIsTheMisfitOfWhatIsLeftPlusThePriors) {
   const Eigen::VectorXd residual = 2 * slow() - 0.7 * fast() + noise_;
   comparison_.setGap(residual);
-  const LinearModel model(comparison_, residual, {{slow(), -5, 5, 2, 0.5}, {fast(), -0.5, 5, 3, 0}, {similar(), 1, 1, 0, 0}});
+  const LinearModel model(comparison_, residual, {column(slow(), -5, 5, 2, 0.5), column(fast(), -0.5, 5, 3), column(similar(), 1, 1)});
   for (const std::vector<std::size_t>& columns : {std::vector<std::size_t>{0}, {0, 1}, {0, 1, 2}, {2}}) {
     const LinearModel::Solution solution = model.solve(columns);
     Eigen::VectorXd left = residual;
@@ -85,13 +88,13 @@ TEST_F(LinearModelOnARig, CostIsTheMisfitOfWhatIsLeftPlusThePriors) {
 TEST_F(LinearModelOnARig, KeepsBounds) {
   const Eigen::VectorXd residual = 2 * slow() - 0.7 * similar() + noise_;
   comparison_.setGap(residual);
-  const LinearModel bounded(comparison_, residual, {{slow(), 0, 1.5, 0}, free(similar())});
+  const LinearModel bounded(comparison_, residual, {column(slow(), 0, 1.5), free(similar())});
   const LinearModel beside(comparison_, residual - 1.5 * slow(), {free(similar())});
   const LinearModel::Solution solution = bounded.solve({0, 1}), expected = beside.solve({0});
   EXPECT_EQ(solution.amounts[0], 1.5);
   EXPECT_NEAR(solution.amounts[1], expected.amounts[0], 0.01);
   EXPECT_NEAR(solution.cost, expected.cost, 0.01);
-  const LinearModel positive(comparison_, residual, {{similar(), 0, 5, 0}, {-slow(), 0, 5, 0}});
+  const LinearModel positive(comparison_, residual, {column(similar(), 0, 5), column(-slow(), 0, 5)});
   EXPECT_EQ(positive.solve({1}).amounts[0], 0) << "only the other sign would help";
 }
 
@@ -99,7 +102,7 @@ TEST_F(LinearModelOnARig, KeepsBounds) {
 TEST_F(LinearModelOnARig, TakesFixedColumnsAsTheyAre) {
   const Eigen::VectorXd residual = fast() + 2 * slow() + noise_;
   comparison_.setGap(residual);
-  const LinearModel model(comparison_, residual, {{fast(), 1, 1, 0}, free(slow()), {similar(), 1, 1, 0}});
+  const LinearModel model(comparison_, residual, {column(fast(), 1, 1), free(slow()), column(similar(), 1, 1)});
   const LinearModel::Solution helps = model.solve({0, 1}), harms = model.solve({2, 0});
   EXPECT_EQ(helps.amounts[0], 1);
   EXPECT_NEAR(helps.amounts[1], 2, 0.03);
@@ -120,7 +123,7 @@ TEST_F(LinearModelOnARig, PriorsPullTheAmounts) {
       double least = -1;
       for (double amount = -1; amount <= 1; amount += 0.0005)
         if (costAt(amount) < costAt(least)) least = amount;
-      const LinearModel::Solution found = LinearModel(comparison_, residual, {{slow(), -5, 5, precision, start}}).solve({0});
+      const LinearModel::Solution found = LinearModel(comparison_, residual, {column(slow(), -5, 5, precision, start)}).solve({0});
       EXPECT_LT(found.cost, costAt(least) + 0.1) << precision << " " << start;
       EXPECT_LT(found.amounts[0], last) << "the prior is felt";
       last = found.amounts[0];

@@ -113,6 +113,29 @@ TEST(Plant, PredictsPressuresAloneWithoutTheBody) {
   }
 }
 
+/// The bits of a simulation with the effects, in the order in which they act, and no simulation of their own.
+TEST(Plant, ComputesReadingsOfSensorsWithoutMemory) {
+  const DiagnosisOptions options;
+  const Plant plant(planted::plant({}, planted::Pressure::measured), options);
+  const ActiveEffect lag = {"valve_lag", "all", {{"fill_time_constant_s", 0.1}, {"vent_time_constant_s", 0.06}}},
+                     gain = {"sensor_gain", "signal_length_0", {{"gain", 1.07}}},
+                     bias = {"sensor_bias", "signal_length_0", {{"offset", 0.3}}}, gain_of_all = {"sensor_gain", "all", {{"gain", 0.9}}},
+                     play = {"sensor_backlash", "signal_length_0", {{"width_mm", 1.0}}};
+  plant.predict(0, Model{{lag}, {}});
+  for (const auto& [effects, simulation_count] :
+       {std::pair{std::vector{lag, gain, bias}, 0L}, std::pair{std::vector{bias, lag, gain_of_all}, 0L},
+        std::pair{std::vector{bias, lag, play}, 1L}}) {
+    const long before = plant.simulationCount();
+    const Prediction predicted = plant.predict(0, Model{effects, {}});
+    EXPECT_EQ(plant.simulationCount() - before, simulation_count);
+    ReplayOptions with_effects;
+    with_effects.effects = effects;
+    const ReplayResult simulated = replayRecording(plant.recordings().front(), with_effects);
+    for (std::size_t i = 0; i < plant.signals().size(); ++i)
+      EXPECT_EQ(predicted.values[i], simulated.simulated.find(plant.signals()[i].name)->values) << plant.signals()[i].name;
+  }
+}
+
 TEST(Plant, KnowsTheStagesOfWhatTheModelHoldsBeforehand) {
   std::vector<Recording> recordings = planted::plant({});
   DiagnosisOptions options;

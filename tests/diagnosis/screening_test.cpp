@@ -45,7 +45,7 @@ Recording armRecorded(const std::vector<ActiveEffect>& effects, std::uint64_t se
 }
 
 bool wasScreened(const Sensitivity& sensitivity) {
-  return std::ranges::all_of(sensitivity.per_strength, [](const Eigen::VectorXd& change) { return change.size() > 0; });
+  return std::ranges::all_of(sensitivity.per_strength, [](const SharedVector& change) { return change != nullptr; });
 }
 
 class ScreeningOfHypotheses : public ::testing::Test {

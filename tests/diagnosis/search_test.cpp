@@ -176,7 +176,7 @@ TEST(Search, GoesOnFromAnEffectThatWasNotScreened) {
   Search search(plant, options, [] {});
   search.screen();
   const auto earlier = std::ranges::find(search.hypotheses(), "valve_lag@muscle_9", &Hypothesis::label) - search.hypotheses().begin();
-  ASSERT_EQ(search.catalogue().sensitivities.at(static_cast<std::size_t>(earlier)).per_strength.front().size(), 0);
+  ASSERT_EQ(search.catalogue().sensitivities.at(static_cast<std::size_t>(earlier)).per_strength.front(), nullptr);
   search.decide();
   EXPECT_EQ(search.causes().labelsOf(search.explanations().front().members), Labels{"valve_lag@muscle_3"});
 }

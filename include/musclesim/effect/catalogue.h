@@ -1,6 +1,7 @@
 /// The catalogue of effects: one id per physical cause.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,8 @@ namespace musclesim {
 std::vector<EffectInfo> effectCatalogue();
 /// Throws BadParameter with the nearest id if there is none of that id.
 EffectInfo effectInfo(const std::string& id);
+/// The place of an effect in effectCatalogue(); that behind the last one for effects that are not listed.
+std::size_t effectRank(const std::string& id);
 /// Adds an effect to the catalogue; a later registration of the same id replaces the earlier one. Throws BadParameter for an entry without
 /// id, component or factory, or with parameters whose neutral value lies outside their range.
 void registerEffect(EffectInfo info);

@@ -45,6 +45,9 @@ struct EffectInfo {
   Variants variants = Variants::shares;
   /// Whether the parameters are the constants of another force law, of which none is neutral.
   bool replaces_law = false;
+  /// Of the sensor stage: whether a reading is a function of the value alone, at any time and of any signal. Then it can be taken from a
+  /// simulation without the effect; SensorEffect::reading() is asked without attach().
+  bool is_memoryless = false;
   /// Of the sensor stage: whether one cause may disturb all readings alike, such as a logger's clock.
   bool may_be_shared = false;
   /// Whether effectCatalogue() lists the effect, so that `musclesim effects` shows it and a diagnosis looks for it.
