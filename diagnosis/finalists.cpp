@@ -91,6 +91,7 @@ void Search::fitFinalists() {
   tryOtherStrengths();
   tryVariants();
   tryLikeTheBest();
+  tryExchanged();
   tryWithoutOne();
   weigh();
   polish();
@@ -192,6 +193,15 @@ void Search::tryLikeTheBest() {
     fitFinely(other);
     if (other.residual.size() == fit_.size() && other.score > one.score) one = std::move(other);
   });
+}
+
+/// The best explanation with effects that may act alike exchanged: it may have become the best one only here.
+void Search::tryExchanged() {
+  std::ranges::stable_sort(explanations_, std::greater<>{}, &Explanation::score);
+  if (explanations_.empty() || plant_.interrupted()) return;
+  std::vector<Explanation> others;
+  for (Proposal& proposal : exchanged(explanations_.front())) others.push_back(std::move(proposal.start));
+  keepIfBetter(std::move(others));
 }
 
 /// The parts of the best explanation that lack one effect, from where it ended: their own fits may have ended elsewhere, for example where

@@ -132,7 +132,9 @@ void Hypothesis::leaveOut(int coordinate) {
 
 std::string Hypothesis::place() const {
   const Stage stage = info_.stage;
-  return component_ + (stage == Stage::sensor ? " sensor" : stage == Stage::command || stage == Stage::pressure ? " pressure" : " motion");
+  return (place_count_ > 1 ? component_ : "all") + (stage == Stage::sensor                                ? " sensor"
+                                                    : stage == Stage::command || stage == Stage::pressure ? " pressure"
+                                                                                                          : " motion");
 }
 
 std::vector<std::string> Hypothesis::strengthNames() const {
@@ -265,6 +267,9 @@ double Hypothesis::stretchOf(int coordinate, double z) const {
   const double value = std::clamp(valueOf(c, z), p.minimum, p.maximum);
   if (c.scale == Scale::factor) return std::max(value / p.usual_high, p.usual_low / value);
   if (std::isinf(p.neutral)) return p.usual_low / value;
+  // Of a factor: its logarithm counts where it is below 1. A ninth of the force is odder than 1.9 times the force.
+  constexpr double least_share = 1e-6;
+  if (p.neutral == 1 && p.minimum == 0 && value < 1) return std::log(std::max(value, least_share)) / std::log(p.usual_low);
   return std::abs(value - p.neutral) / std::max(std::abs(p.usual_low - p.neutral), std::abs(p.usual_high - p.neutral));
 }
 

@@ -26,7 +26,7 @@ class Hypothesis {
   const std::string& component() const { return component_; }
   std::string label() const { return info_.id + "@" + component_; }
   /// Component and part of the machine: how the pressure follows the command, what the pressure moves, or the sensors. Effects of one place
-  /// may act alike.
+  /// may act alike. The only joint, muscle or signal is no other component than all of them.
   std::string place() const;
   int coordinateCount() const { return static_cast<int>(coordinates_.size()); }
   /// Numbers that were counted in the recordings or tried one by one instead of fitted.

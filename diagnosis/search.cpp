@@ -19,7 +19,7 @@ constexpr std::size_t single_count = 9;                    ///< single effects t
 constexpr std::size_t per_stage_count = 2;                 ///< and at least so many of every stage
 constexpr std::size_t beam_width = 5;                      ///< sets of each size that the linear search keeps
 constexpr std::size_t addition_count = 3, drop_count = 4;  ///< sets that are fitted about one explanation, besides one of each stage
-constexpr std::size_t base_counts[] = {3, 2, 2, 1, 1, 1};  ///< explanations of each size that are extended
+constexpr std::size_t base_counts[] = {5, 2, 2, 1, 1, 1};  ///< explanations of each size that are extended
 constexpr std::size_t neighbour_count = 30;                ///< effects that are simulated beside an explanation that is extended
 constexpr int screening_rounds = 4;
 
@@ -233,14 +233,20 @@ std::vector<std::size_t> Search::bestOnScreening(std::size_t member_count, std::
   return order;
 }
 
-/// Some of the best explanations of one size, none of which leaves nearly the same as a better one: what resembles each other would be
-/// extended by the same effects.
+/// Some of the best explanations of one size, none of which leaves nearly the same as a better one, or consists of the same effects on
+/// other components: what resembles each other would be extended by the same effects.
 std::vector<std::size_t> Search::unlikeOnScreening(std::size_t member_count, std::size_t count) const {
   constexpr double alike = 0.9;  // correlation of two residuals
+  const auto idsOf = [this](const Explanation& explanation) {
+    std::multiset<std::string> ids;
+    for (const std::size_t member : explanation.members) ids.insert(causes_.hypotheses[member].info().id);
+    return ids;
+  };
   std::vector<std::size_t> chosen;
   for (const std::size_t index : bestOnScreening(member_count, pool_.size())) {
     if (chosen.size() == count) break;
     const bool is_new = std::ranges::none_of(chosen, [&](std::size_t better) {
+      if (idsOf(pool_[better]) == idsOf(pool_[index])) return true;
       const Eigen::VectorXd weights = screening_.weights(pool_[better].residual);
       const Eigen::VectorXd one = weights.cwiseProduct(pool_[index].residual), other = weights.cwiseProduct(pool_[better].residual);
       return one.dot(other) > alike * one.norm() * other.norm();

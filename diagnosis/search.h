@@ -147,6 +147,8 @@ class Search {
   std::vector<Proposal> widened(const Explanation& base) const;
   std::vector<Proposal> exchanged(const Explanation& base) const;
   std::vector<Proposal> standIns(const Explanation& base, std::size_t member, const std::vector<Sensitivity>& beside_all);
+  std::vector<Proposal> allStandIns(const Explanation& base, std::size_t member, const std::vector<Sensitivity>& beside_all);
+  bool predictResidual(Explanation& explanation) const;
   std::vector<Proposal> additionsAt(const std::string& place, const Surroundings& around, std::size_t count) const;
   std::vector<Proposal> bestAdded(const Surroundings& around) const;
   void tryStandIns();
@@ -166,6 +168,7 @@ class Search {
   void tryOtherStrengths();
   void tryVariants();
   void tryLikeTheBest();
+  void tryExchanged();
   void tryWithoutOne();
   void tryEarlier();
   void keepIfBetter(std::vector<Explanation> ones);

@@ -11,13 +11,14 @@ namespace musclesim {
 namespace {
 
 constexpr std::size_t base_count = 4;          ///< best sets of whose members each is replaced
-constexpr int most_bases = 12;                 ///< sets in all, while better ones come up
+constexpr int most_bases = 12;                 ///< sets in all, while better ones come up; base_count more for a late one
 constexpr std::size_t beside_all_count = 40;   ///< effects that are simulated beside such a set,
 constexpr std::size_t beside_rest_count = 20;  ///< and beside the rest of it without one member
 constexpr std::size_t replacement_count = 4;   ///< single effects that are fitted in the place of a member,
 constexpr int variant_count = 2;               ///< in so many variants,
 constexpr std::size_t pair_count = 2;          ///< pairs,
 constexpr std::size_t same_place_count = 3;    ///< and effects of the member's place
+constexpr std::size_t most_best = 3;           ///< sets that are the best one in the end: all effects of their members' places are fitted
 constexpr std::size_t pair_base_count = 8;     ///< effects that do best alone, one of which every such pair has
 
 }  // namespace
@@ -87,12 +88,9 @@ std::vector<Search::Proposal> Search::standIns(const Explanation& base, std::siz
   const std::string place = causes_.hypotheses[base.members[member]].place();
   Explanation rest = causes_.without(base, member);
   const std::set<std::string> labels = causes_.labelsOf(rest.members);
-  if (plant_.interrupted() || !places_tried_.insert({labels, place}).second) return {};
+  if (!places_tried_.insert({labels, place}).second) return {};
   if (rest.members.empty()) return additionsAt(place, about_nothing_.front(), causes_.hypotheses.size());
-  const Eigen::VectorXd predicted = screening_.predicted(causes_.modelOf(rest));
-  on_simulation_();
-  if (predicted.size() != screening_.size()) return {};
-  rest.residual = screening_.measured() - predicted;
+  if (!predictResidual(rest)) return {};
   const bool is_new = stood_in_.insert(labels).second;
   const Surroundings around = surroundingsOf(rest, {is_new ? beside_rest_count : 0, variant_count, &beside_all, place});
   std::vector<Proposal> result = additionsAt(place, around, same_place_count);
@@ -101,6 +99,31 @@ std::vector<Search::Proposal> Search::standIns(const Explanation& base, std::siz
       if (std::ranges::none_of(result, [&](const Proposal& other) { return other.start.members == proposal.start.members; }))
         result.push_back(std::move(proposal));
   return result;
+}
+
+/// All effects of a member's place that have not been fitted in it. A linear model can be wrong by more than ten nats: beside friction that
+/// holds a joint, a dead time shifts steps of the motion, so that one of 0.16 s is far from a sum of one of 0.06 s and a lag.
+std::vector<Search::Proposal> Search::allStandIns(const Explanation& base, std::size_t member, const std::vector<Sensitivity>& beside_all) {
+  const std::string place = causes_.hypotheses[base.members[member]].place();
+  Explanation rest = causes_.without(base, member);
+  if (rest.members.empty() || !predictResidual(rest)) return {};  // single effects have all been fitted
+  const Surroundings around = surroundingsOf(rest, {0, variant_count, &beside_all, place});
+  std::vector<Proposal> result = additionsAt(place, around, causes_.hypotheses.size());
+  std::erase_if(result, [&](const Proposal& proposal) {
+    return std::ranges::find(pool_, causes_.labelsOf(proposal.start.members),
+                             [&](const Explanation& known) { return causes_.labelsOf(known.members); }) != pool_.end();
+  });
+  return result;
+}
+
+/// Predicts what an explanation leaves; false if it diverges, and once interrupted.
+bool Search::predictResidual(Explanation& explanation) const {
+  if (plant_.interrupted()) return false;
+  const Eigen::VectorXd predicted = screening_.predicted(causes_.modelOf(explanation));
+  on_simulation_();
+  if (predicted.size() != screening_.size()) return false;
+  explanation.residual = screening_.measured() - predicted;
+  return true;
 }
 
 /// The nearest additions of one place.
@@ -120,25 +143,34 @@ std::vector<Search::Proposal> Search::bestAdded(const Surroundings& around) cons
 /// Tries stand-ins of every member of the best sets, what is missing beside all members, and the sets' widened and exchanged forms. A swap
 /// that is estimated where the member acts takes the change that the stand-in makes there as proportional, up to all that the member
 /// explains; friction beside friction, for one, is far from that. So the member is taken away first, and what promises most there, by its
-/// changes beside nothing or beside all members, is simulated there.
+/// changes beside nothing or beside all members, is simulated there. In the place of each member of the best set every effect of its place
+/// is fitted in the end, whatever it promises; what does better is tried in the same way.
 void Search::tryStandIns() {
-  std::set<std::set<std::string>> done;
+  std::set<std::set<std::string>> done, exhausted;
   std::vector<Sensitivity> beside;  // the set before
-  for (int count = 0; count < most_bases && !plant_.interrupted(); ++count) {
+  for (int count = 0; !plant_.interrupted();) {
     const std::vector<std::size_t> order = bestOnScreening(0, base_count);
+    if (order.empty()) return;
     const auto next = std::ranges::find_if(order, [&](std::size_t i) { return !done.contains(causes_.labelsOf(pool_[i].members)); });
-    if (next == order.end() || pool_[*next].score < pool_[order.front()].score - hopeless) return;
-    const Explanation base = pool_[*next];  // the pool grows below
-    done.insert(causes_.labelsOf(base.members));
-    const Surroundings around = surroundingsOf(base, {beside_all_count, variant_count, beside.empty() ? nullptr : &beside});
-    beside = around.sensitivities;
+    const bool is_last = count == most_bases || next == order.end() || pool_[*next].score < pool_[order.front()].score - hopeless;
+    const Explanation base = pool_[is_last ? order.front() : *next];  // the pool grows below
     std::vector<Proposal> proposals;
-    if (static_cast<int>(base.members.size()) < options_.max_effects && stood_in_.insert(causes_.labelsOf(base.members)).second)
-      proposals = bestAdded(around);
-    for (std::size_t m = 0; m < base.members.size(); ++m)
-      std::ranges::move(standIns(base, m, around.sensitivities), std::back_inserter(proposals));
-    std::ranges::move(nearest(widened(base), wide_count, 2), std::back_inserter(proposals));
-    std::ranges::move(nearest(exchanged(base), wide_count), std::back_inserter(proposals));
+    if (is_last) {
+      if (exhausted.size() == most_best || !exhausted.insert(causes_.labelsOf(base.members)).second) return;
+      for (std::size_t m = 0; m < base.members.size(); ++m) std::ranges::move(allStandIns(base, m, beside), std::back_inserter(proposals));
+      count = std::min(count, most_bases - static_cast<int>(base_count));  // what does better is tried like the others
+    } else {
+      ++count;
+      done.insert(causes_.labelsOf(base.members));
+      const Surroundings around = surroundingsOf(base, {beside_all_count, variant_count, beside.empty() ? nullptr : &beside});
+      beside = around.sensitivities;
+      if (static_cast<int>(base.members.size()) < options_.max_effects && stood_in_.insert(causes_.labelsOf(base.members)).second)
+        proposals = bestAdded(around);
+      for (std::size_t m = 0; m < base.members.size(); ++m)
+        std::ranges::move(standIns(base, m, around.sensitivities), std::back_inserter(proposals));
+      std::ranges::move(nearest(widened(base), wide_count, 2), std::back_inserter(proposals));
+      std::ranges::move(nearest(exchanged(base), wide_count), std::back_inserter(proposals));
+    }
     fitOnScreening(std::move(proposals));
   }
 }

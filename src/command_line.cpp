@@ -109,15 +109,17 @@ std::string shellWord(const std::string& argument) {
 std::optional<int> CommandLine::parse(int argument_count, const char* const* arguments) {
   model_.command_line = "musclesim";
   for (int i = 1; i < argument_count; ++i) model_.command_line += " " + shellWord(arguments[i]);
+  std::string help = "musclesim --help";
   try {
     std::vector<std::string> words = ordered({arguments + std::min(argument_count, 1), arguments + argument_count});
     const bool has_command = !words.empty() && std::ranges::count(commandNames(), words.front()) > 0;
+    if (has_command) help = fmt::format("musclesim {} --help", words.front());
     model_.arguments.assign(words.begin() + (has_command ? 1 : 0), words.end());
     std::reverse(words.begin(), words.end());  // as CLI11 takes them
     app_.parse(std::move(words));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app_.exit(error);  // --help, --version
-    tell(fmt::format("error: {}\nmusclesim --help lists the options", messageFor(error)));
+    tell(fmt::format("error: {}\n{} lists the options", messageFor(error), help));
     return bad_usage;
   }
   return std::nullopt;

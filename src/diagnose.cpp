@@ -16,6 +16,10 @@
 #include "musclesim/base/text.h"
 #include "musclesim/diagnosis/proposed_recording.h"
 #include "musclesim/effect/effects_file.h"
+#include "musclesim/robot/actuator.h"
+#include "musclesim/robot/robot.h"
+#include "musclesim/simulation/replay.h"
+#include "musclesim/simulation/simulation.h"
 #include "output_folder.h"
 #include "progress.h"
 
@@ -118,6 +122,14 @@ void beginOrResume(RecordFile& kept, const std::string& origin, const std::files
   kept.begin(origin);
 }
 
+/// Says how a diagnosis of muscles that are chains of beads could take less time.
+void noteChains(const RecordingInfo& plant, const std::string& recording, const ReplayOptions& options, const ModelOptions& model) {
+  Simulation simulation(simulationOptionsFor(plant, sidecarPath(recording), options));
+  simulation.build(plant.robot);
+  if (std::ranges::any_of(simulation.world().actuators(), [](const auto& actuator) { return !actuator->hinges().empty(); }))
+    say(model, "the muscles are chains of beads: as massless straight lines (--muscle line) they take less than a tenth of the time");
+}
+
 /// The diagnosis. One that is refused keeps nothing.
 Diagnosis diagnosed(std::vector<Recording> recordings, const DiagnosisOptions& options) {
   try {
@@ -161,6 +173,7 @@ int diagnoseCommand(const ModelOptions& model, const DiagnoseArguments& argument
   PhaseProgress progress(model.quiet);
   options.progress = [&](const DiagnosisProgress& now) { progress.show(now.phase, now.done, now.expected); };
   const RecordingInfo plant = diagnosedModel(recordings.front(), options.model);
+  noteChains(plant, arguments.recordings.front(), options.model, model);
   RecordFile kept((folder / kept_file).string());
   beginOrResume(kept, diagnosisOrigin(recordings, plant, model, arguments), folder, model, arguments.resume);
   options.kept = &kept;

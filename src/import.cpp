@@ -13,7 +13,7 @@
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
 #include "musclesim/base/text.h"
-#include "musclesim/robot/robot.h"
+#include "musclesim/robot/robot_file.h"
 #include "musclesim/robot/robot_registry.h"
 #include "output_folder.h"
 
@@ -48,6 +48,14 @@ int lookCommand(const ImportArguments& arguments) {
   return done;
 }
 
+void noteUnknownRobot(const std::string& robot) {
+  if (isRobotFile(robot)) {
+    if (!std::filesystem::exists(robot)) tell(fmt::format("there is no robot file {}: write it before you replay the recording", robot));
+  } else if (const auto robots = registeredRobots(); std::ranges::none_of(robots, [&](const auto& one) { return one.first == robot; })) {
+    tell(fmt::format("this program has no robot {}: only a program that registers it can replay the recording", robot));
+  }
+}
+
 int importCommand(const ImportArguments& arguments) {
   if (arguments.look) return lookCommand(arguments);
   if (arguments.out.empty())
@@ -62,10 +70,7 @@ int importCommand(const ImportArguments& arguments) {
   const Recording recording = importTable(arguments.table, mapping);
   if (!arguments.quiet)
     for (const auto& note : recording.notes) tell(note);
-  const auto robots = registeredRobots();
-  if (!arguments.quiet &&
-      std::none_of(robots.begin(), robots.end(), [&](const auto& robot) { return robot.first == recording.info.robot; }))
-    tell(fmt::format("this program has no robot {}: only a program that registers it can replay the recording", recording.info.robot));
+  if (!arguments.quiet) noteUnknownRobot(recording.info.robot);
   prepareRecording(arguments.out);
   writeRecording(recording, arguments.out);
   std::vector<std::string> names;

@@ -198,6 +198,18 @@ TEST_F(EvidenceOnARig, WhatExceedsItsUsualRangeCosts) {
   EXPECT_NEAR(priceOf({payload}, std::numbers::e * largest_kg / per_z_kg), prices.parameters + prices.excess, 1e-9);
 }
 
+/// A ninth of the force is as many e-folds of a usual factor as its logarithm has.
+TEST_F(EvidenceOnARig, FactorsBelowOneCountByTheirLogarithm) {
+  const Hypothesis weak(effectInfo("force_gain"), "muscle_0", plant_);
+  const double usual_low = weak.info().parameters.front().usual_low;
+  const auto excessAt = [&](double value) { return weak.excess(weak.coordinatesOf({{"gain", value}})); };
+  EXPECT_EQ(excessAt(1.01 * usual_low), 0);
+  EXPECT_NEAR(excessAt(usual_low), 0, 1e-9);
+  EXPECT_NEAR(excessAt(std::pow(usual_low, std::numbers::e)), 1, 1e-9);
+  EXPECT_GT(excessAt(1.0 / 9), excessAt(1 + 8.0 / 9)) << "odder than a difference of eight ninths";
+  EXPECT_TRUE(std::isfinite(excessAt(0)));
+}
+
 /// In an explanation of two effects, each is judged by its own coordinates.
 TEST_F(EvidenceOnARig, FindsTheCoordinatesOfEveryEffect) {
   const double per_z_kg = causes_.hypotheses[payload].valuesAt(Eigen::VectorXd::Constant(1, 1)).front().second;

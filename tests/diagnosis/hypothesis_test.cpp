@@ -51,14 +51,25 @@ TEST_F(PlantedRig, BoundsAreThoseOfTheUsualRange) {
   }
 }
 
-TEST_F(PlantedRig, APlaceIsAComponentAndAPartOfTheMachine) {
-  const std::string of_lag = hypothesis("valve_lag", "muscle_0").place();
-  EXPECT_EQ(hypothesis("transport_delay", "muscle_0").place(), of_lag);
-  EXPECT_EQ(hypothesis("flow_limit", "muscle_0").place(), of_lag);
-  EXPECT_NE(hypothesis("valve_lag", "all").place(), of_lag);
-  EXPECT_NE(hypothesis("force_gain", "muscle_0").place(), of_lag);
-  EXPECT_EQ(hypothesis("attachment_offset", "muscle_0").place(), hypothesis("length_offset", "muscle_0").place());
-  EXPECT_NE(hypothesis("sensor_gain", "signal_length_0").place(), hypothesis("sensor_gain", "signal_pressure_0").place());
+/// An elbow has one joint and two muscles; the lengths of both are measured.
+TEST(Hypotheses, APlaceIsAComponentAndAPartOfTheMachine) {
+  Recording recording = planted::plant({}).front();
+  recording.info = {};
+  recording.info.robot = "elbow";
+  const std::vector<double> command = recording.signals[0].values, length = recording.signals[1].values;
+  recording.signals = {{"command_0", command}, {"command_1", command}, {"length_0_mm", length}, {"length_1_mm", length}};
+  const DiagnosisOptions options;
+  const Plant elbow({recording}, options);
+  std::map<std::string, std::string> place;
+  for (const Hypothesis& hypothesis : hypotheses(elbow, options)) place[hypothesis.label()] = hypothesis.place();
+  const std::string of_lag = place.at("valve_lag@muscle_0");
+  EXPECT_EQ(place.at("transport_delay@muscle_0"), of_lag);
+  EXPECT_EQ(place.at("flow_limit@muscle_0"), of_lag);
+  EXPECT_NE(place.at("valve_lag@all"), of_lag);
+  EXPECT_NE(place.at("force_gain@muscle_0"), of_lag);
+  EXPECT_EQ(place.at("attachment_offset@muscle_0"), place.at("length_offset@muscle_0"));
+  EXPECT_EQ(place.at("joint_coulomb_friction@joint_elbow"), place.at("braid_hysteresis@all")) << "the only joint";
+  EXPECT_NE(place.at("sensor_gain@signal_length_0"), place.at("sensor_gain@signal_length_1"));
 }
 
 /// The variants of a lag are one with a second lag and one without.

@@ -34,6 +34,17 @@ TEST_F(ImportCommand, MakesARecordingThatReplays) {
   EXPECT_EQ(runProgram({"replay", "out.csv", "--quiet"}, folder_).status, 0);
 }
 
+/// A mapping may name a robot file: it is missed only where there is none.
+TEST_F(ImportCommand, LooksForTheRobotFileOfTheMapping) {
+  std::ofstream(folder_ / "map.toml") << "robot = \"mine.toml\"\n[columns]\ntime_s = \"t\"\ncommand_0 = \"u\"\nlength_0_mm = \"l\"\n";
+  EXPECT_TRUE(contains(runProgram({"import", "table.csv", "map.toml", "early.csv"}, folder_).err, "there is no robot file mine.toml"));
+  ASSERT_EQ(runProgram({"robot", "export", "rig", "-o", "mine.toml"}, folder_).status, 0);
+  const ProgramResult made = runProgram({"import", "table.csv", "map.toml", "out.csv"}, folder_);
+  EXPECT_EQ(made.status, 0);
+  EXPECT_EQ(made.err, "");
+  EXPECT_EQ(runProgram({"replay", "out.csv", "--quiet"}, folder_).status, 0);
+}
+
 TEST_F(ImportCommand, MakesTheFolderAndWantsATable) {
   EXPECT_EQ(runProgram({"import", "table.csv", "map.toml", "sub/folder/out.csv"}, folder_).status, 0);
   EXPECT_TRUE(fs::exists(folder_ / "sub/folder/out.json"));
