@@ -447,7 +447,7 @@ std::optional<Recording> Plant::predictSchedule(const Recording& schedule, const
 }
 
 /// Effects of sensors act in the order of the catalogue. One without memory can be left to read() where those with memory, which stand
-/// behind it there, act on other signals, and the user's model has none.
+/// behind it there, act on other signals, and the user's model has neither such effects nor noise.
 Plant::Parts Plant::partsOf(const Model& model) const {
   Parts parts{{{}, model.parameters}, {}};
   const auto overlap = [](const std::string& one, const std::string& other) { return one == other || one == "all" || other == "all"; };
@@ -455,8 +455,9 @@ Plant::Parts Plant::partsOf(const Model& model) const {
     const EffectInfo info = effectInfo(effect.id);
     return info.stage == Stage::sensor && !info.is_memoryless && effect.id != held_effect;
   };
+  const bool is_clean = !holds(Stage::sensor) && reference_->effects().noise().empty();
   for (const ActiveEffect& effect : model.effects) {
-    const bool can_be_read = effectInfo(effect.id).is_memoryless && compares(effect.component) && !holds(Stage::sensor) &&
+    const bool can_be_read = is_clean && effectInfo(effect.id).is_memoryless && compares(effect.component) &&
                              std::ranges::none_of(model.effects, [&](const ActiveEffect& other) {
                                return overlap(effect.component, other.component) && hasMemory(other);
                              });
