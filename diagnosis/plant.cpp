@@ -446,8 +446,8 @@ std::optional<Recording> Plant::predictSchedule(const Recording& schedule, const
   return std::move(result->simulated);
 }
 
-/// Effects of sensors act in the order of the catalogue. One without memory can be left to read() where those with memory, which stand
-/// behind it there, act on other signals, and the user's model has neither such effects nor noise.
+/// read() computes an effect of a sensor without memory if no effect with memory acts on the same signal, because that one would act on its
+/// readings; and if the user's own model has neither effects of sensors nor noise.
 Plant::Parts Plant::partsOf(const Model& model) const {
   Parts parts{{{}, model.parameters}, {}};
   const auto overlap = [](const std::string& one, const std::string& other) { return one == other || one == "all" || other == "all"; };

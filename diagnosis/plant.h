@@ -113,9 +113,9 @@ class Plant {
   /// Tension of a muscle by the model's force law at a pressure and a length, N.
   double tensionN(int muscle, double pressure_ratio, double length_mm) const;
 
-  /// Simulates a recording up to `end_row` (0: all rows). Thread-safe. Repeated requests are not simulated again, nor are those that differ
-  /// by faults of sensors without memory only (EffectInfo::is_memoryless). With the focus on pressures the values of all other signals may
-  /// be anything.
+  /// Simulates a recording up to `end_row` (0: all rows). Thread-safe. A model that was asked for before is not simulated again, nor is one
+  /// that differs from it only in effects of sensors without memory (EffectInfo::is_memoryless). With the focus on pressures the values of
+  /// all other signals may be anything.
   Prediction predict(int recording, const Model& model, int end_row = 0, Fidelity fidelity = Fidelity::fine,
                      Focus focus = Focus::all_signals) const;
   /// The same with other commands in place of the recorded ones; `commands[row][muscle]`.

@@ -48,6 +48,7 @@ int lookCommand(const ImportArguments& arguments) {
   return done;
 }
 
+/// Tells the user if nothing with this name can replay the recording yet.
 void noteUnknownRobot(const std::string& robot) {
   if (isRobotFile(robot)) {
     if (!std::filesystem::exists(robot)) tell(fmt::format("there is no robot file {}: write it before you replay the recording", robot));
