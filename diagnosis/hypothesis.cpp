@@ -365,6 +365,19 @@ std::vector<Hypothesis> Hypothesis::togetherAndAlone() const {
   return result;
 }
 
+/// Stops that are hard, and stops that give way: how far is no strength, because stops that are not reached show neither.
+std::vector<Hypothesis> Hypothesis::hardAndYielding() const {
+  Hypothesis hard = *this, yielding = *this;
+  for (int i = coordinateCount() - 1; i >= 0; --i) {
+    if (isSigned(i)) continue;
+    hard.leaveOut(i);
+    Coordinate& c = yielding.coordinates_[static_cast<std::size_t>(i)];
+    c.scale = Scale::factor;
+    std::erase(yielding.strengths_, i);
+  }
+  return {std::move(hard), std::move(yielding)};
+}
+
 /// Walls on either side of where a joint or the hand was most of the time.
 std::vector<Hypothesis> Hypothesis::sides(const Plant& plant) const {
   std::vector<Hypothesis> result;
@@ -408,6 +421,8 @@ std::vector<Hypothesis> Hypothesis::variants(const Plant& plant) const {
       return ends(plant);
     case Variants::sides:
       return sides(plant);
+    case Variants::stops:
+      return hardAndYielding();
   }
   return {};
 }

@@ -68,7 +68,7 @@ class Hypothesis {
   /// All strengths 1, all shape parameters usual.
   Eigen::VectorXd typical() const;
   /// One copy of the hypothesis for each choice that a fit cannot reach from another one: a wall on either side of each axis, a number of
-  /// bits, either end of a muscle, a law with and without a share of something.
+  /// bits, either end of a muscle, stops that are hard or give way, a law with and without a share of something.
   std::vector<Hypothesis> variants(const Plant& plant) const;
 
  private:
@@ -91,6 +91,7 @@ class Hypothesis {
   std::vector<Hypothesis> ends(const Plant& plant) const;
   std::vector<Hypothesis> togetherAndAlone() const;
   std::vector<Hypothesis> sides(const Plant& plant) const;
+  std::vector<Hypothesis> hardAndYielding() const;
 
   EffectInfo info_;
   std::string component_;

@@ -166,6 +166,19 @@ TEST_F(PlantedRig, ALeakIsLookedAtAsASmallAndAsALargeOne) {
   EXPECT_NEAR(perSecond(leaks[1]), 0.5, 1e-9);
 }
 
+/// Stops that are not reached show neither where they are nor how they give way, so each variant has only one strength.
+TEST_F(PlantedRig, StopsAreHardOrGiveWay) {
+  const std::vector<Hypothesis> stops = hypothesis("joint_stop_offset", "joint_x").variants(plant_);
+  ASSERT_EQ(stops.size(), 2U);
+  for (const Hypothesis& variant : stops) EXPECT_EQ(variant.strengthNames(), std::vector<std::string>{"offset_deg"});
+  const auto typicalGiveDeg = [](const Hypothesis& variant) {
+    return std::get<double>(variant.at(variant.typical()).parameters.at("give_deg"));
+  };
+  EXPECT_EQ(typicalGiveDeg(stops[0]), 0);
+  EXPECT_NEAR(typicalGiveDeg(stops[1]), std::sqrt(0.2 * 15), 1e-9) << "the geometric mean of the usual range";
+  EXPECT_NEAR(stops[1].excess(stops[1].coordinatesOf({{"offset_deg", 15.0}, {"give_deg", 30.0}})), std::log(2), 1e-9);
+}
+
 TEST_F(PlantedRig, WhatIsLeftOutStaysNeutral) {
   Hypothesis force = hypothesis("external_force", "hand");
   const auto all = force.valuesAt(force.typical());

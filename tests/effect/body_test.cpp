@@ -146,6 +146,16 @@ TEST(JointStopOffset, MovesTheStops) {
   EXPECT_NEAR(restDeg({{"external_force", "hand", {{"force_x_N", 5.0}}}}), std::atan2(5, weight_N) * deg_per_rad, 1e-3);
 }
 
+TEST(JointStopOffset, LetsTheStopsGiveWay) {
+  // The stop of 120 - 90 = 30 deg: ((q - 30) / g)^1.5 + m g l sin q = F l cos q
+  constexpr double push_N = 30, give_deg = 4;
+  const double q = restDeg(
+      {{"joint_stop_offset", "all", {{"offset_deg", -90.0}, {"give_deg", give_deg}}}, {"external_force", "hand", {{"force_x_N", push_N}}}});
+  EXPECT_GT(q, 33);
+  EXPECT_NEAR(std::pow((q - 30) / give_deg, 1.5) + weight_N * length_m * std::sin(q * rad_per_deg),
+              push_N * length_m * std::cos(q * rad_per_deg), 1e-3);
+}
+
 TEST(Contact, HoldsThePendulumAtAJointOrAtTheHand) {
   // k (q - q_w) + m g l sin q = F l cos q
   const ActiveEffect side = {"external_force", "hand", {{"force_x_N", 3.0}}};

@@ -24,6 +24,7 @@ enum class Variants {
   bits,       ///< every number of bits, and how a converter rounds
   ends,       ///< either end of a muscle
   sides,      ///< either side of every axis
+  stops,      ///< hard stops, and stops that give way
 };
 
 /// Everything about an effect that does not need a simulation. What `musclesim effects ID` prints and a fit needs to know.
