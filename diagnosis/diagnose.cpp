@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "../base/parallel.h"
+#include "convention_check.h"
 #include "data_checks.h"
 #include "fault_isolation.h"
 #include "listing.h"
@@ -19,7 +20,6 @@
 #include "schedule.h"
 #include "search.h"
 #include "tune.h"
-#include "unit_check.h"
 #include "verdict.h"
 
 namespace musclesim {
@@ -141,7 +141,8 @@ class Run {
     std::vector<Prediction> whole(plant_.recordings().size());
     const auto count = static_cast<int>(whole.size());
     parallelFor(count, options_.job_count, [&](int i) { whole[static_cast<std::size_t>(i)] = plant_.predict(i, Model{}); });
-    for (int i = 0; i < count; ++i) requireUnits(plant_, i, whole[static_cast<std::size_t>(i)]);
+    if (!options_.trust_columns)
+      for (std::string& note : checkConventions(plant_, whole)) diagnosis_.notes.push_back(std::move(note));
     const Comparison all(plant_, everything);
     const Eigen::VectorXd predicted = all.predicted(Model{}), held = held_out_.predicted(Model{});
     if (!predicted.size() || !held.size())

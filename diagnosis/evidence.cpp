@@ -50,7 +50,7 @@ Complexity Evidence::complexityOf(const Explanation& explanation) const {
     // An effect of which the data determine nothing is not for free.
     result.parameters += std::max({determined, static_cast<double>(hypothesis.countedParameters()), 1.0});
     result.effects += (i > 0 ? 1 : 0) + hypothesis.furtherMechanisms();
-    result.same_place += actsWhereOthersDo(explanation, i) ? 1 : 0;
+    result.same_place += (actsWhereOthersDo(explanation, i) ? 1 : 0) + hypothesis.furtherMechanisms();
     result.excess += hypothesis.excess(explanation.z.segment(first, count));
     result.shared_sensor += hypothesis.info().stage == Stage::sensor && hypothesis.component() == "all" ? 1 : 0;
     result.places += std::log(hypothesis.placeCount());

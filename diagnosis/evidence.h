@@ -14,10 +14,11 @@ namespace musclesim {
 
 /// What the price of an explanation is made of, one number each.
 struct Complexity {
-  double parameters = 0;     ///< directions of coordinates that the data determine, or numbers that were counted or tried
-  double effects = 0;        ///< beyond the first, and further mechanisms within the law of one (further lags)
-  double same_place = 0;     ///< effects on the same muscle or signal as an earlier one, or both on the body: they may only mend its law
-  double excess = 0;         ///< e-folds by which parameters leave their usual range
+  double parameters = 0;  ///< directions of coordinates that the data determine, or numbers that were counted or tried
+  double effects = 0;     ///< beyond the first, and further mechanisms within the law of one (further lags)
+  double same_place = 0;  ///< effects on the same muscle or signal as an earlier one, or both on the body, and further mechanisms: they may
+                          ///< only mend its law
+  double excess = 0;      ///< e-folds by which parameters leave their usual range
   double shared_sensor = 0;  ///< faults that all sensors share
   double places = 0;         ///< ln of the number of components that an effect could act on alone: they share its prior
   constexpr std::array<double, 6> asArray() const { return {parameters, effects, same_place, excess, shared_sensor, places}; }

@@ -205,13 +205,18 @@ void Search::tryExchanged() {
 }
 
 /// The parts of the best explanation that lack one effect, from where it ended: their own fits may have ended elsewhere, for example where
-/// the motion is sensitive, so that the further effect only seems to help.
+/// the motion is sensitive, so that the further effect only seems to help. The same for those parts of explanations near the best that were
+/// fitted, too.
 void Search::tryWithoutOne() {
   for (int pass = 0; pass < options_.max_effects && !plant_.interrupted(); ++pass) {
     std::ranges::stable_sort(explanations_, std::greater<>{}, &Explanation::score);
     const Explanation best = explanations_.front();
     std::vector<Explanation> smaller;
-    for (std::size_t m = 0; m < best.members.size() && best.members.size() > 1; ++m) smaller.push_back(causes_.without(best, m));
+    for (const Explanation& whole : explanations_)
+      for (std::size_t m = 0; m < whole.members.size() && whole.members.size() > 1 && whole.score >= best.score - near_best; ++m) {
+        Explanation part = causes_.without(whole, m);
+        if (whole.members == best.members || sameAs(part) != explanations_.end()) smaller.push_back(std::move(part));
+      }
     keepIfBetter(std::move(smaller));
     if (std::ranges::max_element(explanations_, {}, &Explanation::score)->members == best.members) return;
   }
@@ -222,6 +227,12 @@ void Search::tryEarlier() {
   if (!options_.earlier.empty()) keepIfBetter({earlierFinding()});
 }
 
+/// The explanation by the same effects; the end if there is none.
+std::vector<Explanation>::iterator Search::sameAs(const Explanation& one) {
+  return std::ranges::find_if(explanations_,
+                              [&](const Explanation& other) { return causes_.labelsOf(other.members) == causes_.labelsOf(one.members); });
+}
+
 /// Fits on the explanations that are better, as they are, than the same sets' where they stand, and puts them in the place of those.
 void Search::keepIfBetter(std::vector<Explanation> ones) {
   fitAll(ones, [this](Explanation& one) {
@@ -229,8 +240,7 @@ void Search::keepIfBetter(std::vector<Explanation> ones) {
     if (one.residual.size() == fit_.size()) one.score = evidence().score(one);
   });
   for (Explanation& one : ones) {
-    const auto same = std::ranges::find_if(
-        explanations_, [&](const Explanation& other) { return causes_.labelsOf(other.members) == causes_.labelsOf(one.members); });
+    const auto same = sameAs(one);
     if (same != explanations_.end() && same->score >= one.score) continue;
     fitFinely(one);
     if (one.residual.size() != fit_.size()) continue;

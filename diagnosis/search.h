@@ -171,6 +171,7 @@ class Search {
   void tryExchanged();
   void tryWithoutOne();
   void tryEarlier();
+  std::vector<Explanation>::iterator sameAs(const Explanation& one);
   void keepIfBetter(std::vector<Explanation> ones);
   void polish();
   void weigh();

@@ -167,6 +167,7 @@ int diagnoseCommand(const ModelOptions& model, const DiagnoseArguments& argument
   options.exclude = arguments.exclude;
   options.tune = arguments.tune;
   options.max_effects = arguments.max_effects;
+  options.trust_columns = arguments.trust_columns;
   options.job_count = arguments.jobs;
   options.seed = model.seed.value_or(1);
   options.interrupted = [] { return interruptSignal() != 0; };
@@ -209,6 +210,8 @@ Action addDiagnose(CLI::App& command, ModelOptions& model) {
                    "Go on from a diagnosis of the same recordings with the same options that was killed or interrupted: repeats none of "
                    "the simulations kept in the folder of the answer");
   addList(command, "--ignore-columns", arguments->ignore_columns, "Columns to skip, separated by commas");
+  command.add_flag("--trust-columns", arguments->trust_columns,
+                   "Take units, zeros, signs and order of the columns as they are: do not refuse recordings in which they look wrong");
   addModelOptions(command, model);
   command.remove_option(command.get_option("--json"));
   command.get_option("--effects")

@@ -14,7 +14,7 @@ struct DiagnoseArguments {
   std::vector<std::string> recordings, candidates, exclude, ignore_columns, tune;
   std::optional<std::string> out, json, fixed_effects;
   int jobs = 0, max_effects = 4;
-  bool without_active_effects = false, resume = false;
+  bool without_active_effects = false, resume = false, trust_columns = false;
 };
 
 /// All that the answer depends on, by name, as one line of JSON: the recordings, the diagnosed model, the options, and the program with its

@@ -90,8 +90,10 @@ void write(const std::optional<std::string>& out, const std::string& text) {
   fmt::print("robot file {}\n", printable(*out));
 }
 
-int begin(const std::string& name, const std::optional<std::string>& out) {
-  write(out.value_or(name + ".toml"), robotTemplate(name));
+int begin(const std::string& robot, const std::optional<std::string>& out) {
+  const fs::path file = robot;
+  const std::string name = file.extension() == ".toml" ? file.stem().string() : robot;
+  write(out.value_or(file.extension() == ".toml" ? robot : name + ".toml"), robotTemplate(name));
   return done;
 }
 
@@ -138,7 +140,7 @@ Action addRobot(CLI::App& command, ModelOptions& model) {
   auto name = std::make_shared<std::string>();
   auto out = std::make_shared<std::optional<std::string>>();
   CLI::App* begins = sub("new", "Writes a commented robot file to begin with");
-  begins->add_option("name", *name, "Name of the robot")->required();
+  begins->add_option("name", *name, "Name of the robot, or its file: NAME.toml")->required();
   begins->add_option("-o,--out", *out, "File to write (default: NAME.toml)");
   begins->callback([=] { *action = [=] { return begin(*name, *out); }; });
 

@@ -65,17 +65,18 @@ class Diagnosis:
 
 def diagnose(recordings: Recording | str | os.PathLike[str] | Iterable[Recording | str | os.PathLike[str]], *,
              candidates: Sequence[str] = (), exclude: Sequence[str] = (), tune: Sequence[str] = (), max_effects: int = 4, threads: int = 0,
-             seed: int = 1, earlier: Any = None, without_active_effects: bool = False, progress: Callable[[str, int, int], Any] | None = None, **model: Any) -> Diagnosis:
+             seed: int = 1, earlier: Any = None, without_active_effects: bool = False, trust_columns: bool = False,
+             progress: Callable[[str, int, int], Any] | None = None, **model: Any) -> Diagnosis:
     """Finds from recordings of one plant where they differ from the model and which effects explain it.
 
     recordings: Recordings or their files.  candidates, exclude: ids of effects to consider (default: the whole catalogue) or not to.
     tune: parameters of the model that nobody measured.  max_effects: largest number of effects in an explanation, 1..6.  threads: 0: one
     per core; the answer does not depend on it.  earlier: effects of an earlier finding, to begin with.  without_active_effects: compare with
-    the model without the effects that the recordings' sidecars say are active, and look for them.  progress(phase, done, expected):
-    called a few times a second by the calling thread; an exception that it raises ends the diagnosis.  **model: as for replay.
+    the model without the effects that the recordings' sidecars say are active, and look for them.  trust_columns: take units, zeros, signs
+    and order of the columns as they are instead of refusing doubtful ones.  progress(phase, done, expected): called a few times a second by the calling thread; an exception that it raises ends the diagnosis.  **model: as for replay.
     Raises BadParameter, BadFile, Diverged, KeyboardInterrupt.
     """
     if isinstance(recordings, (Recording, str, os.PathLike)):
         recordings = [recordings]
     return Diagnosis(_musclesim._diagnose([_as_recording(one) for one in recordings], _checked(model), list(candidates), list(exclude),
-                                          list(tune), max_effects, threads, seed, earlier, without_active_effects, progress))
+                                          list(tune), max_effects, threads, seed, earlier, without_active_effects, trust_columns, progress))

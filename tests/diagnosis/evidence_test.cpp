@@ -93,7 +93,7 @@ TEST_F(EvidenceOnARig, AFurtherEffectInTheSamePlaceCostsMore) {
   EXPECT_EQ(priceOf({gain, threshold}), priceOf({threshold, gain}));
 }
 
-TEST_F(EvidenceOnARig, AFurtherMechanismOfALawCostsLikeAnotherEffect) {
+TEST_F(EvidenceOnARig, AFurtherMechanismOfALawCostsLikeAnotherEffectOfItsPlace) {
   Causes lags(plant_, on_simulation_);
   lags.hypotheses = Hypothesis(effectInfo("valve_lag"), "muscle_0", plant_).variants(plant_);
   ASSERT_EQ(lags.hypotheses.size(), 2u);
@@ -106,7 +106,7 @@ TEST_F(EvidenceOnARig, AFurtherMechanismOfALawCostsLikeAnotherEffect) {
     explanation.z = lags.hypotheses[variant].typical();
     return evidence.price(explanation);
   };
-  EXPECT_NEAR(priceOf(0) - priceOf(1), prices.effects + prices.parameters, 1e-9);
+  EXPECT_NEAR(priceOf(0) - priceOf(1), prices.effects + prices.same_place + prices.parameters, 1e-9);
 }
 
 TEST_F(EvidenceOnARig, AShapeBeyondItsUsualRangeCosts) {

@@ -24,11 +24,12 @@ constexpr std::size_t largest_bytes = 10'000'000;
 
 /// What a logger writes of a recording: clock time in ms, pressures in kPa, a quantised angle, every second row, decimal commas.
 std::string logOf(const Recording& recording) {
-  std::string log = "Zeit [ms];Soll rechts [kPa];Soll links [kPa];Winkel [deg]\n";
+  std::string log = "Zeit [ms];Soll rechts [kPa];Soll links [kPa];Ist rechts [kPa];Ist links [kPa];Winkel [deg]\n";
   const auto at = [&](const char* signal, std::size_t row) { return recording.find(signal)->values[row]; };
   for (std::size_t row = 0; row < recording.time_s.size(); row += 2) {
-    std::string line = fmt::format("{:.0f};{:.2f};{:.2f};{:.2f}\n", 12345 + 1000 * recording.time_s[row], 600 * at("command_0", row),
-                                   600 * at("command_1", row), 0.05 * std::round(at("angle_lever_deg", row) / 0.05));
+    std::string line = fmt::format("{:.0f};{:.2f};{:.2f};{:.1f};{:.1f};{:.2f}\n", 12345 + 1000 * recording.time_s[row],
+                                   600 * at("command_0", row), 600 * at("command_1", row), 600 * at("pressure_0", row),
+                                   600 * at("pressure_1", row), 0.05 * std::round(at("angle_lever_deg", row) / 0.05));
     std::ranges::replace(line, '.', ',');
     log += line;
   }
@@ -97,6 +98,36 @@ TEST_F(OwnMachine, OfWhichOnlyAnAngleIsKnown) {
         std::ranges::any_of(answer["ambiguity_sets"], [&](const auto& one) { return one.template get<std::set<std::string>>() == all; }))
         << delay << " " << answer["ambiguity_sets"].dump();
   }
+}
+
+/// The angle counts the other way in the logger: the program says so at once, and how to turn it round. It once bent a force law.
+TEST_F(OwnMachine, WhoseLoggerTurnsTheAngleRound) {
+  run({"robot", "new", "leg"});
+  run({"schedule", "prbs", "--robot", "leg.toml", "--muscle", "line", "--duration", "6", "--out", "plan.csv"});
+  run({"--simple", "--robot", "leg.toml", "--muscle", "line", "--commands", "plan.csv", "--set", "sensor.angle_noise_deg=0.1", "--record",
+       "run.csv", "--out", "run"});
+  Recording recording = readRecording((folder_ / "run.csv").string());
+  for (Signal& signal : recording.signals)
+    if (signal.name == "angle_lever_deg")
+      for (double& value : signal.values) value = -value;
+  write("log.txt", logOf(recording));
+  const auto diagnosed = [this](const std::string& angle) {
+    write("log.toml",
+          "robot = \"leg.toml\"\npressure_full_scale_kPa = 600\n[table]\nseparator = \";\"\ndecimal = \",\"\n[columns]\n"
+          "time_ms = \"Zeit [ms]\"\ncommand_0_kPa = \"Soll rechts [kPa]\"\ncommand_1_kPa = \"Soll links [kPa]\"\n"
+          "pressure_0_kPa = \"Ist rechts [kPa]\"\npressure_1_kPa = \"Ist links [kPa]\"\n"
+          "angle_lever_deg = " +
+              angle + "\n[robot_parameters.muscle]\nmodel = \"line\"\n");
+    run({"import", "log.txt", "log.toml", "log.csv", "--quiet", "--overwrite"});
+    return runProgram({"diagnose", "log.csv", "--candidates", "sensor_bias", "--max-effects", "1", "--out", "answer", "--quiet"}, folder_);
+  };
+  const ProgramResult reversed = diagnosed("\"Winkel [deg]\"");
+  EXPECT_EQ(reversed.status, 3);
+  EXPECT_NE(reversed.err.find("angle_lever_deg moves opposite to the model"), std::string::npos) << reversed.err;
+  ASSERT_NE(reversed.err.find("factor = -1"), std::string::npos) << reversed.err;
+  const ProgramResult right = diagnosed("{ from = \"Winkel [deg]\", factor = -1 }");
+  EXPECT_EQ(right.status, 0) << right.err;
+  EXPECT_NE(right.out.find("No gap"), std::string::npos) << right.out;
 }
 
 }  // namespace

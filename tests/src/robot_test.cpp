@@ -63,6 +63,13 @@ TEST_F(RobotCommand, NewDoesNotWriteOverAFile) {
   EXPECT_EQ(run({"robot", "new", "muscle"}).status, 2) << "a group of the program's parameters";
 }
 
+TEST_F(RobotCommand, NewTakesTheNameOfAFile) {
+  ASSERT_EQ(run({"robot", "new", "lever.toml"}).status, 0);
+  const auto checked = run({"robot", "check", "lever.toml"});
+  EXPECT_EQ(checked.status, 0) << checked.err;
+  EXPECT_TRUE(contains(checked.out, "lever")) << checked.out;
+}
+
 TEST_F(RobotCommand, CheckSaysWhatIsOdd) {
   ASSERT_EQ(run({"robot", "new", "lever"}).status, 0);
   change("lever.toml", "length_mm = [150, 320]", "length_mm = [150, 260]");

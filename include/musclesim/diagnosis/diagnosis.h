@@ -39,6 +39,7 @@ struct DiagnosisOptions {
   std::vector<std::string> candidates;  ///< ids of effects to consider; empty: the whole catalogue
   std::vector<std::string> exclude;     ///< ids not to consider
   std::vector<std::string> tune;        ///< names of parameters of the model that nobody measured; they are fitted first
+  bool trust_columns = false;           ///< take units, zeros, signs and order of the columns as they are: do not refuse doubtful ones
   int max_effects = 4;                  ///< largest number of effects in an explanation, 1..6
   std::vector<ActiveEffect> earlier;    ///< an earlier finding: a set that the search begins with, fitted anew and kept if it is believed
   std::set<MethodPart> left_out;        ///< what the method does without, for studies

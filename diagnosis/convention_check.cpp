@@ -1,0 +1,259 @@
+#include "convention_check.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "data_checks.h"
+#include "musclesim/base/error.h"
+#include "musclesim/base/units.h"
+#include "musclesim/robot/actuator.h"
+#include "musclesim/robot/robot.h"
+#include "musclesim/simulation/simulation.h"
+
+namespace musclesim {
+
+namespace {
+
+constexpr double thousand_low = 300, thousand_high = 3000;
+constexpr double radian_low = 30, radian_high = 170;  ///< 180 / pi = 57.3, beside friction that takes two thirds of the motion
+constexpr double nearly_all = 0.95;                   ///< share of the readings
+constexpr double beyond_stops_deg = 10;               ///< more than soft stops give way
+constexpr double beyond_length = 0.1;                 ///< of the shortest and the longest length: more than an attachment is off
+constexpr double atmosphere_kPa = 101.3, about_atmosphere_kPa = 10;
+constexpr double follows_from = 0.8;  ///< correlation
+constexpr double clearly =
+    0.5;  ///< share of the unexplained variance at which one correlation exceeds another; a wave may have either sign
+constexpr double visible_sigmas = 2;  ///< standard deviation of a signal that moves, over its noise floor
+constexpr double longest_lag_s = 1;   ///< valves, loggers and buses are later than the model by less
+constexpr double lag_step_s = 0.02;   ///< much shorter than what moves
+
+bool exceeds(double one, double other) {
+  return one >= follows_from && 1 - one * one <= clearly * (1 - other * other);
+}
+
+/// Correlations of a measured signal with a predicted one, over lags of the measured one.
+struct Correlation {
+  double highest = 0, lowest = 0;
+  double ratio = 0;  ///< of the standard deviations, measured over predicted
+  bool follows() const { return exceeds(highest, lowest); }
+  bool isReversed() const { return exceeds(-lowest, highest); }
+};
+
+/// Sums over rows of two series from which their correlation follows.
+struct Sums {
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+  void add(double a, double b) { n += 1, x += a, y += b, xx += a * a, xy += a * b, yy += b * b; }
+  double ofX() const { return n > 0 ? xx - x * x / n : 0; }
+  double ofY() const { return n > 0 ? yy - y * y / n : 0; }
+  double ofBoth() const { return n > 0 ? xy - x * y / n : 0; }
+};
+
+class ConventionCheck {
+ public:
+  ConventionCheck(const Plant& plant, const std::vector<Prediction>& nominal) : plant_(plant), nominal_(nominal) {}
+
+  void requireThousands() const {
+    forEachReading([&](int signal, int recording) {
+      const double measured = medianSize(plant_.measured(recording, signal)), predicted = medianSize(predictedOf(recording, signal));
+      if (measured <= 0 || predicted <= plant_.signals()[index(signal)].sigma.value) return;
+      const double ratio = measured / predicted;
+      for (const double factor : {ratio, 1 / ratio})
+        if (factor > thousand_low && factor < thousand_high)
+          refuse(recording,
+                 fmt::format("{} is about {:.3g}, but must be in the unit of its name: the model's values are about {:.3g}, which "
+                             "is about a thousand times {}",
+                             nameOf(signal), measured, predicted, ratio > 1 ? "less" : "more"));
+    });
+  }
+
+  void requireDegrees() const {
+    for (int i = 0; i < signalCount(); ++i) {
+      if (!nameOf(i).starts_with("angle_")) continue;
+      const Correlation with_model = correlation(i, i);
+      const double size = std::max(with_model.ratio, 1 / with_model.ratio);
+      if (!(with_model.follows() || with_model.isReversed()) || !(size > radian_low && size < radian_high)) continue;
+      refuse(0, fmt::format("{} moves {:.0f} times {} than in the model: it must be in degrees, not in rad (1 rad is 57.3 degrees)",
+                            nameOf(i), size, with_model.ratio < 1 ? "less" : "more"));
+    }
+  }
+
+  void requireZeros() const {
+    for (const Robot::Angle& angle : plant_.model().robot().angles()) {
+      const auto [low, high] = angle.joint->stopsDeg(angle.axis);
+      requireWithin("angle_" + angle.name + "_deg", low, high, beyond_stops_deg, beyond_stops_deg, "deg",
+                    "where the joint has its stops: what is its zero?");
+    }
+    for (int m = 0; m < plant_.muscleCount(); ++m) {
+      const auto [shortest, longest] = plant_.muscleRange(m);
+      requireWithin(fmt::format("length_{}_mm", m), shortest, longest, beyond_length * shortest, beyond_length * longest, "mm",
+                    "which is how long the muscle can be: is it a stroke, or another zero?");
+    }
+    requireGaugePressures();
+  }
+
+  /// Notes on signs.
+  std::vector<std::string> requireSignsAndOrder() const {
+    const std::vector<std::string> reversed = namesOf([&](int i) { return isAnswer(i) && correlation(i, i).isReversed(); });
+    const std::vector<std::string> followed = namesOf([&](int i) { return isAnswer(i) && correlation(i, i).follows(); });
+    const auto of_commands = [&](int i) { return nameOf(i).starts_with("pressure_"); };
+    const auto right_pressures = namesOf([&](int i) { return of_commands(i) && correlation(i, i).follows(); });
+    const bool commands_are_right = plant_.muscleCount() == 1 || static_cast<int>(right_pressures.size()) == plant_.muscleCount();
+    if (!followed.empty() && reversed.empty()) requireOrder("pressure_", fmt::format(", while {} as the commands say", moves(followed)));
+    if (commands_are_right) {
+      const std::string why = right_pressures.empty() ? "" : ", although the pressures follow the commands";
+      // The lengths of two antagonists are each other's opposite.
+      if (std::ranges::none_of(reversed, isOfBones))
+        for (const char* kind : {"length_", "force_"}) requireOrder(kind, why);
+      if (!reversed.empty())
+        refuse(0, fmt::format("{} opposite to the model{}. Is its sign that of the model (angles turn right-handed about the joint's axis; "
+                              "lengths, not contractions)? In a mapping, factor = -1 reverses a column. Or do hoses lead to other muscles "
+                              "than the robot file says?",
+                              moves(reversed), why));
+    } else if (!reversed.empty()) {
+      return {
+          fmt::format("{} opposite to the model: either the commands, or the hoses of the muscles, are exchanged, or its sign is not that "
+                      "of the model",
+                      moves(reversed))};
+    }
+    return {};
+  }
+
+ private:
+  static std::size_t index(int i) { return static_cast<std::size_t>(i); }
+  int signalCount() const { return static_cast<int>(plant_.signals().size()); }
+  const std::string& nameOf(int signal) const { return plant_.signals()[index(signal)].name; }
+  const std::vector<double>& predictedOf(int recording, int signal) const { return nominal_[index(recording)].values[index(signal)]; }
+  /// Whether a signal shows what the pressures do.
+  bool isAnswer(int signal) const { return !nameOf(signal).starts_with("pressure_"); }
+
+  static bool isOfBones(const std::string& name) { return name.starts_with("angle_") || name.starts_with("hand_"); }
+
+  static std::string moves(const std::vector<std::string>& names) {
+    return fmt::format("{} {}", fmt::join(names, ", "), names.size() > 1 ? "move" : "moves");
+  }
+
+  [[noreturn]] void refuse(int recording, const std::string& what) const {
+    throw BadFile(plant_.recordings()[index(recording)].file, what + " (--trust-columns takes the recordings as they are.)");
+  }
+
+  template <typename Use>
+  void forEachReading(Use&& use) const {
+    for (int r = 0; r < static_cast<int>(plant_.recordings().size()); ++r)
+      for (int i = 0; i < signalCount(); ++i)
+        if (!plant_.measured(r, i).empty() && !nominal_[index(r)].values.empty()) use(i, r);
+  }
+
+  template <typename Holds>
+  std::vector<std::string> namesOf(Holds&& holds) const {
+    std::vector<std::string> names;
+    for (int i = 0; i < signalCount(); ++i)
+      if (holds(i)) names.push_back(nameOf(i));
+    return names;
+  }
+
+  /// Zero if either signal does not move visibly.
+  Correlation correlation(int measured, int predicted) const {
+    Correlation result;
+    for (int lag = 0; lag * lag_step_s <= longest_lag_s; ++lag) {
+      double xx = 0, xy = 0, yy = 0, n = 0;
+      forEachReading([&](int signal, int recording) {
+        if (signal != measured) return;
+        const Sums sums = sumsOf(recording, measured, predicted, lag);
+        xx += sums.ofX(), xy += sums.ofBoth(), yy += sums.ofY(), n += sums.n;
+      });
+      const auto isVisible = [&](double squares, int signal) {
+        return squares > n * std::pow(visible_sigmas * plant_.signals()[index(signal)].sigma.value, 2);
+      };
+      if (!(n > 0) || !isVisible(xx, predicted) || (lag == 0 && yy == 0)) return {};
+      const double r = xy / std::sqrt(xx * yy);
+      if (r > result.highest || -r > -result.lowest) result.ratio = std::sqrt(yy / xx);
+      result.highest = std::max(result.highest, r);
+      result.lowest = std::min(result.lowest, r);
+    }
+    return result;
+  }
+
+  /// Of one recording: predicted x and, `lag` steps of lag_step_s later, measured y.
+  Sums sumsOf(int recording, int measured, int predicted, int lag) const {
+    const std::vector<double>&y = plant_.measured(recording, measured), &x = predictedOf(recording, predicted);
+    const std::vector<double>& time_s = plant_.recordings()[index(recording)].time_s;
+    Sums sums;
+    std::size_t earlier = 0;
+    double last_s = -lag_step_s;
+    for (std::size_t row = 0; row < std::min(x.size(), y.size()); ++row) {
+      if (time_s[row] < last_s + lag_step_s * (1 - 1e-9)) continue;
+      last_s = time_s[row];
+      while (earlier < row && time_s[earlier + 1] <= time_s[row] - lag * lag_step_s + 1e-9) ++earlier;
+      if (time_s[row] - time_s[0] < lag * lag_step_s - 1e-9) continue;
+      if (std::isfinite(y[row]) && std::isfinite(x[earlier])) sums.add(x[earlier], y[row]);
+    }
+    return sums;
+  }
+
+  void requireWithin(const std::string& name, double low, double high, double below, double above, const char* unit,
+                     const char* why) const {
+    if (!std::isfinite(low) || !std::isfinite(high)) return;
+    forEachReading([&](int signal, int recording) {
+      if (nameOf(signal) != name) return;
+      std::vector<double> values;
+      std::ranges::copy_if(plant_.measured(recording, signal), std::back_inserter(values), [](double v) { return std::isfinite(v); });
+      const auto beyond = std::ranges::count_if(values, [&](double v) { return v < low - below || v > high + above; });
+      if (values.empty() || static_cast<double>(beyond) < nearly_all * static_cast<double>(values.size())) return;
+      const auto [least, most] = std::ranges::minmax(values);
+      refuse(recording,
+             fmt::format("{} lies in {:.4g} .. {:.4g} {}, and not in {:.4g} .. {:.4g}, {}", name, least, most, unit, low, high, why));
+    });
+  }
+
+  void requireGaugePressures() const {
+    const auto full_scale_kPa = plant_.recordings().front().info.pressure_full_scale_kPa;
+    if (!full_scale_kPa) return;
+    forEachReading([&](int signal, int recording) {
+      if (!nameOf(signal).starts_with("pressure_")) return;
+      const std::vector<double>&y = plant_.measured(recording, signal), &x = predictedOf(recording, signal);
+      std::vector<double> differences;
+      for (std::size_t row = 0; row < std::min(x.size(), y.size()); ++row)
+        if (std::isfinite(y[row]) && std::isfinite(x[row])) differences.push_back(y[row] - x[row]);
+      if (differences.empty()) return;
+      const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
+      std::ranges::nth_element(differences, middle);
+      const double above_kPa = *middle * *full_scale_kPa;
+      if (std::abs(above_kPa - atmosphere_kPa) > about_atmosphere_kPa) return;
+      refuse(recording, fmt::format("{} is {:.0f} kPa above the command, about one atmosphere: it must be the pressure above that of the "
+                                    "atmosphere, not the absolute one (in a mapping: offset = -1.013 for bar, -101.3 for kPa)",
+                                    nameOf(signal), above_kPa));
+    });
+  }
+
+  /// Refuses two signals of a kind that follow each other's model.
+  void requireOrder(const std::string& kind, const std::string& why) const {
+    for (int i = 0; i < signalCount(); ++i)
+      for (int k = i + 1; k < signalCount(); ++k) {
+        if (!nameOf(i).starts_with(kind) || !nameOf(k).starts_with(kind)) continue;
+        const double crossed = std::min(correlation(i, k).highest, correlation(k, i).highest);
+        const double own = std::max(correlation(i, i).highest, correlation(k, k).highest);
+        if (!exceeds(crossed, own)) continue;
+        refuse(0, fmt::format("{} follows the model's {}, and {} the model's {}{}: are the two columns exchanged?", nameOf(i), nameOf(k),
+                              nameOf(k), nameOf(i), why));
+      }
+  }
+
+  const Plant& plant_;
+  const std::vector<Prediction>& nominal_;
+};
+
+}  // namespace
+
+std::vector<std::string> checkConventions(const Plant& plant, const std::vector<Prediction>& nominal) {
+  const ConventionCheck check(plant, nominal);
+  check.requireThousands();
+  check.requireDegrees();
+  check.requireZeros();
+  return check.requireSignsAndOrder();
+}
+
+}  // namespace musclesim

@@ -1,0 +1,24 @@
+/// Whether units, zeros, signs and the order of columns in recordings are those of the model. Where they are not, every answer would be
+/// wrong: a search for physical causes bends a force law until an angle of the other sign fits.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "plant.h"
+
+namespace musclesim {
+
+/// Throws BadFile, with what to do about it, if readings can only be meant otherwise than their columns say. `nominal`: the model without
+/// further effects, one prediction per recording. In this order:
+/// - unit: a signal is about a thousand times as large as in the model, or a thousandth of it; an angle that follows the model moves
+///   by about 57 times less (rad) or more
+/// - zero: nearly all angles lie beyond the joint's stops, nearly all lengths beyond what the muscle can be; pressures lie one atmosphere
+///   above the commands
+/// - order: two columns follow each other's model
+/// - sign: a signal moves opposite to the model
+/// Exchanged commands turn the motion round, too, and are a cause that the catalogue has (channel_swap). Signs and the order of pressures
+/// are therefore only refused if the other signals rule that out. Where nothing does, the result has a sentence on it.
+std::vector<std::string> checkConventions(const Plant& plant, const std::vector<Prediction>& nominal);
+
+}  // namespace musclesim

@@ -1,0 +1,148 @@
+// Recordings whose columns can only be meant otherwise than they say.
+#include "diagnosis/convention_check.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "musclesim/base/error.h"
+
+namespace musclesim {
+namespace {
+
+constexpr double full_scale_kPa = 600;
+
+/// An elbow under steps and a wave in opposite directions, with a late valve and a sensor that reads 2 degrees too much.
+Recording elbow(double wave_Hz, std::vector<ActiveEffect> effects = {}) {
+  Recording plan;
+  plan.file = "plan.csv";
+  plan.info.robot = "elbow";
+  plan.info.robot_parameters = {{"muscle.model", "line"}};
+  plan.signals = {{"command_0", {}}, {"command_1", {}}};
+  for (int row = 0; row < 300; ++row) {
+    const double t = 0.01 * row, wave = 0.15 * std::sin(2 * std::numbers::pi * wave_Hz * t), step = std::fmod(t, 0.8) < 0.5 ? 0.1 : -0.1;
+    plan.time_s.push_back(t);
+    plan.signals[0].values.push_back(0.4 + wave + step);
+    plan.signals[1].values.push_back(0.4 - wave - step);
+  }
+  ReplayOptions options;
+  options.effects = std::move(effects);
+  options.effects.push_back({"valve_lag", "all", {{"fill_time_constant_s", 0.05}, {"vent_time_constant_s", 0.08}}});
+  options.effects.push_back({"sensor_bias", "signal_angle_elbow", {{"offset", 2.0}}});
+  Recording recording = replayRecording(plan, options).simulated;
+  recording.file = "elbow.csv";
+  recording.info.active_effects.clear();
+  recording.info.pressure_full_scale_kPa = full_scale_kPa;
+  const std::vector<std::string> kept = {"command_0",       "command_1",   "pressure_0", "pressure_1",
+                                         "angle_elbow_deg", "length_0_mm", "length_1_mm"};
+  std::erase_if(recording.signals, [&](const Signal& s) { return std::ranges::find(kept, s.name) == kept.end(); });
+  for (const Signal& signal : recording.signals)
+    recording.info.noise_std[signal.name] = signal.name.starts_with("pressure_") ? 0.003 : 0.05;
+  return recording;
+}
+
+std::vector<double>& valuesOf(Recording& recording, const std::string& name) {
+  return std::ranges::find(recording.signals, name, &Signal::name)->values;
+}
+
+void leaveOut(Recording& recording, const std::string& first_letters) {
+  std::erase_if(recording.signals, [&](const Signal& signal) { return signal.name.starts_with(first_letters); });
+}
+
+std::vector<std::string> notesOn(const Recording& recording) {
+  DiagnosisOptions options;
+  const Plant plant({recording}, options);
+  return checkConventions(plant, {plant.predict(0, Model{})});
+}
+
+/// What the refusal says; empty if there is none.
+std::string refusalOf(const Recording& recording) {
+  try {
+    notesOn(recording);
+  } catch (const BadFile& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string refusalAfter(const std::function<void(Recording&)>& change) {
+  Recording recording = elbow(1.7);
+  change(recording);
+  return refusalOf(recording);
+}
+
+bool says(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(Conventions, OfARightRecordingAreAccepted) {
+  EXPECT_EQ(refusalOf(elbow(1.7)), "");
+  EXPECT_TRUE(notesOn(elbow(1.7)).empty());
+}
+
+TEST(Conventions, AReversedAngleIsRefused) {
+  const std::string refusal = refusalAfter([](Recording& r) {
+    for (double& v : valuesOf(r, "angle_elbow_deg")) v = -v;
+  });
+  EXPECT_TRUE(says(refusal, "elbow.csv: angle_elbow_deg moves opposite to the model")) << refusal;
+  EXPECT_TRUE(says(refusal, "factor = -1") && says(refusal, "--trust-columns")) << refusal;
+}
+
+/// Without pressures nothing tells a reversed angle from exchanged commands, which are a cause.
+TEST(Conventions, AReversedAngleAloneIsNoted) {
+  Recording recording = elbow(1.7);
+  for (double& v : valuesOf(recording, "angle_elbow_deg")) v = -v;
+  leaveOut(recording, "pressure_");
+  leaveOut(recording, "length_");
+  const std::vector<std::string> notes = notesOn(recording);
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_TRUE(says(notes.front(), "angle_elbow_deg moves opposite to the model: either the commands"));
+}
+
+TEST(Conventions, ExchangedColumnsAreRefusedAndExchangedCommandsAreNot) {
+  const auto exchange = [](const std::string& kind, const std::string& unit) {
+    return [=](Recording& r) { std::swap(valuesOf(r, kind + "0" + unit), valuesOf(r, kind + "1" + unit)); };
+  };
+  const std::string pressures = refusalAfter(exchange("pressure_", ""));
+  EXPECT_TRUE(says(pressures, "pressure_0 follows the model's pressure_1")) << pressures;
+  const std::string lengths = refusalAfter(exchange("length_", "_mm"));
+  EXPECT_TRUE(says(lengths, "length_0_mm follows the model's length_1_mm")) << lengths;
+  EXPECT_EQ(refusalOf(elbow(1.7, {{"channel_swap", "muscle_0+muscle_1", {}}})), "");
+}
+
+TEST(Conventions, OtherUnitsAndZerosAreRefused) {
+  const auto changed = [](const std::string& name, double factor, double offset) {
+    return refusalAfter([&](Recording& r) {
+      for (double& v : valuesOf(r, name)) v = factor * v + offset;
+    });
+  };
+  EXPECT_TRUE(says(changed("angle_elbow_deg", std::numbers::pi / 180, 0), "57.3"));
+  EXPECT_TRUE(says(changed("angle_elbow_deg", 1, 270), "where the joint has its stops"));
+  EXPECT_TRUE(says(changed("length_0_mm", 0.1, 0), "which is how long the muscle can be"));
+  EXPECT_TRUE(says(changed("length_0_mm", 0.001, 0), "thousand"));
+  const std::string absolute = changed("pressure_1", 1, 101.3 / full_scale_kPa);
+  EXPECT_TRUE(says(absolute, "about one atmosphere")) << absolute;
+  EXPECT_EQ(changed("pressure_1", 1, 0.05), "") << "a sensor with a wrong zero";
+  EXPECT_EQ(changed("angle_elbow_deg", 0.3, 10), "") << "friction, and a wrong zero";
+}
+
+/// Half a period late is no reversed sign.
+TEST(Conventions, AWaveMayBeLate) {
+  Recording recording = elbow(1);
+  for (Signal& command : recording.signals) {
+    const bool is_command = command.name.starts_with("command_");
+    for (std::size_t row = 0; is_command && row < command.values.size(); ++row)
+      command.values[row] = 0.4 + (command.name == "command_0" ? 0.15 : -0.15) * std::sin(2 * std::numbers::pi * recording.time_s[row]);
+  }
+  ReplayOptions options;
+  options.effects = {{"sensor_delay", "signal_angle_elbow", {{"delay_s", 0.45}}}};
+  Recording late = replayRecording(recording, options).simulated;
+  late.file = "late.csv";
+  late.info.active_effects.clear();
+  EXPECT_EQ(refusalOf(late), "");
+}
+
+}  // namespace
+}  // namespace musclesim
