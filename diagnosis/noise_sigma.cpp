@@ -1,6 +1,7 @@
 #include "noise_sigma.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -76,9 +77,17 @@ std::optional<double> fromSidecars(const std::vector<Recording>& recordings, con
   return sum / count;
 }
 
-/// Second differences of the rows whose neighbourhood moves least; they cancel a straight line and leave the noise. Rows without a number
-/// are skipped, since a signal may be read less often than others; if asked, so are rows that repeat the value before.
-std::vector<double> quietSecondDifferences(const Recording& recording, const std::string& name, bool without_held) {
+/// A central difference of white noise has the variance of the noise times the sum of the squared factors.
+struct DifferenceOrder {
+  std::array<double, 5> factors;
+  double sum_of_squares;
+};
+constexpr DifferenceOrder second = {{0, 1, -2, 1, 0}, 6}, fourth = {{1, -4, 6, -4, 1}, 70};
+
+/// Differences of the rows whose neighbourhood moves least; they cancel a straight line (second) or a cubic (fourth) and leave the noise.
+/// Rows without a number are skipped, since a signal may be read less often than others; if asked, so are rows that repeat the value
+/// before.
+std::vector<double> quietDifferences(const Recording& recording, const std::string& name, bool without_held, const DifferenceOrder& order) {
   constexpr std::size_t half_window = 10;
   const Signal* signal = recording.find(name);
   if (!signal) return {};
@@ -87,8 +96,9 @@ std::vector<double> quietSecondDifferences(const Recording& recording, const std
   if (without_held) y.erase(std::unique(y.begin(), y.end()), y.end());
   std::vector<std::pair<double, double>> by_speed;
   for (std::size_t i = half_window; i + half_window < y.size(); ++i) {
-    const double difference = y[i - 1] - 2 * y[i] + y[i + 1], speed = std::abs(y[i + half_window] - y[i - half_window]);
-    by_speed.emplace_back(speed, difference);
+    double difference = 0;
+    for (std::size_t k = 0; k < order.factors.size(); ++k) difference += order.factors[k] * y[i + k - 2];
+    by_speed.emplace_back(std::abs(y[i + half_window] - y[i - half_window]), difference);
   }
   std::sort(by_speed.begin(), by_speed.end());
   std::vector<double> result;
@@ -96,15 +106,24 @@ std::vector<double> quietSecondDifferences(const Recording& recording, const std
   return result;
 }
 
-double fromQuietRows(const std::vector<Recording>& recordings, const std::string& name, bool without_held) {
+double fromDifferences(const std::vector<Recording>& recordings, const std::string& name, bool without_held, const DifferenceOrder& order) {
   std::vector<double> all;
   for (const Recording& recording : recordings) {
-    const auto some = quietSecondDifferences(recording, name, without_held);
+    const auto some = quietDifferences(recording, name, without_held, order);
     all.insert(all.end(), some.begin(), some.end());
   }
   const double middle = median(all);
   for (double& value : all) value = std::abs(value - middle);
-  return normal_per_median * median(all) / std::sqrt(6.0);
+  return normal_per_median * median(all) / std::sqrt(order.sum_of_squares);
+}
+
+/// Of a swing with the frequency f in rows h apart, second differences keep (2 pi f h)^2 of the amplitude and fourth ones (2 pi f h)^4:
+/// where those are much smaller, the second ones are motion. White noise gives both the same.
+double fromQuietRows(const std::vector<Recording>& recordings, const std::string& name, bool without_held) {
+  constexpr double much_smaller = 0.5;
+  const double by_second = fromDifferences(recordings, name, without_held, second);
+  const double by_fourth = fromDifferences(recordings, name, without_held, fourth);
+  return by_fourth < much_smaller * by_second ? by_fourth : by_second;
 }
 
 double rangeOf(const std::vector<Recording>& recordings, const std::string& name) {

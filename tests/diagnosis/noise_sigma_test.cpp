@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "musclesim/base/random.h"
 
@@ -57,6 +58,18 @@ TEST(NoiseSigma, ThenFromQuietRows) {
   const NoiseSigma sigma = noiseSigma({noisyWave(3)}, "length_0_mm");
   EXPECT_EQ(sigma.source, NoiseSigma::Source::quiet_rows);
   EXPECT_NEAR(sigma.value, std_mm, 0.1 * std_mm);
+}
+
+/// A lever that swings all the time at 2.5 Hz in rows 20 ms apart: second differences are motion.
+TEST(NoiseSigma, IsThatOfTheReadingsWhereNothingIsQuiet) {
+  Recording recording = noisyWave(5);
+  for (std::size_t row = 0; row < recording.time_s.size(); ++row) {
+    recording.time_s[row] = 0.02 * static_cast<double>(row);
+    recording.signals[1].values[row] += 100 * std::sin(2 * std::numbers::pi * 2.5 * recording.time_s[row]);
+  }
+  const NoiseSigma sigma = noiseSigma({recording}, "length_0_mm");
+  EXPECT_EQ(sigma.source, NoiseSigma::Source::quiet_rows);
+  EXPECT_NEAR(sigma.value, std_mm, 0.2 * std_mm);
 }
 
 TEST(NoiseSigma, OfASignalThatIsReadInEveryOtherRowIsThatOfItsReadings) {
