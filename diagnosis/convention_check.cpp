@@ -20,9 +20,11 @@ namespace {
 
 constexpr double thousand_low = 300, thousand_high = 3000;
 constexpr double radian_low = 30, radian_high = 170;  ///< 180 / pi = 57.3, beside friction that takes two thirds of the motion
+constexpr double shortest_s = 0.1;                    ///< no machine answers within less
 constexpr double nearly_all = 0.95;                   ///< share of the readings
 constexpr double beyond_stops_deg = 10;               ///< more than soft stops give way
 constexpr double beyond_length = 0.1;                 ///< of the shortest and the longest length: more than an attachment is off
+constexpr double beyond_full_scale = 0.3;             ///< of it: more than pressures overshoot
 constexpr double atmosphere_kPa = 101.3, about_atmosphere_kPa = 10;
 constexpr double follows_from = 0.8;  ///< correlation
 constexpr double clearly =
@@ -55,6 +57,14 @@ struct Sums {
 class ConventionCheck {
  public:
   ConventionCheck(const Plant& plant, const std::vector<Prediction>& nominal) : plant_(plant), nominal_(nominal) {}
+
+  void requireSeconds() const {
+    for (int r = 0; r < static_cast<int>(plant_.recordings().size()); ++r) {
+      const std::vector<double>& time_s = plant_.recordings()[index(r)].time_s;
+      if (time_s.back() - time_s.front() < shortest_s)
+        refuse(r, fmt::format("it lasts {:.3g} s: is its clock in seconds?", time_s.back() - time_s.front()));
+    }
+  }
 
   void requireThousands() const {
     forEachReading([&](int signal, int recording) {
@@ -92,6 +102,9 @@ class ConventionCheck {
       requireWithin(fmt::format("length_{}_mm", m), shortest, longest, beyond_length * shortest, beyond_length * longest, "mm",
                     "which is how long the muscle can be: is it a stroke, or another zero?");
     }
+    for (int m = 0; m < plant_.muscleCount(); ++m)
+      requireWithin(fmt::format("pressure_{}", m), 0, 1, beyond_full_scale, beyond_full_scale, "of full scale",
+                    "as fractions of full scale do: is it in bar or kPa (pressure_0_bar, pressure_0_kPa)?");
     requireGaugePressures();
   }
 
@@ -250,6 +263,7 @@ class ConventionCheck {
 
 std::vector<std::string> checkConventions(const Plant& plant, const std::vector<Prediction>& nominal) {
   const ConventionCheck check(plant, nominal);
+  check.requireSeconds();
   check.requireThousands();
   check.requireDegrees();
   check.requireZeros();

@@ -11,10 +11,10 @@ namespace musclesim {
 
 /// Throws BadFile, with what to do about it, if readings can only be meant otherwise than their columns say. `nominal`: the model without
 /// further effects, one prediction per recording. In this order:
-/// - unit: a signal is about a thousand times as large as in the model, or a thousandth of it; an angle that follows the model moves
-///   by about 57 times less (rad) or more
-/// - zero: nearly all angles lie beyond the joint's stops, nearly all lengths beyond what the muscle can be; pressures lie one atmosphere
-///   above the commands
+/// - unit: a recording lasts less than 0.1 s; a signal is about a thousand times as large as in the model, or a thousandth of it; an angle
+///   that follows the model moves by about 57 times less (rad) or more
+/// - range: nearly all angles lie beyond the stops of the joint, lengths beyond what the muscle can be, pressures beyond full scale, or one
+///   atmosphere above the commands
 /// - order: two columns follow each other's model
 /// - sign: a signal moves opposite to the model
 /// Exchanged commands turn the motion round, too, and are a cause that the catalogue has (channel_swap). Signs and the order of pressures

@@ -122,6 +122,11 @@ TEST(Conventions, OtherUnitsAndZerosAreRefused) {
   EXPECT_TRUE(says(changed("angle_elbow_deg", 1, 270), "where the joint has its stops"));
   EXPECT_TRUE(says(changed("length_0_mm", 0.1, 0), "which is how long the muscle can be"));
   EXPECT_TRUE(says(changed("length_0_mm", 0.001, 0), "thousand"));
+  EXPECT_TRUE(says(changed("pressure_0", 6, 1), "pressure_0_bar"));
+  EXPECT_TRUE(says(refusalAfter([](Recording& r) {
+                     for (double& time_s : r.time_s) time_s /= 1000;
+                   }),
+                   "is its clock in seconds?"));
   const std::string absolute = changed("pressure_1", 1, 101.3 / full_scale_kPa);
   EXPECT_TRUE(says(absolute, "about one atmosphere")) << absolute;
   EXPECT_EQ(changed("pressure_1", 1, 0.05), "") << "a sensor with a wrong zero";
