@@ -5,11 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "data_checks.h"
 #include "musclesim/base/error.h"
-#include "musclesim/base/units.h"
 #include "musclesim/robot/actuator.h"
 #include "musclesim/robot/robot.h"
 #include "musclesim/simulation/simulation.h"
@@ -27,21 +25,21 @@ constexpr double beyond_length = 0.1;                 ///< of the shortest and t
 constexpr double beyond_full_scale = 0.3;             ///< of it: more than pressures overshoot
 constexpr double atmosphere_kPa = 101.3, about_atmosphere_kPa = 10;
 constexpr double follows_from = 0.8;  ///< correlation
-constexpr double clearly =
-    0.5;  ///< share of the unexplained variance at which one correlation exceeds another; a wave may have either sign
+constexpr double of_a_wave = 0.97;    ///< correlation: a wave that is late by half a period seems reversed; nothing follows from it
+constexpr double clearly = 0.5;       ///< share of the unexplained variance at which one correlation exceeds another
 constexpr double visible_sigmas = 2;  ///< standard deviation of a signal that moves, over its noise floor
 constexpr double longest_lag_s = 1;   ///< valves, loggers and buses are later than the model by less
 constexpr double lag_step_s = 0.02;   ///< much shorter than what moves
 
 bool exceeds(double one, double other) {
-  return one >= follows_from && 1 - one * one <= clearly * (1 - other * other);
+  return one >= follows_from && other <= of_a_wave && 1 - one * one <= clearly * (1 - other * other);
 }
 
 /// Correlations of a measured signal with a predicted one, over lags of the measured one.
 struct Correlation {
-  double highest = 0, lowest = 0;
-  double ratio = 0;  ///< of the standard deviations, measured over predicted
-  bool follows() const { return exceeds(highest, lowest); }
+  double highest = 0, lowest = 0;  ///< never of the other sign
+  double ratio = 0;                ///< of the standard deviations, measured over predicted
+  bool follows() const { return exceeds(highest, -lowest); }
   bool isReversed() const { return exceeds(-lowest, highest); }
 };
 
@@ -183,7 +181,7 @@ class ConventionCheck {
       };
       if (!(n > 0) || !isVisible(xx, predicted) || (lag == 0 && yy == 0)) return {};
       const double r = xy / std::sqrt(xx * yy);
-      if (r > result.highest || -r > -result.lowest) result.ratio = std::sqrt(yy / xx);
+      if (std::abs(r) > std::max(result.highest, -result.lowest)) result.ratio = std::sqrt(yy / xx);
       result.highest = std::max(result.highest, r);
       result.lowest = std::min(result.lowest, r);
     }
