@@ -108,8 +108,8 @@ class ConventionCheck {
 
   /// Notes on signs.
   std::vector<std::string> requireSignsAndOrder() const {
-    const std::vector<std::string> reversed = namesOf([&](int i) { return isAnswer(i) && correlation(i, i).isReversed(); });
-    const std::vector<std::string> followed = namesOf([&](int i) { return isAnswer(i) && correlation(i, i).follows(); });
+    const std::vector<std::string> reversed = namesOf([&](int i) { return goesWithJoints(i) && correlation(i, i).isReversed(); });
+    const std::vector<std::string> followed = namesOf([&](int i) { return goesWithJoints(i) && correlation(i, i).follows(); });
     const auto of_commands = [&](int i) { return nameOf(i).starts_with("pressure_"); };
     const auto right_pressures = namesOf([&](int i) { return of_commands(i) && correlation(i, i).follows(); });
     const bool commands_are_right = plant_.muscleCount() == 1 || static_cast<int>(right_pressures.size()) == plant_.muscleCount();
@@ -117,7 +117,7 @@ class ConventionCheck {
     if (commands_are_right) {
       const std::string why = right_pressures.empty() ? "" : ", although the pressures follow the commands";
       // The lengths of two antagonists are each other's opposite.
-      if (std::ranges::none_of(reversed, isOfBones))
+      if (std::ranges::none_of(reversed, isAngle))
         for (const char* kind : {"length_", "force_"}) requireOrder(kind, why);
       if (!reversed.empty())
         refuse(0, fmt::format("{} opposite to the model{}. Is its sign that of the model (angles turn right-handed about the joint's axis; "
@@ -138,10 +138,10 @@ class ConventionCheck {
   int signalCount() const { return static_cast<int>(plant_.signals().size()); }
   const std::string& nameOf(int signal) const { return plant_.signals()[index(signal)].name; }
   const std::vector<double>& predictedOf(int recording, int signal) const { return nominal_[index(recording)].values[index(signal)]; }
-  /// Whether a signal shows what the pressures do.
-  bool isAnswer(int signal) const { return !nameOf(signal).starts_with("pressure_"); }
-
-  static bool isOfBones(const std::string& name) { return name.starts_with("angle_") || name.starts_with("hand_"); }
+  static bool isAngle(const std::string& name) { return name.starts_with("angle_"); }
+  /// Whether a signal goes one way where a joint does. The hand does not: where an arm swings through the vertical, its hand is highest at
+  /// both ends, so that a smaller swing may look reversed. Nor does tension.
+  bool goesWithJoints(int signal) const { return isAngle(nameOf(signal)) || nameOf(signal).starts_with("length_"); }
 
   static std::string moves(const std::vector<std::string>& names) {
     return fmt::format("{} {}", fmt::join(names, ", "), names.size() > 1 ? "move" : "moves");

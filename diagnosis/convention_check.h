@@ -16,7 +16,7 @@ namespace musclesim {
 /// - range: nearly all angles lie beyond the stops of the joint, lengths beyond what the muscle can be, pressures beyond full scale, or one
 ///   atmosphere above the commands
 /// - order: two columns follow each other's model
-/// - sign: a signal moves opposite to the model
+/// - sign: an angle or a length moves opposite to the model
 /// Exchanged commands turn the motion round, too, and are a cause that the catalogue has (channel_swap). Signs and the order of pressures
 /// are therefore only refused if the other signals rule that out. Where nothing does, the result has a sentence on it.
 std::vector<std::string> checkConventions(const Plant& plant, const std::vector<Prediction>& nominal);

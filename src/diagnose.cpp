@@ -56,8 +56,23 @@ std::string localTime() {
   return fmt::format("{:%Y-%m-%d %H:%M}", fmt::localtime(std::time(nullptr)));
 }
 
+/// Removes what a diagnosis that was killed while it wrote its answer has left: NAME.xxxx.tmp (FileReplacement).
+void removeHalfWritten(const std::filesystem::path& folder) {
+  const auto isOfAnswer = [](const std::filesystem::path& file) {
+    const std::string name = file.filename().string();
+    const auto begins = [&](const char* answer) { return name.starts_with(std::string(answer) + "."); };
+    return file.extension() == ".tmp" &&
+           (std::ranges::any_of(files_of_all_answers, begins) || std::ranges::any_of(files_of_some_answers, begins));
+  };
+  std::vector<std::filesystem::path> found;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (isOfAnswer(entry.path())) found.push_back(entry.path());
+  for (const auto& file : found) std::filesystem::remove(file);
+}
+
 void writeAll(const Diagnosis& diagnosis, const std::filesystem::path& folder, const DiagnoseArguments& arguments,
               const std::vector<ActiveEffect>& effects_of_user, const RecordingInfo& plant, const std::string& command_line) {
+  removeHalfWritten(folder);
   FilesTogether files;
   // Includes the fixed effects, so that the file describes the whole machine.
   const auto addEffects = [&](const char* file, const std::vector<ActiveEffect>& found) {

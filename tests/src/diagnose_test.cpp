@@ -107,9 +107,13 @@ TEST_F(DiagnoseCommand, WhatIsReadIsNotWrittenOver) {
 
 TEST_F(DiagnoseCommand, TheProposedScheduleCanBeReplayed) {
   recordPayload();
+  fs::create_directories(folder_ / "out");
+  const fs::path half_written = folder_ / "out" / "report.html.0123456789abcdef.tmp";
+  std::ofstream(half_written) << "of a diagnosis that was killed";
   const ProgramResult result = diagnose(
       {"plant1.csv", "plant2.csv", "--candidates", "payload,force_gain", "--ignore-columns", "force_0_N,pressure_0", "--out", "out"});
   ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_FALSE(fs::exists(half_written));
   EXPECT_TRUE(contains(result.out, "record next.csv")) << result.out;
   EXPECT_EQ(runProgram({"replay", "out/next.csv", "--quiet", "--out", "predicted.csv"}, folder_).status, 0);
   std::stringstream of_prediction;
