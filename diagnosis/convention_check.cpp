@@ -8,6 +8,7 @@
 
 #include "data_checks.h"
 #include "musclesim/base/error.h"
+#include "musclesim/base/units.h"
 #include "musclesim/robot/actuator.h"
 #include "musclesim/robot/robot.h"
 #include "musclesim/simulation/simulation.h"
@@ -16,13 +17,13 @@ namespace musclesim {
 
 namespace {
 
-constexpr double thousand_low = 300, thousand_high = 3000;
-constexpr double radian_low = 30, radian_high = 170;  ///< 180 / pi = 57.3, beside friction that takes two thirds of the motion
-constexpr double shortest_s = 0.1;                    ///< no machine answers within less
-constexpr double nearly_all = 0.95;                   ///< share of the readings
-constexpr double beyond_stops_deg = 10;               ///< more than soft stops give way
-constexpr double beyond_length = 0.1;                 ///< of the shortest and the longest length: more than an attachment is off
-constexpr double beyond_full_scale = 0.3;             ///< of it: more than pressures overshoot
+constexpr double thousand_low = 300, thousand_high = 3000;  ///< about a thousand
+constexpr double radian_low = 30, radian_high = 170;        ///< 180 / pi = 57.3, beside friction that takes two thirds of the motion
+constexpr double shortest_s = 0.1;                          ///< no machine answers within less
+constexpr double nearly_all = 0.95;                         ///< share of the readings
+constexpr double beyond_stops_deg = 10;                     ///< more than soft stops give way
+constexpr double beyond_length = 0.1;                       ///< of the shortest and the longest length: more than an attachment is off
+constexpr double beyond_full_scale = 0.3;                   ///< of it: more than pressures overshoot
 constexpr double atmosphere_kPa = 101.3, about_atmosphere_kPa = 10;
 constexpr double follows_from = 0.8;  ///< correlation
 constexpr double of_a_wave = 0.97;    ///< correlation: a wave that is late by half a period seems reversed; nothing follows from it
@@ -235,8 +236,8 @@ class ConventionCheck {
       const double above_kPa = *middle * *full_scale_kPa;
       if (std::abs(above_kPa - atmosphere_kPa) > about_atmosphere_kPa) return;
       refuse(recording, fmt::format("{} is {:.0f} kPa above the command, about one atmosphere: it must be the pressure above that of the "
-                                    "atmosphere, not the absolute one (in a mapping: offset = -1.013 for bar, -101.3 for kPa)",
-                                    nameOf(signal), above_kPa));
+                                    "atmosphere, not the absolute one (in a mapping: offset = {:.4g} for bar, {:.4g} for kPa)",
+                                    nameOf(signal), above_kPa, -atmosphere_kPa / kPa_per_bar, -atmosphere_kPa));
     });
   }
 

@@ -205,8 +205,8 @@ void Search::tryExchanged() {
 }
 
 /// The parts of the best explanation that lack one effect, from where it ended: their own fits may have ended elsewhere, for example where
-/// the motion is sensitive, so that the further effect only seems to help. The same for those parts of explanations near the best that were
-/// fitted, too.
+/// the motion is sensitive, so that the further effect only seems to help. Explanations near the best are treated in the same way, if the
+/// part is among the explanations.
 void Search::tryWithoutOne() {
   for (int pass = 0; pass < options_.max_effects && !plant_.interrupted(); ++pass) {
     std::ranges::stable_sort(explanations_, std::greater<>{}, &Explanation::score);

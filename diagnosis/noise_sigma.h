@@ -11,10 +11,10 @@ namespace musclesim {
 ///   repeats      RMS difference of recordings under identical commands / sqrt(2), or of a recording and the one that its sidecar names in
 ///                repeat_of, interpolated to the other's times (interpolation reduces noise; the difference is scaled up for it)
 ///   sidecar      noise_std
-///   quiet rows   1.4826 median |d - median d| / sqrt(6) of the second differences d over the quieter half of the rows, or the same of
-///   fourth
-///                differences, with sqrt(70), if that is less than half of it: then the second ones are motion. If most rows repeat
-///                the value before (a sensor that is read less often than it is logged), only of those that differ from it
+///   quiet rows   1.4826 median |d - median d| / sqrt(6) of the second differences d over the quieter half of the rows. Where the same of
+///                fourth differences, with sqrt(70), is less than half of that, the second ones are motion, and the fourth ones count. If
+///                most rows repeat the value before (a sensor that is read less often than it is logged), only rows count that differ
+///                from it
 ///   range        a thousandth of the range of all values: for fewer than 21 readings per recording, or readings without noise (quiet rows
 ///   give less
 ///                than 1e-5 of the range, finer than a converter of 16 bits: the recording of a simulation)

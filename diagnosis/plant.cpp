@@ -446,8 +446,8 @@ std::optional<Recording> Plant::predictSchedule(const Recording& schedule, const
   return std::move(result->simulated);
 }
 
-/// read() computes an effect of a sensor without memory if no effect with memory acts on the same signal, because that one would act on its
-/// readings; and if the user's own model has neither effects of sensors nor noise.
+/// Which effects need no simulation: those of sensors without memory, on signals on which no effect with memory acts (that one would read
+/// what they return), if the user's own model has neither effects of sensors nor noise. read() computes their readings.
 Plant::Parts Plant::partsOf(const Model& model) const {
   Parts parts{{{}, model.parameters}, {}};
   const auto overlap = [](const std::string& one, const std::string& other) { return one == other || one == "all" || other == "all"; };

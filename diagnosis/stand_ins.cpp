@@ -101,9 +101,9 @@ std::vector<Search::Proposal> Search::standIns(const Explanation& base, std::siz
   return result;
 }
 
-/// The sets in which an effect of the member's place stands for the member, as far as they have not been fitted. All of them are worth a
-/// fit, because linear models can promise ten nats too little. Example: dry friction turns a motion into steps. A dead time of 0.16 s
-/// shifts them; to replace it by one of 0.06 s and a lag is no small change, although both fit nearly the same readings.
+/// Replaces the member by each effect of its place, and returns the sets that have not been fitted yet. All of them are worth a fit,
+/// because linear models can promise ten nats too little. Example: dry friction turns a motion into steps. A dead time of 0.16 s shifts
+/// them; to replace it by one of 0.06 s and a lag is no small change, although both fit nearly the same readings.
 std::vector<Search::Proposal> Search::allStandIns(const Explanation& base, std::size_t member, const std::vector<Sensitivity>& beside_all) {
   const std::string place = causes_.hypotheses[base.members[member]].place();
   Explanation rest = causes_.without(base, member);
