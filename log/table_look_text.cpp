@@ -4,6 +4,8 @@
 #include <cmath>
 #include <ctime>
 #include <filesystem>
+#include <set>
+#include <utility>
 
 #include "matlab.h"
 #include "musclesim/base/text.h"
@@ -134,19 +136,37 @@ std::string clockLine(const TableLook& look) {
   return fmt::format("time_{} = {}   # {}", clock.unit, is_plain ? from : "{ from = " + from + members + " }", describe(clock));
 }
 
-/// Columns of recordings for units, every name once.
+/// Whether a word of the name says that the values were asked for, not measured: "p_set_1", "pressureCmd", "Soll_bar".
+bool isCalledCommand(const std::string& name) {
+  static const std::set<std::string> words = {"set",    "setpoint", "sp",      "cmd",  "command",  "commanded", "ref",     "reference",
+                                              "target", "des",      "desired", "soll", "sollwert", "demand",    "demanded"};
+  std::string word;
+  bool was_capital = false;
+  for (const char c : name + "_") {
+    const bool is_capital = c >= 'A' && c <= 'Z', is_letter = is_capital || (c >= 'a' && c <= 'z');
+    if ((!is_letter || (is_capital && !was_capital)) && words.contains(std::exchange(word, ""))) return true;
+    if (is_letter) word += static_cast<char>(is_capital ? c - 'A' + 'a' : c);
+    was_capital = is_capital;
+  }
+  return false;
+}
+
+/// Columns of recordings for names and units, every name once.
 class Suggestions {
  public:
   std::string next(const LookedColumn& column) {
     const std::string& unit = column.unit;
     const auto is_one_of = [&](std::initializer_list<const char*> units) { return std::ranges::find(units, unit) != units.end(); };
-    if (is_one_of({"kPa", "bar", "MPa", "Pa", "hPa", "mbar", "psi"})) return fmt::format("pressure_{}_{}", pressures_++, unit);
-    if (unit == "V") return fmt::format("command_{}_V", commands_++);
+    const bool is_pressure = is_one_of({"kPa", "bar", "MPa", "Pa", "hPa", "mbar", "psi"});
+    if (unit == "V" || (is_pressure && isCalledCommand(column.name))) return fmt::format("command_{}_{}", commands_++, unit);
+    if (is_pressure) return fmt::format("pressure_{}_{}", pressures_++, unit);
     if (is_one_of({"mm", "cm", "m", "um", "inch"})) return fmt::format("length_{}_{}", lengths_++, unit);
     if (is_one_of({"N", "mN", "kN", "kgf", "lbf"})) return fmt::format("force_{}_{}", forces_++, unit);
     if (!is_one_of({"deg", "rad"})) return "...";
     return fmt::format("angle_{}_{}", angles_++ == 0 ? "elbow" : fmt::format("joint{}", angles_), unit);
   }
+
+  bool haveCommands() const { return commands_ > 0; }
 
  private:
   int pressures_ = 0, commands_ = 0, lengths_ = 0, forces_ = 0, angles_ = 0;
@@ -188,17 +208,20 @@ std::string mappingText(const TableLook& look) {
   text += "pressure_full_scale_kPa = 600        # the pressure that counts as 1\n";
   if (!isMatlabFile(look.file)) text += formatMembers(look.format);
   text += "\n[columns]                            # column of the recording = column of the table\n" + clockLine(look) + "\n";
-  text += "# command_0_bar = \"...\"              # needed: one command for each muscle; { value = 3 } for a constant one\n";
   Suggestions suggestions;
+  std::string columns;
   for (std::size_t i = 0; i < look.columns.size(); ++i) {
     if (look.clock && look.clock->column == i) continue;
     const LookedColumn& column = look.columns[i];
     const std::string from = reference(look, i);
     const std::string absolute = looksAbsolute(column) ? ", ambient_kPa = 101.325" : "";
     const bool is_plain = column.is_named && absolute.empty();
-    text += fmt::format("# {} = {}   # column {}: {}\n", suggestions.next(column), is_plain ? from : "{ from = " + from + absolute + " }",
-                        i + 1, describe(column));
+    columns += fmt::format("# {} = {}   # column {}: {}\n", suggestions.next(column),
+                           is_plain ? from : "{ from = " + from + absolute + " }", i + 1, describe(column));
   }
+  if (!suggestions.haveCommands())
+    text += "# command_0_bar = \"...\"              # needed: one command for each muscle; { value = 3 } for a constant one\n";
+  text += columns;
   text +=
       "\n# [rows]\n# step_s = 0.01                      # even rows: straight lines between readings, commands held\n"
       "# before_s = 1.0                     # before the first row the machine rested ...\n"

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "musclesim/base/file.h"
 #include "musclesim/log/recording.h"
 #include "src/program.h"
 #include "support/support.h"
@@ -95,6 +96,17 @@ TEST_F(ImportCommand, LooksAtATableAndBeginsAMapping) {
   EXPECT_EQ(readRecording((folder_ / "out.csv").string()).time_s, (std::vector<double>{0, 0.01, 0.02}));
   EXPECT_EQ(runProgram({"import", "--look", "logger.txt", "-o", "begun.toml"}, folder_).status, 2) << "a mapping is never overwritten";
   EXPECT_EQ(runProgram({"import", "logger.txt", "begun.toml"}, folder_).status, 2);
+}
+
+TEST_F(ImportCommand, RecognisesCommandsByTheirNames) {
+  std::ofstream(folder_ / "logger.txt")
+      << "t_s;Soll_bar;Ist_bar;pSet2_kPa;offset_kPa;SP (psi)\n0;0;0;2;3;4\n0,01;3;1;2;3;4\n0,02;3;2;2;3;4\n";
+  ASSERT_EQ(runProgram({"import", "--look", "logger.txt", "-o", "begun.toml"}, folder_).status, 0);
+  const std::string mapping = readTextFile((folder_ / "begun.toml").string(), 1 << 20);
+  for (const char* line : {"# command_0_bar = \"Soll_bar\" ", "# pressure_0_bar = \"Ist_bar\" ", "# command_1_kPa = \"pSet2_kPa\" ",
+                           "# pressure_1_kPa = \"offset_kPa\" ", "# command_2_psi = \"SP (psi)\" "})
+    EXPECT_TRUE(contains(mapping, line)) << line << mapping;
+  EXPECT_FALSE(contains(mapping, "needed: one command")) << mapping;
 }
 
 TEST_F(ImportCommand, EndsWithStatus3ForABadTableAndWritesNothing) {
