@@ -215,7 +215,7 @@ void Search::tryWithoutOne() {
     for (const Explanation& whole : explanations_)
       for (std::size_t m = 0; m < whole.members.size() && whole.members.size() > 1 && whole.score >= best.score - near_best; ++m) {
         Explanation part = causes_.without(whole, m);
-        if (whole.members == best.members || sameAs(part) != explanations_.end()) smaller.push_back(std::move(part));
+        if (whole.members == best.members || sameAmong(explanations_, part) != explanations_.end()) smaller.push_back(std::move(part));
       }
     keepIfBetter(std::move(smaller));
     if (std::ranges::max_element(explanations_, {}, &Explanation::score)->members == best.members) return;
@@ -227,12 +227,6 @@ void Search::tryEarlier() {
   if (!options_.earlier.empty()) keepIfBetter({earlierFinding()});
 }
 
-/// The explanation by the same effects; the end if there is none.
-std::vector<Explanation>::iterator Search::sameAs(const Explanation& one) {
-  return std::ranges::find_if(explanations_,
-                              [&](const Explanation& other) { return causes_.labelsOf(other.members) == causes_.labelsOf(one.members); });
-}
-
 /// Fits on the explanations that are better, as they are, than the same sets' where they stand, and puts them in the place of those.
 void Search::keepIfBetter(std::vector<Explanation> ones) {
   fitAll(ones, [this](Explanation& one) {
@@ -240,7 +234,7 @@ void Search::keepIfBetter(std::vector<Explanation> ones) {
     if (one.residual.size() == fit_.size()) one.score = evidence().score(one);
   });
   for (Explanation& one : ones) {
-    const auto same = sameAs(one);
+    const auto same = sameAmong(explanations_, one);
     if (same != explanations_.end() && same->score >= one.score) continue;
     fitFinely(one);
     if (one.residual.size() != fit_.size()) continue;

@@ -36,9 +36,8 @@ Search::Search(const Plant& plant, const DiagnosisOptions& options, OnSimulation
 /// Whether the set was fitted and did not end far from what is promised now: a fit that began elsewhere may have ended in a local minimum.
 bool Search::isKnown(const Proposal& proposal) const {
   constexpr double far = 3;  // nats; linear estimates are optimistic
-  const std::set<std::string> labels = causes_.labelsOf(proposal.start.members);
-  return std::ranges::any_of(
-      pool_, [&](const Explanation& known) { return known.score > -proposal.cost - far && causes_.labelsOf(known.members) == labels; });
+  const auto known = sameAmong(pool_, proposal.start);
+  return known != pool_.end() && known->score > -proposal.cost - far;
 }
 
 bool Search::fitsBeside(std::size_t hypothesis, const std::vector<std::size_t>& members) const {
@@ -181,8 +180,7 @@ void Search::fitOnScreening(std::vector<Proposal> proposals) {
     Explanation& fitted = proposal.start;
     if (fitted.residual.size() != screening_.size()) continue;
     fitted.jacobian.resize(0, 0);
-    const std::set<std::string> labels = causes_.labelsOf(fitted.members);
-    const auto same = std::ranges::find_if(pool_, [&](const Explanation& other) { return causes_.labelsOf(other.members) == labels; });
+    const auto same = sameAmong(pool_, fitted);
     if (same == pool_.end())
       pool_.push_back(std::move(fitted));
     else if (fitted.score > same->score)

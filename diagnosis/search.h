@@ -119,6 +119,12 @@ class Search {
   std::vector<Sensitivity> changesBeside(const Explanation& base, const std::vector<std::size_t>& indices) const;
   Proposal proposed(const Surroundings& around, const std::vector<std::size_t>& kept, const std::vector<std::size_t>& added) const;
 
+  /// The explanation by the same effects on the same components, in any variant, among others; their end if there is none.
+  auto sameAmong(auto& others, const Explanation& one) const {
+    const std::set<std::string> labels = causes_.labelsOf(one.members);
+    return std::ranges::find_if(others, [&](const Explanation& other) { return causes_.labelsOf(other.members) == labels; });
+  }
+
   // search.cpp
   bool isKnown(const Proposal& proposal) const;
   bool fitsBeside(std::size_t hypothesis, const std::vector<std::size_t>& members) const;
@@ -171,7 +177,6 @@ class Search {
   void tryExchanged();
   void tryWithoutOne();
   void tryEarlier();
-  std::vector<Explanation>::iterator sameAs(const Explanation& one);
   void keepIfBetter(std::vector<Explanation> ones);
   void polish();
   void weigh();

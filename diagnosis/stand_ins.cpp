@@ -110,10 +110,7 @@ std::vector<Search::Proposal> Search::allStandIns(const Explanation& base, std::
   if (rest.members.empty() || !predictResidual(rest)) return {};  // single effects have all been fitted
   const Surroundings around = surroundingsOf(rest, {0, variant_count, &beside_all, place});
   std::vector<Proposal> result = additionsAt(place, around, causes_.hypotheses.size());
-  std::erase_if(result, [&](const Proposal& proposal) {
-    return std::ranges::find(pool_, causes_.labelsOf(proposal.start.members),
-                             [&](const Explanation& known) { return causes_.labelsOf(known.members); }) != pool_.end();
-  });
+  std::erase_if(result, [&](const Proposal& proposal) { return sameAmong(pool_, proposal.start) != pool_.end(); });
   return result;
 }
 
