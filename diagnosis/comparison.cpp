@@ -341,7 +341,7 @@ double Comparison::scale() const {
 
 Gap Comparison::gap(const Eigen::VectorXd& residual) const {
   struct Sum {
-    double squares = 0;
+    double squares = 0, readings = 0, reading_squares = 0;
     std::size_t count = 0;
   };
   std::map<int, Sum> sums;
@@ -350,15 +350,40 @@ Gap Comparison::gap(const Eigen::VectorXd& residual) const {
     Sum& sum = sums[block.signal];
     sum.squares += meanSquare(block, residual) * static_cast<double>(block.rows.size());
     sum.count += block.rows.size();
+    const auto readings = measured_.segment(block.first, block.count());
+    sum.readings += readings.sum();
+    sum.reading_squares += readings.squaredNorm();
   }
   Gap gap;
   for (const auto& [signal, sum] : sums) {
     const ComparedSignal& compared = plant_.signals()[static_cast<std::size_t>(signal)];
-    const double mean_square = sum.squares / static_cast<double>(sum.count), sigma = compared.sigma.value;
-    gap.per_signal[compared.name] = {std::sqrt(mean_square), sigma};
+    const auto count = static_cast<double>(sum.count);
+    const double mean_square = sum.squares / count, sigma = compared.sigma.value, mean = sum.readings / count;
+    gap.per_signal[compared.name] = {std::sqrt(mean_square), sigma, std::sqrt(std::max(0.0, sum.reading_squares / count - mean * mean))};
     gap.normalised += std::max(0.0, mean_square - sigma * sigma) / (sigma * sigma) / static_cast<double>(sums.size());
   }
   return gap;
+}
+
+namespace {
+
+bool standsOut(const SignalGap& gap, const ComparedSignal& signal) {
+  return gap.rmse >= (signal.sigma.isEstimated() ? out_of_estimated_noise : out_of_noise) * gap.noise_sigma;
+}
+
+}  // namespace
+
+SmallGap largestBesideMotion(const Comparison& comparison, const Eigen::VectorXd& residual) {
+  SmallGap largest;
+  const Gap gap = comparison.gap(residual);
+  for (const ComparedSignal& signal : comparison.plant().signals()) {
+    const auto found = gap.per_signal.find(signal.name);
+    if (found == gap.per_signal.end() || !standsOut(found->second, signal)) continue;
+    const auto& [rmse, sigma, motion] = found->second;
+    const double percent = 100 * std::sqrt(rmse * rmse - sigma * sigma) / motion;
+    if (percent > largest.percent_of_motion) largest = {signal.name, percent};
+  }
+  return largest;
 }
 
 bool isWithinNoise(const Comparison& comparison, const Eigen::VectorXd& residual) {
@@ -368,8 +393,7 @@ bool isWithinNoise(const Comparison& comparison, const Eigen::VectorXd& residual
   const auto& signals = comparison.plant().signals();
   const bool all = std::ranges::all_of(signals, [&](const ComparedSignal& signal) {
     const auto found = gap.per_signal.find(signal.name);
-    return found == gap.per_signal.end() ||
-           found->second.rmse < (signal.sigma.isEstimated() ? out_of_estimated_noise : out_of_noise) * found->second.noise_sigma;
+    return found == gap.per_signal.end() || !standsOut(found->second, signal);
   });
   return all && std::ranges::all_of(comparison.blocks(), [&](const Comparison::Block& block) {
            const bool is_estimated = signals[static_cast<std::size_t>(block.signal)].sigma.isEstimated();

@@ -144,4 +144,7 @@ class Comparison {
 /// each single segment of 200 rows or more below 1.3 or 1.5 sigmas.
 bool isWithinNoise(const Comparison& comparison, const Eigen::VectorXd& residual);
 
+/// The signal that stands out of its noise by most beside its motion; 0 percent if none does.
+SmallGap largestBesideMotion(const Comparison& comparison, const Eigen::VectorXd& residual);
+
 }  // namespace musclesim

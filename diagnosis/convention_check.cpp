@@ -117,6 +117,7 @@ class ConventionCheck {
     if (!followed.empty() && reversed.empty()) requireOrder("pressure_", fmt::format(", while {} as the commands say", moves(followed)));
     if (commands_are_right) {
       const std::string why = right_pressures.empty() ? "" : ", although the pressures follow the commands";
+      requireOrder("angle_", why);
       // The lengths of two antagonists are each other's opposite.
       if (std::ranges::none_of(reversed, isAngle))
         for (const char* kind : {"length_", "force_"}) requireOrder(kind, why);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <map>
 #include <mutex>
 #include <ranges>
@@ -15,6 +16,7 @@
 #include "fault_isolation.h"
 #include "listing.h"
 #include "musclesim/diagnosis/diagnosis.h"
+#include "musclesim/robot/robot_file.h"
 #include "next_experiment.h"
 #include "plant.h"
 #include "schedule.h"
@@ -31,7 +33,8 @@ std::string modelOptions(const Plant& plant, const std::optional<std::string>& i
   const auto isIn = [](const auto& numbers, const std::string& name) {
     return std::ranges::any_of(numbers, [&](const auto& number) { return number.name == name; });
   };
-  std::string options = "--robot " + plant.robot();
+  const bool is_file = isRobotFile(plant.robot());
+  std::string options = "--robot " + (is_file ? std::filesystem::absolute(plant.robot()).lexically_normal().string() : plant.robot());
   if (!plant.hasHand()) options += " --controller hold";
   if (const PhysicsKind kind = plant.model().physics().kind; kind != PhysicsKind::si) options += " --physics " + nameOf(kind);
   if (initial_state) options += " --initial-state " + *initial_state;
@@ -151,13 +154,16 @@ class Run {
     held_out_.setGap(before_residual_);
     diagnosis_.before = diagnosis_.after = held_out_.gap(before_residual_);
     const Eigen::VectorXd residual = all.measured() - predicted;
-    const bool small = isWithinNoise(all, residual);
+    const SmallGap largest = largestBesideMotion(all, residual);
+    const bool is_noise = isWithinNoise(all, residual), small = is_noise || largest.percent_of_motion < options_.smallest_gap_percent;
     if (!small && isWithinNoise(held_out_, before_residual_))
       diagnosis_.notes.push_back(
           fmt::format("there is no gap in {}: no cause can be confirmed there; put a recording that shows the gap last",
                       plant_.recordings().size() > 1 ? plant_.recordings().back().file : diagnosis_.held_out));
     diagnosis_.verdict = small ? (commandsMove(plant_.recordings()) ? Verdict::no_gap : Verdict::not_excited) : Verdict::unexplained;
-    if (diagnosis_.verdict == Verdict::no_gap) diagnosis_.explanations.push_back({{}, 1});
+    if (diagnosis_.verdict != Verdict::no_gap) return;
+    diagnosis_.explanations.push_back({{}, 1});
+    if (!is_noise) diagnosis_.small_gap = largest;
   }
 
   /// Runs for every verdict, since effects that the recordings could not have shown may be present even without a gap.
@@ -207,6 +213,7 @@ class Run {
     if (diagnosis_.before.normalised > 0) diagnosis_.unexplained_percent = 100 * diagnosis_.after.normalised / diagnosis_.before.normalised;
     if (before_residual_.size()) listHeldOut(search_, heldOut(), offer_.after, diagnosis_);
     diagnosis_.drawing = plant_.drawing();
+    if (plant_.hasOwnSubsteps()) diagnosis_.substeps = plant_.substeps();
     const auto& given = options_.model.initial_state;
     diagnosis_.model_options = modelOptions(plant_, given ? given : plant_.recordings().front().info.initial_state, diagnosis_);
   }
@@ -251,6 +258,10 @@ std::string nameOf(Verdict verdict) {
 }
 
 Diagnosis diagnose(std::vector<Recording> recordings, const DiagnosisOptions& options) {
+  if (options.max_effects < 1 || options.max_effects > most_effects)
+    throw BadParameter("max_effects", std::to_string(options.max_effects), fmt::format("lie in 1..{}", most_effects));
+  if (!(options.smallest_gap_percent >= 0))
+    throw BadParameter("smallest_gap_percent", fmt::format("{:g}", options.smallest_gap_percent), "be 0 or more");
   if (options.tune.empty()) return Run(std::move(recordings), options).diagnose();
   const auto start = std::chrono::steady_clock::now();
   DiagnosisOptions with_tuned = options;

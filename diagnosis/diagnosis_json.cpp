@@ -21,7 +21,8 @@ Json toJson(double value) {
 
 Json toJson(const Gap& gap) {
   Json signals = Json::object();
-  for (const auto& [name, signal] : gap.per_signal) signals[name] = {{"rmse", signal.rmse}, {"noise_floor", signal.noise_sigma}};
+  for (const auto& [name, signal] : gap.per_signal)
+    signals[name] = {{"rmse", signal.rmse}, {"noise_floor", signal.noise_sigma}, {"motion", signal.motion}};
   return {{"normalised", gap.normalised}, {"per_signal", signals}};
 }
 
@@ -69,6 +70,7 @@ Json gapJson(const Diagnosis& d) {
                {"nominal_refit_shrink_percent", d.nominal_refit_percent},
                {"sham_shrink_percent", d.negative_control_percent}};
   addInterval(json, d.reduction_low_percent, d.reduction_high_percent);
+  if (d.small_gap) json["small"] = {{"signal", d.small_gap->signal}, {"percent_of_motion", d.small_gap->percent_of_motion}};
   return json;
 }
 
@@ -145,6 +147,7 @@ std::string diagnosisJson(const Diagnosis& d, const std::string& schedule_file) 
   if (d.remainder.in_sigmas > 0) json["remainder"] = toJson(d.remainder);
   if (!d.numbers.empty()) json["numbers"] = listOf(d.numbers);
   if (!d.tuned.empty()) json["tuned"] = listOf(d.tuned);
+  if (d.substeps > 0) json["substeps"] = d.substeps;
   json["unexplained_percent"] = d.unexplained_percent;
   json["not_excited"] = d.not_excited;
   if (!d.next_experiment.commands.empty())

@@ -6,23 +6,28 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <nlohmann/json.hpp>
 
+#include "../base/parallel.h"
 #include "../base/short_names.h"
 #include "../effect/components.h"
 #include "data_checks.h"
 #include "drawing.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/hash.h"
+#include "musclesim/robot/force_law.h"
 
 namespace musclesim {
 
 namespace {
 
 constexpr int fewest_to_coarsen = 8;  ///< with fewer internal steps a simulation is cheap and cannot be coarser
+constexpr int most_refinement = 8;    ///< internal steps, over those of a replay
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 /// Parameters of the nominal refit: friction within the muscles and the curvature of Eq. 1.
 constexpr const char* hinge_friction = "muscle.hinge_friction_Nm";
-constexpr const char* nominal_names[] = {"muscle.slider_friction_N", hinge_friction, "force_law.b"};
+constexpr const char* braun_curvature = "force_law.b";
+constexpr const char* nominal_names[] = {"muscle.slider_friction_N", hinge_friction, braun_curvature};
 
 /// Whether an entry of "varies" means this member of robot_parameters: the robot's name before it is optional.
 bool means(const std::string& listed, const std::string& parameter) {
@@ -105,6 +110,11 @@ int ratioOf(Fidelity fidelity) {
   return 1 << static_cast<int>(fidelity);
 }
 
+/// Whether a sidecar says with how many internal steps this program simulated the recording.
+bool isSimulated(const Recording& recording) {
+  return nlohmann::json::parse(recording.info.extra_json, nullptr, false).contains("substeps");
+}
+
 bool hasNumbers(const Signal& signal) {
   return std::any_of(signal.values.begin(), signal.values.end(), [](double value) { return std::isfinite(value); });
 }
@@ -126,14 +136,65 @@ Plant::Plant(std::vector<Recording> recordings, const DiagnosisOptions& options,
   findNumbers(given);
   for (Eigen::Index i = 0; i < numberCount(); ++i)
     if (numbers_[static_cast<std::size_t>(i)].is_tuned) key_of_tuned_ += fmt::format("{:a},", numberAt(i, numbers_in_force_[i]));
-  const bool has_hinges =
-      std::ranges::any_of(reference_->world().actuators(), [](const auto& actuator) { return !actuator->hinges().empty(); });
-  for (const Parameter& parameter : reference_->parameters().declared())
-    if ((std::ranges::find(nominal_names, parameter.name) != std::end(nominal_names) && (has_hinges || parameter.name != hinge_friction)) ||
-        std::ranges::find(options.tune, parameter.name) != options.tune.end())
-      nominal_.emplace_back(parameter.name, std::get<double>(parameter.value));
+  findNominalParameters();
   compareSignals();
   for (const auto* part : {&split_.fit, &split_.held_out}) requireNumbers(*part);
+  chooseSubsteps();
+}
+
+/// Machines have no internal steps: where these are few, as with massless muscles, twice as many are taken until the error that is left,
+/// twice what doubling changes, is below the noise of every signal. Recordings of this program are replayed in the steps they were made in.
+void Plant::chooseSubsteps() {
+  constexpr double bearable_sigmas = 0.5;
+  substeps_ = reference_->substeps();
+  if (options_.model.substeps > 0 || substeps_ >= fewest_to_coarsen || std::ranges::any_of(recordings_, isSimulated)) return;
+  const auto predicted = [this] {
+    std::vector<Prediction> all(recordings_.size());
+    parallelFor(static_cast<int>(all.size()), jobCount(), [&](int i) { all[static_cast<std::size_t>(i)] = predict(i, Model{}); });
+    return all;
+  };
+  std::vector<Prediction> usual = predicted();
+  for (const int most = most_refinement * substeps_; 2 * substeps_ <= most;) {
+    substeps_ *= 2;
+    std::vector<Prediction> finer = predicted();
+    if (largestChangeInSigmas(usual, finer) < bearable_sigmas) {
+      substeps_ /= 2;
+      break;
+    }
+    usual = std::move(finer);
+  }
+}
+
+/// The largest RMS difference of any signal of any recording between two simulations of all, over the signal's noise sigma.
+double Plant::largestChangeInSigmas(const std::vector<Prediction>& one, const std::vector<Prediction>& other) const {
+  double largest = 0;
+  for (std::size_t r = 0; r < recordings_.size(); ++r)
+    for (std::size_t s = 0; s < signals_.size(); ++s) {
+      double sum = 0;
+      int count = 0;
+      for (std::size_t row = 0; row < measured_[r][s].size(); ++row) {
+        const double change = one[r].values[s][row] - other[r].values[s][row];
+        if (!std::isfinite(measured_[r][s][row]) || !std::isfinite(change)) continue;
+        sum += change * change;
+        ++count;
+      }
+      if (count > 0) largest = std::max(largest, std::sqrt(sum / count) / signals_[s].sigma.value);
+    }
+  return largest;
+}
+
+void Plant::findNominalParameters() {
+  const auto any = [&](const auto& has) { return std::ranges::any_of(reference_->world().actuators(), has); };
+  const bool has_hinges = any([](const auto& actuator) { return !actuator->hinges().empty(); });
+  const bool obeys_eq_1 = any([](const auto& actuator) { return dynamic_cast<const BraunForceLaw*>(&actuator->forceLaw()) != nullptr; });
+  const auto acts = [&](const std::string& name) {
+    return name == hinge_friction    ? has_hinges
+           : name == braun_curvature ? obeys_eq_1
+                                     : std::ranges::find(nominal_names, name) != std::end(nominal_names);
+  };
+  for (const Parameter& parameter : reference_->parameters().declared())
+    if (acts(parameter.name) || std::ranges::find(options_.tune, parameter.name) != options_.tune.end())
+      nominal_.emplace_back(parameter.name, std::get<double>(parameter.value));
 }
 
 /// Throws BadFile unless a part of the recordings has enough numbers of at least one signal.
@@ -194,8 +255,7 @@ void Plant::compareSignals() {
     }
   }
   for (const Recording& recording : recordings_)
-    for (const std::string& name : unknownSignals(recording, reference_->robot().signalNames()))
-      notes_.push_back(fmt::format("{}: {} has no {}; it is not compared", recording.file, robot(), name));
+    for (std::string& note : unknownSignalNotes(recording, reference_->robot())) notes_.push_back(std::move(note));
   if (signals_.empty())
     throw BadFile(recordings_.front().file,
                   "it has no signal that can be compared: one that changes and that the model also has, for example length_0_mm");
@@ -341,7 +401,12 @@ Eigen::MatrixX3d Plant::nominalHandMm(int recording) const {
 
 /// The fidelity itself if coarser steps save time on this robot, otherwise fine.
 Fidelity Plant::possible(Fidelity fidelity) const {
-  return reference_->substeps() >= fewest_to_coarsen ? fidelity : Fidelity::fine;
+  return substeps_ >= fewest_to_coarsen ? fidelity : Fidelity::fine;
+}
+
+int Plant::substepsOf(Fidelity fidelity) const {
+  const int ratio = ratioOf(possible(fidelity));
+  return (substeps_ + ratio - 1) / ratio;
 }
 
 void Plant::count(double simulated_s) const {
@@ -351,7 +416,7 @@ void Plant::count(double simulated_s) const {
 
 /// What a simulation depends on beside the model that is tried: the recording, its length, the time step, and the tuned numbers.
 std::string Plant::simulationKey(int recording, std::size_t rows, Fidelity fidelity) const {
-  return fmt::format("{} {} {} {}", recording, rows, ratioOf(possible(fidelity)), key_of_tuned_);
+  return fmt::format("{} {} {} {}", recording, rows, substepsOf(fidelity), key_of_tuned_);
 }
 
 /// Whether the pressures under a model depend on the muscles' lengths.
@@ -406,11 +471,11 @@ std::optional<ReplayResult> Plant::simulated(const Recording& recording, const M
   options.body_moves = focus != Focus::pressures;
   const bool unchanged = model.effects.empty() && model.parameters.empty();
   if (!unchanged) options.interrupted = options_.interrupted;  // a partial report also compares with the unchanged model
-  if (const int ratio = ratioOf(possible(fidelity)); ratio > 1) options.substeps = (reference_->substeps() + ratio - 1) / ratio;
+  if (const int substeps = substepsOf(fidelity); substeps != reference_->substeps()) options.substeps = substeps;
   for (const ActiveEffect& effect : model.effects)
     if (effect.id != held_effect || held == HeldSamples::drawn) options.effects.push_back(effect);
   for (const auto& [name, value] : model.parameters) options.parameters.set(name, value, "diagnosis");
-  if (!model.parameters.empty()) options.most_substeps = most_ratio * reference_->substeps();
+  if (!model.parameters.empty()) options.most_substeps = most_ratio * substeps_;
   try {
     return replayRecording(recording, options);
   } catch (const BadParameter&) {

@@ -127,6 +127,9 @@ class Plant {
 
   /// The model as built, for queries; it is never stepped.
   Simulation& model() const { return *reference_; }
+  /// Internal steps per control step in fine simulations, and whether they are others than a replay takes by itself.
+  int substeps() const { return substeps_; }
+  bool hasOwnSubsteps() const { return options_.model.substeps > 0 || substeps_ != reference_->substeps(); }
   /// The robot as built.
   RobotDrawing drawing() const;
   bool hasHand() const;
@@ -148,7 +151,11 @@ class Plant {
   Parameter numberNamed(const std::string& option, const std::string& name) const;
   std::map<std::string, double> declaredTolerances() const;
   void findNumbers(const std::map<std::string, double>& given);
+  void findNominalParameters();
+  void chooseSubsteps();
+  double largestChangeInSigmas(const std::vector<Prediction>& one, const std::vector<Prediction>& other) const;
   Fidelity possible(Fidelity fidelity) const;
+  int substepsOf(Fidelity fidelity) const;
   std::string simulationKey(int recording, std::size_t rows, Fidelity fidelity) const;
   void count(double simulated_s) const;
   enum class HeldSamples { as_measured, drawn };
@@ -173,6 +180,7 @@ class Plant {
   std::vector<std::string> notes_;
   Split split_;
   std::unique_ptr<Simulation> reference_;  ///< the model as built, never stepped
+  int substeps_ = 1;                       ///< internal steps per control step in fine simulations
   std::vector<std::pair<std::string, double>> nominal_;
   std::vector<UncertainNumber> numbers_;
   Eigen::VectorXd numbers_in_force_;

@@ -30,7 +30,7 @@ RecordingInfo diagnosedModel(const Recording& recording, const ReplayOptions& mo
   return described;
 }
 
-ProposedRecording proposedRecording(const Diagnosis& diagnosis, const RecordingInfo& model) {
+ProposedRecording proposedRecording(const Diagnosis& diagnosis, const RecordingInfo& model, const std::string& sidecar) {
   if (diagnosis.next_experiment.commands.empty()) return {};
   RecordingInfo info;
   info.robot = model.robot;
@@ -40,7 +40,7 @@ ProposedRecording proposedRecording(const Diagnosis& diagnosis, const RecordingI
   info.robot_parameters = model.robot_parameters;
   info.active_effects = model.active_effects;
   info.description = "commands proposed by a diagnosis";
-  return {scheduleText(diagnosis.next_experiment), sidecarText(info, "next.json")};
+  return {scheduleText(diagnosis.next_experiment), sidecarText(info, sidecar)};
 }
 
 }  // namespace musclesim

@@ -70,6 +70,7 @@ std::string headline(const Diagnosis& d) {
 
 /// Where the causes found act, then what the signals say without any cause in mind.
 std::string whereAnswer(const Diagnosis& d) {
+  if (d.small_gap) return "<p>Not looked for.</p>";
   if (d.verdict == Verdict::no_gap || d.verdict == Verdict::not_excited) return "<p>Nowhere: no signal stands out of its noise.</p>";
   const std::string seen = d.where.empty() ? "" : whereSentence(d) + ".";
   if (d.chosen.empty()) return seen.empty() ? "<p>Not known.</p>" : paragraph(seen);
@@ -99,15 +100,15 @@ std::string alternativesSentence(const Diagnosis& d, const Caveats& caveats) {
   if (d.effects.empty() || d.none_of_these > rather_none) return "";
   if (d.ambiguity_sets.size() < 2) return caveats.others;
   if (const std::vector<std::string> shared = sharedEffects(d); !shared.empty())
-    return fmt::format("{} explanations fit these recordings equally well. All hold {}; they differ in what else acts.",
+    return fmt::format("These recordings leave {} explanations possible. All hold {}; they differ in what else acts.",
                        d.ambiguity_sets.size(), effectTitles(shared));
   std::vector<std::string> others;
   const bool is_chosen_first = !d.chosen.empty();
   for (std::size_t i = is_chosen_first ? 1 : 0; i < d.ambiguity_sets.size() && others.size() < told; ++i)
     others.push_back(effectTitles(d.ambiguity_sets[i]));
   const std::size_t more = d.ambiguity_sets.size() - others.size() - (is_chosen_first ? 1 : 0);
-  return capitalised(fmt::format("{}{} would explain these recordings {}.", fmt::join(others, ", or "),
-                                 more ? fmt::format(", or {} more", more) : "", is_chosen_first ? "as well" : "equally well"));
+  return fmt::format("{}: {}{}.", is_chosen_first ? "Less likely, but possible" : "Possible", fmt::join(others, ", or "),
+                     more ? fmt::format(", or {} more", more) : "");
 }
 
 std::string sureAnswer(const Diagnosis& d, const Caveats& caveats) {
@@ -125,7 +126,7 @@ std::string sureAnswer(const Diagnosis& d, const Caveats& caveats) {
                           probabilityWords(together));
   }
   text += paragraph(alternativesSentence(d, caveats));
-  if (d.verdict == Verdict::no_gap || d.verdict == Verdict::not_excited)
+  if (!d.small_gap && (d.verdict == Verdict::no_gap || d.verdict == Verdict::not_excited))
     text +=
         fmt::format("<p>A residual is called noise up to {} times its {}, {} times where the floor was estimated from quiet rows.{}</p>",
                     out_of_noise, term("floor"), out_of_estimated_noise, largestResidual(d));
@@ -135,6 +136,7 @@ std::string sureAnswer(const Diagnosis& d, const Caveats& caveats) {
 }
 
 std::string restAnswer(const Diagnosis& d, const Caveats& caveats) {
+  if (d.small_gap) return paragraph(smallGapSentence(d));
   if (d.verdict == Verdict::no_gap) return "<p>Nothing beyond the noise.</p>";
   if (d.verdict == Verdict::not_excited) return "<p>Nothing beyond the noise, but the recordings hardly move the machine.</p>";
   if (d.verdict == Verdict::effects_found) {
@@ -145,7 +147,8 @@ std::string restAnswer(const Diagnosis& d, const Caveats& caveats) {
            paragraph(elsewhereSentence({d.reduction_percent, d.reduction_low_percent, d.reduction_high_percent}));
   }
   std::string text = fmt::format("<p>All of it, since no cause is believed: the {} is {:.3g} times the {}.{}</p>", term("residual"),
-                                 overNoiseInAll(d.before), term("floor"), escapedXml(largestResidual(d)));
+                                 overNoiseInAll(d.before), term("floor"), escapedXml(largestResidual(d))) +
+                     paragraph(fittedNumbersSentence(d));
   if (d.attempt.effects.empty()) return text;
   return text + fmt::format("<p>The best {}, {}, would leave {}.</p>", term("attempt"), escapedXml(effectTitles(d.attempt.effects)),
                             leftWords(percentLeft(d)));
@@ -155,8 +158,13 @@ std::string foundSteps(const Diagnosis& d, Belief belief) {
   std::string steps = fmt::format("<li>Add {} to the model: {}.</li>", d.chosen.size() > 1 ? "these causes" : "this cause",
                                   command("musclesim replay NEW.csv " + fileOptions(d)));
   if (!d.next_experiment.commands.empty())
-    steps +=
-        "<li>Play and record <code>next.csv</code>, then diagnose again with that recording first: it tells the alternatives apart.</li>";
+    steps += fmt::format(
+        "<li>Play and record <code>next.csv</code>, then diagnose again with that recording first: it tells the "
+        "alternatives apart{}.</li>",
+        d.next_experiment.difference < 1
+            ? fmt::format(" better than other motions, although two of them differ by only {:.1f} times the noise there",
+                          d.next_experiment.difference)
+            : "");
   if (belief == Belief::partly && isRestLeft(d)) {
     steps += fmt::format("<li>Look at the residual of the {} in the curves below for what is left.</li>",
                          d.remainder.signal.empty() ? "signals" : signalTitle(d.remainder.signal));

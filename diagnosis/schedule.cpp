@@ -42,11 +42,11 @@ const std::vector<ScheduleShape>& scheduleShapes() {
       {"steps of two sizes", "small ones, then large ones",
        [](double t, int m) { return sign(m) * (t < 6 ? 0.25 : 1) * (std::fmod(t, 3) < 1.5 ? 1 : -1); }},
       {"co-contraction", "all muscles filled and emptied together, slowly", [](double t, int) { return triangle(t, 6); }},
-      {"vent and hold", "one side emptied for five seconds, then the other",
+      {"vent and hold", "muscles with even numbers emptied for five seconds, then those with odd ones",
        [](double t, int m) { return t < 1   ? 0.0
                                     : t < 6 ? (m % 2 == 0 ? -1.0 : 1.0)
                                             : (m % 2 == 0 ? 1.0 : -1.0); }},
-      {"one muscle at a time", "every second muscle for two seconds, then the others",
+      {"one muscle at a time", "the muscles with even numbers for two seconds, then the others, in turn",
        [](double t, int m) { return static_cast<int>(t / 2) % 2 == m % 2 ? std::sin(std::numbers::pi * t) : 0.0; }},
   };
   return all;

@@ -19,8 +19,8 @@ constexpr std::size_t single_count = 9;                    ///< single effects t
 constexpr std::size_t per_stage_count = 2;                 ///< and at least so many of every stage
 constexpr std::size_t beam_width = 5;                      ///< sets of each size that the linear search keeps
 constexpr std::size_t addition_count = 3, drop_count = 4;  ///< sets that are fitted about one explanation, besides one of each stage
-constexpr std::size_t base_counts[] = {5, 2, 2, 1, 1, 1};  ///< explanations of each size that are extended
-constexpr std::size_t neighbour_count = 30;                ///< effects that are simulated beside an explanation that is extended
+constexpr std::size_t base_counts[most_effects] = {5, 2, 2, 1, 1, 1};  ///< explanations of each size that are extended
+constexpr std::size_t neighbour_count = 30;  ///< effects that are simulated beside an explanation that is extended
 constexpr int screening_rounds = 4;
 
 }  // namespace

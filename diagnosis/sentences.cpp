@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "musclesim/effect/catalogue.h"
@@ -160,10 +159,14 @@ std::string whereSentence(const Diagnosis& d) {
         place.stage, component, percent, next.stage, componentWords(next.component), 100 * next.share, phase);
   }
   const std::vector<std::string> others = othersPossible(d.where);
+  // The signals show the largest part; a cause that was found elsewhere makes another.
+  const bool is_all = std::ranges::all_of(
+      d.chosen, [&](const std::string& label) { return mayBeAt(d.where, nameOf(effectInfo(label.substr(0, label.find('@'))).stage)); });
+  const std::string gap = is_all ? "The gap" : "Most of the gap";
   if (isLocated(d.where) && others.empty())
-    return fmt::format("The gap arises in the {} stage ({}, {} likely){}", place.stage, component, probabilityWords(place.share), phase);
+    return fmt::format("{} arises in the {} stage ({}, {} likely){}", gap, place.stage, component, probabilityWords(place.share), phase);
   if (isLocated(d.where))
-    return fmt::format("The gap arises before the force stage, in command or pressure ({}; its shape favours {}, {} likely){}", component,
+    return fmt::format("{} arises before the force stage, in command or pressure ({}; its shape favours {}, {} likely){}", gap, component,
                        place.stage, probabilityWords(place.share), phase);
   constexpr std::size_t all_others = 4;
   const std::string against = place.is_ruled_out ? ", although the signals contradict it" : "";
@@ -275,13 +278,12 @@ std::string otherwise(const Diagnosis& d) {
   std::vector<std::string> others;
   const auto first = d.alternatives.begin() + 1, end = first + std::min(most_named, d.alternatives.end() - first);
   for (auto other = first; other != end; ++other) others.push_back(explanationWords(*other));
-  others.front().front() = static_cast<char>(std::toupper(static_cast<unsigned char>(others.front().front())));
   const bool pairs = std::ranges::any_of(d.alternatives, [](const std::string& labels) { return labels.find(" + ") != std::string::npos; });
   std::string experiment;
   if (!d.next_experiment.commands.empty()) experiment = "; record the schedule in next.csv to tell " + separatedWords(d);
   const auto more = static_cast<std::size_t>(d.alternatives.end() - end);
-  return fmt::format("{} would explain the gap as well{}{}.", fmt::join(others, pairs ? "; or " : " or "),
-                     more > 0 ? ", and so would " + counted(more, "other explanation") : "", experiment);
+  return fmt::format("Less likely, but possible: {}{}{}.", fmt::join(others, pairs ? "; or " : " or "),
+                     more > 0 ? fmt::format("{}or {}", pairs ? "; " : ", ", counted(more, "other explanation")) : "", experiment);
 }
 
 /// A warning if the motion is so sensitive that the time step changes it by a noticeable share of the gap.
@@ -341,6 +343,17 @@ std::string shape(const Diagnosis& d) {
   return words;
 }
 
+}  // namespace
+
+std::string fittedNumbersSentence(const Diagnosis& d) {
+  constexpr double worth_saying_percent = 5;
+  if (!d.attempt.effects.empty() || d.reduction_percent < worth_saying_percent || fittedNumbersToml(d).empty()) return "";
+  return fmt::format("The numbers of the model alone, fitted within their tolerances (nominal.toml), remove {} of it.",
+                     percentWords(d.reduction_percent));
+}
+
+namespace {
+
 std::vector<std::string> unexplainedSentences(const Diagnosis& d) {
   if (d.partial) return {"There is a gap; the search for its cause was interrupted."};
   const bool is_small = std::ranges::all_of(d.before.per_signal, [](const auto& entry) { return overNoise(entry.second) < out_of_noise; });
@@ -353,7 +366,8 @@ std::vector<std::string> unexplainedSentences(const Diagnosis& d) {
   }
   std::string text = "There is a gap that I cannot explain";
   if (!d.effects.empty()) text += d.effects.front().probability > likely ? notConfirmed(d) : mostProbable(d);
-  std::vector<std::string> sentences = {text + ".", noneWords(d), d.where.empty() ? "" : whereSentence(d) + ".", shape(d)};
+  std::vector<std::string> sentences = {text + ".", noneWords(d), d.where.empty() ? "" : whereSentence(d) + ".", shape(d),
+                                        fittedNumbersSentence(d)};
   if (d.attempt.effects.empty()) return sentences;
   sentences.push_back(
       fmt::format("The best rejected hypothesis, {}, removes {} of the gap on held-out data; attempt.json holds it as a starting point, "
@@ -377,13 +391,23 @@ std::vector<std::string> foundSentences(const Diagnosis& d) {
 
 }  // namespace
 
+std::string smallGapSentence(const Diagnosis& d) {
+  if (!d.small_gap) return "";
+  return fmt::format(
+      "The model is off by {:.2g} % of the motion at most, in {}: more than the noise, but less than what is looked into "
+      "(--smallest-gap-percent).",
+      d.small_gap->percent_of_motion, d.small_gap->signal);
+}
+
 std::vector<std::string> answerSentences(const Diagnosis& d) {
   std::vector<std::string> sentences;
   switch (d.verdict) {
     case Verdict::no_gap:
-      if (d.numbers.empty()) return {"No gap: the recordings agree with the model up to the noise."};
-      sentences = {"No gap that needs an effect: within the tolerances of its numbers the model agrees with the recordings.",
-                   numbersWords(d)};
+      if (d.numbers.empty() && !d.small_gap) return {"No gap: the recordings agree with the model up to the noise."};
+      sentences = {d.numbers.empty()
+                       ? "No gap that matters."
+                       : "No gap that needs an effect: within the tolerances of its numbers the model agrees with the recordings.",
+                   numbersWords(d), smallGapSentence(d)};
       break;
     case Verdict::not_excited:
       return {"I cannot tell: the commands do not change, so the recordings do not show how the plant responds."};

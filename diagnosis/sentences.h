@@ -50,6 +50,10 @@ double overNoise(const SignalGap& gap);
 
 /// "1 number", "2 numbers".
 std::string counted(std::size_t count, const std::string& one, const std::string& several = "");
+/// What the numbers of the model take in where no cause is believed; empty if that is not worth telling.
+std::string fittedNumbersSentence(const Diagnosis& diagnosis);
+/// That the model is off by a SmallGap, and by how much; empty if it is not.
+std::string smallGapSentence(const Diagnosis& diagnosis);
 /// "96.2 %"; "more than 99.9 %" instead of a rounded 100 %.
 std::string percentWords(double percent);
 /// "On another recording of this plant, 94.0 to 97.5 % is expected to be removed (95 % interval)."

@@ -66,7 +66,7 @@ Offer numbersAlone(const Search& search, const HeldOut& held_out) {
   return {search.nothing(), held_out.comparison.measured() - predicted};
 }
 
-/// Reports the gap with fitted numbers; `are_all` says that it is noise, so that the verdict is `no_gap`.
+/// Reports the gap with fitted numbers; `are_all` says that no more than noise or a SmallGap is left, so that the verdict is `no_gap`.
 void acceptNumbers(const Eigen::VectorXd& after, const HeldOut& held_out, bool are_all, Diagnosis& diagnosis) {
   diagnosis.after = held_out.comparison.gap(after);
   diagnosis.reduction_percent = diagnosis.reduction_low_percent = diagnosis.reduction_high_percent = held_out.reductionPercent(after);
@@ -88,7 +88,12 @@ Offer judge(const Search& search, const HeldOut& held_out, const DiagnosisOption
   const double likeliest = search.likeliest().probability, ahead = std::log(likeliest / search.nothing().probability);  // nats
   if (ahead < 0 || (ahead < clearly && likeliest <= named)) {
     Offer numbers = numbersAlone(search, held_out);
-    const bool are_all = numbers.after.size() > 0 && isWithinNoise(held_out.comparison, numbers.after);
+    bool are_all = numbers.after.size() > 0 && isWithinNoise(held_out.comparison, numbers.after);
+    if (numbers.after.size() > 0 && !are_all) {
+      const SmallGap left = largestBesideMotion(held_out.comparison, numbers.after);
+      are_all = left.percent_of_motion < options.smallest_gap_percent;
+      if (are_all) diagnosis.small_gap = left;
+    }
     if (are_all || ahead < 0) {
       if (numbers.after.size() > 0) acceptNumbers(numbers.after, held_out, are_all, diagnosis);
       return numbers;

@@ -16,7 +16,7 @@ ChouHannafordConstants::ChouHannafordConstants(Parameters& p)
       elastic_N(p.number("force_law.elastic_N", 0, "N", -1e6, 1e6, "Chou-Hannaford: C, times s - 1")),
       threshold_N(p.number("force_law.threshold_N", ChouHannafordConstants().threshold_N, "N", -1e6, 1e6, "Chou-Hannaford: D, subtracted")),
       stretch_N(p.number("force_law.stretch_N", ChouHannafordConstants().stretch_N, "N", -1e6, 1e6,
-                         "Chou-Hannaford: E, times exp(beta (s - 1))")),
+                         "Chou-Hannaford: E, times exp(beta (s - 1)); beyond s = 1 the tangent")),
       stretch_exponent(
           p.number("force_law.stretch_exponent", ChouHannafordConstants().stretch_exponent, "", 0, 1e3, "Chou-Hannaford: beta")) {}
 

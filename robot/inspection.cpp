@@ -95,9 +95,11 @@ class Tree {
   }
 
   static void addMuscle(const Actuator& actuator, std::string& out) {
-    out += fmt::format("  {} ({}): {:.4g} mm as built, {:.4g} .. {:.4g} mm\n", actuator.name(),
-                       actuator.line() ? "line" : fmt::format("chain of {} links", actuator.links().size()), actuator.lengthMm(),
-                       actuator.minimumLengthMm(), actuator.maximumLengthMm());
+    out += fmt::format("  {} ({}): {:.4g} mm as built, {:.4g} .. {:.4g} mm; {:.4g} N at full pressure as built, friction {:.4g} N{}\n",
+                       actuator.name(), actuator.line() ? "line" : fmt::format("chain of {} links", actuator.links().size()),
+                       actuator.lengthMm(), actuator.minimumLengthMm(), actuator.maximumLengthMm(),
+                       actuator.calculateForce(1, actuator.lengthMm()), actuator.settings().slider_friction_N,
+                       actuator.line() ? "" : " in each link");
   }
 
   const World& world_;

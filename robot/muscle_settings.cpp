@@ -5,7 +5,8 @@ namespace musclesim {
 MuscleSettings::MuscleSettings(Parameters& p, MuscleModel model)
     : bead_radius_mm(p.number("muscle.bead_radius_mm", 7.5, "mm", 0.1, 100, "radius of a bead; a link holds two")),
       bead_mass_g(p.number("muscle.bead_mass_g", 10, "g", 1e-3, 1e5, "mass of one bead")),
-      slider_friction_N(p.number("muscle.slider_friction_N", 1, "N", 0, 1e3, "dry friction of each link's slider")),
+      slider_friction_N(
+          p.number("muscle.slider_friction_N", 1, "N", 0, 1e3, "dry friction of each link's slider; of a line muscle as a whole")),
       hinge_friction_Nm(p.number("muscle.hinge_friction_Nm", 0.008, "N m", 0, 10, "dry friction of each hinge between links")),
       hinge_limit_deg(p.number("muscle.hinge_limit_deg", 60, "deg", 0, 180, "stops of the hinges at full length")),
       hinge_bounce_ratio(p.number("muscle.hinge_bounce_ratio", 0.2, "", 0, 1, "restitution of the hinges' stops")),

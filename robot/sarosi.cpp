@@ -11,7 +11,7 @@ namespace musclesim {
 SarosiConstants::SarosiConstants(Parameters& p)
     : a1_N(p.number("force_law.a1_N", SarosiConstants().a1_N, "N", -1e6, 1e6, "Sarosi: a1, times p exp(a3 k)")),
       a2_N(p.number("force_law.a2_N", SarosiConstants().a2_N, "N", -1e6, 1e6, "Sarosi: a2, times exp(a3 k)")),
-      a3(p.number("force_law.a3", SarosiConstants().a3, "", -1e3, 1e3, "Sarosi: a3, exponent per contraction k")),
+      a3(p.number("force_law.a3", SarosiConstants().a3, "", -1e3, 1e3, "Sarosi: a3, exponent per contraction k; below k = 0 the tangent")),
       a4_N(p.number("force_law.a4_N", SarosiConstants().a4_N, "N", -1e6, 1e6, "Sarosi: a4, times k p")),
       a5_N(p.number("force_law.a5_N", SarosiConstants().a5_N, "N", -1e6, 1e6, "Sarosi: a5, times p")),
       a6_N(p.number("force_law.a6_N", SarosiConstants().a6_N, "N", -1e6, 1e6, "Sarosi: a6")) {}

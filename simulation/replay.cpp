@@ -106,11 +106,16 @@ class Pulls {
 
 }  // namespace
 
-std::vector<std::string> unknownSignals(const Recording& recording, const std::vector<std::string>& of_robot) {
-  std::vector<std::string> unknown;
-  for (const Signal& signal : recording.signals)
-    if (!isOfTask(signal.name) && std::ranges::find(of_robot, signal.name) == of_robot.end()) unknown.push_back(signal.name);
-  return unknown;
+std::vector<std::string> unknownSignalNotes(const Recording& recording, const Robot& robot) {
+  const std::vector<std::string> names = robot.signalNames();
+  std::vector<std::string> notes;
+  for (const Signal& signal : recording.signals) {
+    if (isOfTask(signal.name) || std::ranges::find(names, signal.name) != names.end()) continue;
+    const std::string nearest = nearestName(signal.name, names);
+    notes.push_back(fmt::format("{}: {} has no {}; it is not compared{}", recording.file, robot.name(), signal.name,
+                                nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest)));
+  }
+  return notes;
 }
 
 RecordingInfo describeModel(Simulation& simulation, const std::string& initial_state) {

@@ -86,7 +86,7 @@ void writeAll(const Diagnosis& diagnosis, const std::filesystem::path& folder, c
   addEffects("effects.json", diagnosis.chosen_effects);
   if (!diagnosis.attempt.effects.empty()) addEffects("attempt.json", diagnosis.attempt.active_effects);
   if (const std::string numbers = fittedNumbersToml(diagnosis); !numbers.empty()) files.add(folder / "nominal.toml", numbers);
-  if (const ProposedRecording next = proposedRecording(diagnosis, plant); !next.csv.empty()) {
+  if (const ProposedRecording next = proposedRecording(diagnosis, plant, (folder / "next.json").string()); !next.csv.empty()) {
     files.add(folder / "next.csv", next.csv);
     files.add(folder / "next.json", next.json);
   }
@@ -137,10 +137,13 @@ void beginOrResume(RecordFile& kept, const std::string& origin, const std::files
   kept.begin(origin);
 }
 
-/// Says how a diagnosis of muscles that are chains of beads could take less time.
-void noteChains(const RecordingInfo& plant, const std::string& recording, const ReplayOptions& options, const ModelOptions& model) {
-  Simulation simulation(simulationOptionsFor(plant, sidecarPath(recording), options));
-  simulation.build(plant.robot);
+/// Says which signals are not compared, and how a diagnosis of muscles that are chains of beads could take less time.
+void noteModel(const RecordingInfo& plant, const std::vector<Recording>& recordings, const ReplayOptions& options,
+               const ModelOptions& model) {
+  Simulation simulation(simulationOptionsFor(plant, sidecarPath(recordings.front().file), options));
+  const Robot& robot = simulation.build(plant.robot);
+  for (const Recording& recording : recordings)
+    for (const std::string& note : unknownSignalNotes(recording, robot)) say(model, note);
   if (std::ranges::any_of(simulation.world().actuators(), [](const auto& actuator) { return !actuator->hinges().empty(); }))
     say(model, "the muscles are chains of beads: as massless straight lines (--muscle line) they take less than a tenth of the time");
 }
@@ -181,6 +184,7 @@ int diagnoseCommand(const ModelOptions& model, const DiagnoseArguments& argument
   options.candidates = arguments.candidates;
   options.exclude = arguments.exclude;
   options.tune = arguments.tune;
+  options.smallest_gap_percent = arguments.smallest_gap_percent;
   options.max_effects = arguments.max_effects;
   options.trust_columns = arguments.trust_columns;
   options.job_count = arguments.jobs;
@@ -189,7 +193,7 @@ int diagnoseCommand(const ModelOptions& model, const DiagnoseArguments& argument
   PhaseProgress progress(model.quiet);
   options.progress = [&](const DiagnosisProgress& now) { progress.show(now.phase, now.done, now.expected); };
   const RecordingInfo plant = diagnosedModel(recordings.front(), options.model);
-  noteChains(plant, arguments.recordings.front(), options.model, model);
+  noteModel(plant, recordings, options.model, model);
   RecordFile kept((folder / kept_file).string());
   beginOrResume(kept, diagnosisOrigin(recordings, plant, model, arguments), folder, model, arguments.resume);
   options.kept = &kept;
@@ -217,7 +221,12 @@ Action addDiagnose(CLI::App& command, ModelOptions& model) {
   addList(command, "--tune", arguments->tune,
           "Fit these unmeasured parameters of the model first, by name, separated by commas; written to nominal.toml");
   command.add_option("--max-effects", arguments->max_effects, "Largest number of effects that act together (default 4)")
-      ->check(CLI::Range(1, 6));
+      ->check(CLI::Range(1, most_effects));
+  command
+      .add_option(
+          "--smallest-gap-percent", arguments->smallest_gap_percent,
+          "A gap below this share of the motion in every signal counts as none (default 1); 0: look into every gap beyond the noise")
+      ->check(CLI::Range(0, 100));
   command.add_option("--fixed-effects", arguments->fixed_effects, "JSON file with effects of the model that are not fitted");
   command.add_flag("--without-active-effects", arguments->without_active_effects,
                    "Compare with the model without the active_effects of the recordings' sidecars: look for them");

@@ -39,7 +39,8 @@ std::string hashOf(const std::optional<std::string>& file) {
 }
 
 nlohmann::json optionsOf(const ModelOptions& model, const DiagnoseArguments& arguments) {
-  nlohmann::json options = {{"--max-effects", arguments.max_effects},
+  nlohmann::json options = {{"--smallest-gap-percent", arguments.smallest_gap_percent},
+                            {"--max-effects", arguments.max_effects},
                             {"--candidates", fmt::format("{}", fmt::join(arguments.candidates, ","))},
                             {"--exclude", fmt::format("{}", fmt::join(arguments.exclude, ","))},
                             {"--tune", fmt::format("{}", fmt::join(arguments.tune, ","))},

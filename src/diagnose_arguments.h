@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "musclesim/diagnosis/diagnosis.h"
 #include "musclesim/log/recording.h"
 #include "options.h"
 
@@ -14,6 +15,7 @@ struct DiagnoseArguments {
   std::vector<std::string> recordings, candidates, exclude, ignore_columns, tune;
   std::optional<std::string> out, json, fixed_effects;
   int jobs = 0, max_effects = 4;
+  double smallest_gap_percent = DiagnosisOptions().smallest_gap_percent;
   bool without_active_effects = false, resume = false, trust_columns = false;
 };
 

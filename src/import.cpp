@@ -15,6 +15,7 @@
 #include "musclesim/base/text.h"
 #include "musclesim/robot/robot_file.h"
 #include "musclesim/robot/robot_registry.h"
+#include "musclesim/simulation/replay.h"
 #include "output_folder.h"
 
 namespace musclesim::command_line {
@@ -48,12 +49,23 @@ int lookCommand(const ImportArguments& arguments) {
   return done;
 }
 
-/// Tells the user if nothing with this name can replay the recording yet.
-void noteUnknownRobot(const std::string& robot) {
-  if (isRobotFile(robot)) {
-    if (!std::filesystem::exists(robot)) tell(fmt::format("there is no robot file {}: write it before you replay the recording", robot));
-  } else if (const auto robots = registeredRobots(); std::ranges::none_of(robots, [&](const auto& one) { return one.first == robot; })) {
+/// Tells the user what will keep the recording from being replayed or compared: a robot that is not there yet or that refuses the
+/// parameters, and signals that it does not have.
+void noteRobot(const Recording& recording, const std::string& mapping) {
+  const std::string& robot = recording.info.robot;
+  if (isRobotFile(robot) && !std::filesystem::exists(robot)) {
+    tell(fmt::format("there is no robot file {}: write it before you replay the recording", robot));
+  } else if (!isRobotFile(robot) && std::ranges::none_of(registeredRobots(), [&](const auto& one) { return one.first == robot; })) {
     tell(fmt::format("this program has no robot {}: only a program that registers it can replay the recording", robot));
+  } else {
+    try {
+      Simulation simulation(simulationOptionsFor(recording.info, mapping, {}));
+      const Robot& built = simulation.build(robot);
+      simulation.parameters().requireAllKnown();
+      for (const std::string& note : unknownSignalNotes(recording, built)) tell(note);
+    } catch (const Error& problem) {
+      tell(fmt::format("the recording cannot be replayed yet: {}", problem.what()));
+    }
   }
 }
 
@@ -71,7 +83,7 @@ int importCommand(const ImportArguments& arguments) {
   const Recording recording = importTable(arguments.table, mapping);
   if (!arguments.quiet)
     for (const auto& note : recording.notes) tell(note);
-  if (!arguments.quiet) noteUnknownRobot(recording.info.robot);
+  if (!arguments.quiet) noteRobot(recording, arguments.mapping);
   prepareRecording(arguments.out);
   writeRecording(recording, arguments.out);
   std::vector<std::string> names;

@@ -22,10 +22,10 @@ std::string duration(double seconds) {
 
 }  // namespace
 
-ProgressLine::ProgressLine(bool quiet) : active_(!quiet && isatty(STDERR_FILENO)), start_(Clock::now()), last_(start_) {}
+ProgressLine::ProgressLine(bool quiet) : active_(!quiet), is_terminal_(isatty(STDERR_FILENO) != 0), start_(Clock::now()), last_(start_) {}
 
 ProgressLine::~ProgressLine() {
-  if (shown_) std::fputs("\n", stderr);
+  if (shown_ && is_terminal_) std::fputs("\n", stderr);
 }
 
 double ProgressLine::wallS() const {
@@ -33,13 +33,14 @@ double ProgressLine::wallS() const {
 }
 
 bool ProgressLine::isDue(bool at_end) const {
-  constexpr auto interval = std::chrono::milliseconds(200);
-  return active_ && (at_end || Clock::now() - last_ >= interval);
+  constexpr std::chrono::milliseconds on_a_terminal(200), in_a_file = std::chrono::seconds(30);
+  const bool is_end_told = at_end && (is_terminal_ || shown_);
+  return active_ && (is_end_told || Clock::now() - last_ >= (is_terminal_ ? on_a_terminal : in_a_file));
 }
 
 void ProgressLine::show(const std::string& text) {
   last_ = Clock::now();
-  std::fprintf(stderr, "\r\033[K%s", text.c_str());
+  std::fprintf(stderr, is_terminal_ ? "\r\033[K%s" : "%s\n", text.c_str());
   std::fflush(stderr);
   shown_ = true;
 }
@@ -55,7 +56,7 @@ void Progress::show(double simulated_s, const std::string& detail) {
 void PhaseProgress::show(const std::string& phase, long done, long expected) {
   if (!line_.isDue(false)) return;
   const double left_s = done > 0 ? line_.wallS() / static_cast<double>(done) * static_cast<double>(expected - done) : 0;
-  line_.show(fmt::format("{}: {} of about {} simulations, about {} left", phase, done, expected, duration(left_s)));
+  line_.show(fmt::format("{}: {} of about {} simulations, about {} left in this phase", phase, done, expected, duration(left_s)));
 }
 
 void CaseProgress::show(int done, int count) {

@@ -1,4 +1,4 @@
-/// A progress line on a terminal.
+/// Progress of long work on standard error.
 #pragma once
 
 #include <chrono>
@@ -6,7 +6,7 @@
 
 namespace musclesim::command_line {
 
-/// Rewrites one line on standard error a few times per second. Silent if standard error is not a terminal, or on request.
+/// On a terminal rewrites one line a few times per second; in a file or a pipe adds a line every 30 s. Silent on request.
 class ProgressLine {
  public:
   explicit ProgressLine(bool quiet);
@@ -14,13 +14,13 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  /// Whether a new text would be shown now. The last state is always shown.
+  /// Whether a new text would be shown now. The last state is always shown on a terminal, and after work of more than 30 s.
   bool isDue(bool at_end) const;
   void show(const std::string& text);
   double wallS() const;
 
  private:
-  bool active_, shown_ = false;
+  bool active_, is_terminal_, shown_ = false;
   std::chrono::steady_clock::time_point start_, last_;
 };
 

@@ -141,8 +141,7 @@ class Views {
 
 void sayWhatIsOdd(const ModelOptions& model, const Recording& recording, const Robot& robot) {
   if (const std::string note = otherDescriptionNote(recording.info, robot); !note.empty()) say(model, note);
-  for (const std::string& name : unknownSignals(recording, robot.signalNames()))
-    say(model, fmt::format("{}: {} has no {}; it is not compared", recording.file, robot.name(), name));
+  for (const std::string& note : unknownSignalNotes(recording, robot)) say(model, note);
 }
 
 int replay(const ModelOptions& model, const ReplayArguments& arguments) {

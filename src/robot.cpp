@@ -1,8 +1,12 @@
 /// `musclesim robot`: checks, shows, begins, exports and imports robot files.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <memory>
+#include <set>
 
 #include "../import/import.h"
 #include "../robot/inspection.h"
@@ -38,14 +42,24 @@ void printOddities(const std::vector<std::string>& found) {
   for (const std::string& oddity : found) fmt::print("odd: {}\n", oddity);
 }
 
+/// Muscles rub although no robot file says so.
+void printFriction(const Robot& robot) {
+  std::set<double> frictions_N;
+  for (const Actuator* muscle : robot.actuators()) frictions_N.insert(muscle->settings().slider_friction_N);
+  if (!frictions_N.empty())
+    fmt::print("friction within the muscles: {:.4g} N (muscle.slider_friction_N; in each link of a chain)\n", fmt::join(frictions_N, ", "));
+}
+
 int check(const ModelOptions& model, const std::string& robot) {
   const auto simulation = built(model, robot);
   const Robot& made = simulation->robot();
   made.requireTolerances();
   fmt::print("{}: {} bodies, {} joints with a reported angle, {} muscles; starts {}\n", printable(robot),
              simulation->world().bodies().size(), made.angles().size(), made.actuatorCount(), made.initialState());
-  const auto found = oddities(simulation->world(), made);
+  auto found = oddities(simulation->world(), made);
+  if (isRobotFile(robot)) std::ranges::move(unstatedConstants(robot), std::back_inserter(found));
   if (made.initialState() == "settled") simulation->settle(musclesim::Action(static_cast<std::size_t>(made.actuatorCount()), 0.0));
+  printFriction(made);
   printOddities(found);
   if (found.empty()) fmt::print("nothing odd found\n");
   return done;

@@ -24,6 +24,7 @@ class Diagnosis:
         self.summary: str = answer["summary"]
         self.effects: list[dict[str, Any]] = answer["effects"]
         self._files: dict[str, str] = answer["files"]
+        self._made_in: str = os.getcwd()
 
     @property
     def verdict(self) -> str:
@@ -51,8 +52,14 @@ class Diagnosis:
             if name not in self._files and os.path.exists(os.path.join(folder, name)):
                 os.remove(os.path.join(folder, name))
         found = {"format": "musclesim-effects-1", "effects": self.effects}
+        files = dict(self._files)
+        if "next.json" in files:
+            sidecar = json.loads(files["next.json"])
+            if sidecar["robot"].endswith(".toml"):  # named relative to where the diagnosis was made
+                sidecar["robot"] = os.path.relpath(os.path.join(self._made_in, sidecar["robot"]), folder)
+            files["next.json"] = json.dumps(sidecar, indent=2) + "\n"
         for name, text in (("diagnosis.json", json.dumps(self.data, indent=2)), ("report.html", self.report),
-                           ("effects.json", json.dumps(found, indent=2)), *self._files.items()):
+                           ("effects.json", json.dumps(found, indent=2)), *files.items()):
             with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
                 file.write(text)
 
@@ -64,19 +71,22 @@ class Diagnosis:
 
 
 def diagnose(recordings: Recording | str | os.PathLike[str] | Iterable[Recording | str | os.PathLike[str]], *,
-             candidates: Sequence[str] = (), exclude: Sequence[str] = (), tune: Sequence[str] = (), max_effects: int = 4, threads: int = 0,
-             seed: int = 1, earlier: Any = None, without_active_effects: bool = False, trust_columns: bool = False,
-             progress: Callable[[str, int, int], Any] | None = None, **model: Any) -> Diagnosis:
+             candidates: Sequence[str] = (), exclude: Sequence[str] = (), tune: Sequence[str] = (), smallest_gap_percent: float = 1,
+             max_effects: int = 4, threads: int = 0, seed: int = 1, earlier: Any = None, without_active_effects: bool = False,
+             trust_columns: bool = False, progress: Callable[[str, int, int], Any] | None = None, **model: Any) -> Diagnosis:
     """Finds from recordings of one plant where they differ from the model and which effects explain it.
 
     recordings: Recordings or their files.  candidates, exclude: ids of effects to consider (default: the whole catalogue) or not to.
-    tune: parameters of the model that nobody measured.  max_effects: largest number of effects in an explanation, 1..6.  threads: 0: one
+    tune: parameters of the model that nobody measured.  smallest_gap_percent: a gap below this share of the motion in every signal counts
+    as none; 0: every gap beyond the noise is looked into.  max_effects: largest number of effects in an explanation, 1..6.  threads: 0: one
     per core; the answer does not depend on it.  earlier: effects of an earlier finding, to begin with.  without_active_effects: compare with
     the model without the effects that the recordings' sidecars say are active, and look for them.  trust_columns: take units, zeros, signs
-    and order of the columns as they are instead of refusing doubtful ones.  progress(phase, done, expected): called a few times a second by the calling thread; an exception that it raises ends the diagnosis.  **model: as for replay.
+    and order of the columns as they are instead of refusing doubtful ones.  progress(phase, done, expected): called a few times a second by
+    the calling thread; an exception that it raises ends the diagnosis.  **model: as for replay.
     Raises BadParameter, BadFile, Diverged, KeyboardInterrupt.
     """
     if isinstance(recordings, (Recording, str, os.PathLike)):
         recordings = [recordings]
     return Diagnosis(_musclesim._diagnose([_as_recording(one) for one in recordings], _checked(model), list(candidates), list(exclude),
-                                          list(tune), max_effects, threads, seed, earlier, without_active_effects, trust_columns, progress))
+                                          list(tune), smallest_gap_percent, max_effects, threads, seed, earlier, without_active_effects,
+                                          trust_columns, progress))

@@ -1,5 +1,8 @@
 #include "musclesim/robot/robot_file.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <filesystem>
 #include <map>
 #include <mutex>
@@ -7,6 +10,7 @@
 #include "file_robot.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
+#include "musclesim/robot/force_law_choice.h"
 #include "shipped.h"
 
 namespace musclesim {
@@ -54,7 +58,37 @@ std::unique_ptr<Robot> build(std::shared_ptr<const Description> description, con
   return robot;
 }
 
+/// The constants of a law that a muscle does not give, "stretch_N = 49.4", but those whose default is 0.
+std::vector<std::string> unstated(const description::ForceLawEntry& law) {
+  Parameters all;
+  all.set("force_law.name", law.name, "name");
+  makeForceLaw(all, 1, 2);  // lengths that any law can have: only the names are of interest
+  std::vector<std::string> result;
+  for (const Parameter& parameter : all.declared()) {
+    const std::string name = parameter.name.substr(std::string("force_law.").size());
+    const auto* number = std::get_if<double>(&parameter.default_value);
+    if (number && *number != 0 && !law.parameters.contains(name)) result.push_back(fmt::format("{} = {:.4g}", name, *number));
+  }
+  return result;
+}
+
 }  // namespace
+
+std::vector<std::string> unstatedConstants(const std::string& file) {
+  const auto description = readOnce(file);
+  std::map<std::string, std::vector<std::string>> muscles;  // by what they lack
+  for (const auto* entries : {&description->muscles, &description->actuators})
+    for (const description::MuscleEntry& muscle : *entries) {
+      if (!muscle.force_law || muscle.force_law->name == "map") continue;
+      if (const auto lacking = unstated(*muscle.force_law); !lacking.empty())
+        muscles[fmt::format("{}", fmt::join(lacking, ", "))].push_back(muscle.name);
+    }
+  std::vector<std::string> sentences;
+  for (const auto& [constants, names] : muscles)
+    sentences.push_back(fmt::format("the force law of {} does not say all its constants; those of another muscle hold: {}",
+                                    fmt::join(names, ", "), constants));
+  return sentences;
+}
 
 const std::vector<ShippedRobot>& shippedRobots() {
   static const std::vector<ShippedRobot> robots = [] {

@@ -1,13 +1,16 @@
 // Recordings whose columns can only be meant otherwise than they say.
 #include "diagnosis/convention_check.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
 
 #include "musclesim/base/error.h"
+#include "musclesim/base/random.h"
 
 namespace musclesim {
 namespace {
@@ -110,6 +113,30 @@ TEST(Conventions, ExchangedColumnsAreRefusedAndExchangedCommandsAreNot) {
   const std::string lengths = refusalAfter(exchange("length_", "_mm"));
   EXPECT_TRUE(says(lengths, "length_0_mm follows the model's length_1_mm")) << lengths;
   EXPECT_EQ(refusalOf(elbow(1.7, {{"channel_swap", "muscle_0+muscle_1", {}}})), "");
+}
+
+TEST(Conventions, ExchangedJointsAreRefused) {
+  Recording plan;
+  plan.file = "plan.csv";
+  plan.info.robot = "pulley_arm";
+  for (std::size_t m = 0; m < 6; ++m) plan.signals.push_back({fmt::format("command_{}", m), {}});
+  RandomStream random(1, "levels");
+  std::vector<double> level(3);  // of the muscles of the shoulder, of the elbow, of both
+  for (int row = 0; row < 600; ++row) {
+    if (row % 40 == 0)
+      for (double& one : level) one = 0.1 * random.normal();
+    plan.time_s.push_back(0.01 * row);
+    for (std::size_t m = 0; m < 6; ++m) plan.signals[m].values.push_back(std::clamp(0.3 + (m % 2 ? -1 : 1) * level[m / 2], 0.0, 1.0));
+  }
+  ReplayOptions options;
+  options.effects = {{"valve_lag", "all", {{"fill_time_constant_s", 0.05}, {"vent_time_constant_s", 0.08}}}};
+  Recording recording = replayRecording(plan, options).simulated;
+  recording.file = "arm.csv";
+  recording.info.active_effects.clear();
+  EXPECT_EQ(refusalOf(recording), "");
+  std::swap(valuesOf(recording, "angle_shoulder_deg"), valuesOf(recording, "angle_elbow_deg"));
+  const std::string refusal = refusalOf(recording);
+  EXPECT_TRUE(says(refusal, "follows the model's angle_") && says(refusal, "are the two columns exchanged?")) << refusal;
 }
 
 TEST(Conventions, OtherUnitsAndZerosAreRefused) {

@@ -145,6 +145,34 @@ TEST(Diagnose, SaysNoGapWhereThereIsOnlyNoise) {
 
 /// Forces 9 % weaker than the model's, 1.9 times the tolerance of their constant: some effects are a little likelier than none, but none of
 /// them much.
+TEST(Diagnose, SaysHowSmallAGapIsInsteadOfExplainingIt) {
+  std::vector<Recording> recordings = plant({{"sensor_bias", "signal_length_0", {{"offset", 0.1}}}});
+  DiagnosisOptions options = few({"sensor_bias"});
+  const Diagnosis found = diagnose(recordings, options);
+  EXPECT_EQ(found.verdict, Verdict::no_gap);
+  ASSERT_TRUE(found.small_gap);
+  EXPECT_EQ(found.small_gap->signal, "length_0_mm");
+  const SignalGap& gap = found.before.per_signal.at("length_0_mm");
+  EXPECT_GT(gap.rmse, 1.5 * gap.noise_sigma);
+  EXPECT_NEAR(found.small_gap->percent_of_motion, 100 * 0.1 / gap.motion, 0.2 * found.small_gap->percent_of_motion);
+  EXPECT_TRUE(contains(diagnosisSummary(found), "No gap that matters.")) << diagnosisSummary(found);
+  EXPECT_TRUE(contains(diagnosisReport(found), "of the motion at most, in length_0_mm"));
+  EXPECT_TRUE(contains(diagnosisJson(found), "percent_of_motion"));
+  options.smallest_gap_percent = 0;
+  const Diagnosis explained = diagnose(recordings, options);
+  EXPECT_EQ(explained.chosen, std::vector<std::string>{"sensor_bias@signal_length_0"}) << diagnosisSummary(explained);
+  EXPECT_FALSE(explained.small_gap);
+}
+
+TEST(Diagnose, RefusesOptionsOutOfTheirRange) {
+  DiagnosisOptions options = few({"payload"});
+  options.max_effects = most_effects + 1;
+  EXPECT_THROW(diagnose(plant({}), options), BadParameter);
+  options.max_effects = 1;
+  options.smallest_gap_percent = -1;
+  EXPECT_THROW(diagnose(plant({}), options), BadParameter);
+}
+
 TEST(Diagnose, SaysNoGapWhereTolerancesDoNearlyAsWellAsSeveralEffects) {
   const Diagnosis found =
       diagnose(plant({{"force_gain", "muscle_0", {{"gain", 0.91}}}}), few({"payload", "external_force", "force_gain", "length_offset"}));

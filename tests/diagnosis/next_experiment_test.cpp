@@ -9,6 +9,7 @@
 
 #include "diagnosis/schedule.h"
 #include "musclesim/base/error.h"
+#include "musclesim/diagnosis/proposed_recording.h"
 #include "musclesim/simulation/replay.h"
 #include "planted.h"
 #include "support/support.h"
@@ -172,6 +173,16 @@ TEST(NextExperiment, ProposesNothingWhereAllPredictTheSame) {
   EXPECT_TRUE(nextExperiment(plant, {{"lag", same, 0.5}, {"twin", same, 0.5}}, Fidelity::coarse, 2, [] {}).commands.empty());
   const Model nearly{{weaker(0.98)}, {}}, as_good_as{{weaker(0.980001)}, {}};
   EXPECT_TRUE(nextExperiment(plant, {{"a", nearly, 0.5}, {"b", as_good_as, 0.5}}, Fidelity::coarse, 2, [] {}).commands.empty());
+}
+
+TEST(ProposedRecording, NamesTheRobotFileFromWhereItsSidecarWillLie) {
+  Diagnosis diagnosis;
+  diagnosis.next_experiment.time_s = {0};
+  diagnosis.next_experiment.commands = {{0.4}};
+  RecordingInfo model;
+  model.robot = "robots/leg.toml";
+  EXPECT_TRUE(contains(proposedRecording(diagnosis, model, "answers/first/next.json").json, "\"../../robots/leg.toml\""));
+  EXPECT_TRUE(contains(proposedRecording(diagnosis, model).json, "\"robots/leg.toml\""));
 }
 
 }  // namespace

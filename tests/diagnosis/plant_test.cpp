@@ -136,6 +136,38 @@ TEST(Plant, ComputesReadingsOfSensorsWithoutMemory) {
   }
 }
 
+/// A rig with a massless muscle under steps of its pressure, as a machine would record it: the sidecar does not say how it was simulated.
+Recording ofAMachine(double noise_mm) {
+  Recording plan = planted::recorded({}, 0.1, 1);
+  plan.info.robot_parameters["muscle.model"] = "line";
+  Recording recording = planted::measuredUnder({}, plan, 1);
+  recording.info.extra_json.clear();
+  recording.info.noise_std = {{"length_0_mm", noise_mm}};
+  return recording;
+}
+
+TEST(Plant, TakesAsManyInternalStepsAsTheNoiseAsksFor) {
+  const DiagnosisOptions options;
+  const Plant noisy({ofAMachine(10)}, options), quiet({ofAMachine(0.01)}, options), quieter({ofAMachine(0.001)}, options);
+  EXPECT_FALSE(noisy.hasOwnSubsteps());
+  EXPECT_EQ(noisy.substeps(), noisy.model().substeps());
+  EXPECT_TRUE(quiet.hasOwnSubsteps());
+  EXPECT_GE(quiet.substeps(), 2 * noisy.substeps());
+  EXPECT_GE(quieter.substeps(), quiet.substeps());
+  EXPECT_LE(quieter.substeps(), 8 * noisy.substeps());
+}
+
+TEST(Plant, RepeatsSimulationsInTheStepsInWhichTheyWereMade) {
+  Recording simulated = ofAMachine(0.001);
+  simulated.info.extra_json = R"({"substeps": 5, "substeps_automatic": true})";
+  DiagnosisOptions options;
+  EXPECT_FALSE(Plant({simulated}, options).hasOwnSubsteps());
+  options.model.substeps = 7;
+  const Plant given({ofAMachine(0.001)}, options);
+  EXPECT_EQ(given.substeps(), 7);
+  EXPECT_TRUE(given.hasOwnSubsteps()) << "a replay would take others by itself";
+}
+
 TEST(Plant, KnowsTheStagesOfWhatTheModelHoldsBeforehand) {
   std::vector<Recording> recordings = planted::plant({});
   DiagnosisOptions options;

@@ -77,6 +77,18 @@ TEST_F(ImportCommand, DoesNotWriteOverATableOfTheMapping) {
   EXPECT_TRUE(contains(made.err, "other.csv is an input and would be overwritten")) << made.err;
 }
 
+TEST_F(ImportCommand, NamesSignalsAndParametersThatTheRobotDoesNotHave) {
+  const std::string mapping = "robot = \"elbow\"\n[columns]\ntime_s = \"t\"\ncommand_0 = \"u\"\ncommand_1 = \"u\"\n";
+  std::ofstream(folder_ / "map.toml") << mapping << "angle_ellbow_deg = \"l\"\n";
+  const ProgramResult made = runProgram({"import", "table.csv", "map.toml", "out.csv"}, folder_);
+  EXPECT_EQ(made.status, 0);
+  EXPECT_TRUE(contains(made.err, "elbow has no angle_ellbow_deg; it is not compared; did you mean angle_elbow_deg?")) << made.err;
+  std::ofstream(folder_ / "map.toml") << mapping << "length_0_mm = \"l\"\n[robot_parameters]\nlod_kg = 2\n";
+  const ProgramResult other = runProgram({"import", "table.csv", "map.toml", "other.csv"}, folder_);
+  EXPECT_EQ(other.status, 0);
+  EXPECT_TRUE(contains(other.err, "the recording cannot be replayed yet: ") && contains(other.err, "lod_kg")) << other.err;
+}
+
 TEST_F(ImportCommand, SaysThatARobotIsUnknown) {
   std::ofstream(folder_ / "map.toml") << "robot = \"rigg\"\n[columns]\ntime_s = \"t\"\ncommand_0 = \"u\"\nlength_0_mm = \"l\"\n";
   const ProgramResult made = runProgram({"import", "table.csv", "map.toml", "out.csv"}, folder_);

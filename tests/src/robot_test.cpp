@@ -88,6 +88,24 @@ fixed = true
   EXPECT_TRUE(contains(checked.out, "odd: bar and block overlap by 5 mm")) << checked.out;
 }
 
+TEST_F(RobotCommand, CheckNamesConstantsThatHoldUnsaid) {
+  ASSERT_EQ(run({"robot", "new", "lever"}).status, 0);
+  const auto checkedWith = [&](const std::string& old, const std::string& law) {
+    change("lever.toml", old, law + "name = \"left\"");
+    return run({"robot", "check", "lever.toml"}).out;
+  };
+  const std::string some = R"(force_law = { name = "chou-hannaford", braid_N = 418, bore_N = 164, threshold_N = 5 }
+)";
+  const std::string out = checkedWith("name = \"left\"", some);
+  EXPECT_TRUE(contains(out, "odd: the force law of left does not say all its constants; those of another muscle hold: stretch_N = 49.39"))
+      << out;
+  EXPECT_TRUE(contains(out, "friction within the muscles: 1 N (muscle.slider_friction_N")) << out;
+  const std::string all =
+      R"(force_law = { name = "chou-hannaford", braid_N = 418, bore_N = 164, threshold_N = 5, stretch_N = 0, stretch_exponent = 1 }
+)";
+  EXPECT_TRUE(contains(checkedWith(some + "name = \"left\"", all), "nothing odd found"));
+}
+
 TEST_F(RobotCommand, CheckEndsWithStatus3AndTheLineOfWhatIsWrong) {
   ASSERT_EQ(run({"robot", "new", "lever"}).status, 0);
   change("lever.toml", "type = \"hinge\"", "type = \"hnige\"");
@@ -133,13 +151,32 @@ TEST_F(RobotCommand, DiagnoseTunesANumberOfAFile) {
   change("lever.toml", "at_mm = [0, 0, 0]      ", "at_mm = [60, 0, 0]      ");
   change("lever.toml", "# damping_Nms_per_rad = 0.01", "damping_Nms_per_rad = 0.3");
   for (const std::string seed : {"1", "2"}) {
-    const auto ran =
-        run({"run", "--simple", "--quiet", "--robot", "lever.toml", "--muscle", "line", "--controller", "random", "--decision-interval",
-             "0.5", "--duration", "3", "--seed", seed, "--set", "lever.bar_kg=0.44", "--record", "r" + seed + ".csv"});
+    const auto ran = run({"run",
+                          "--simple",
+                          "--quiet",
+                          "--robot",
+                          "lever.toml",
+                          "--muscle",
+                          "line",
+                          "--controller",
+                          "random",
+                          "--decision-interval",
+                          "0.5",
+                          "--duration",
+                          "3",
+                          "--seed",
+                          seed,
+                          "--substeps",
+                          "5",
+                          "--set",
+                          "lever.bar_kg=0.44",
+                          "--record",
+                          "r" + seed + ".csv"});
     ASSERT_EQ(ran.status, 0) << ran.err;
     std::ofstream(folder_ / ("r" + seed + ".json")) << R"({"format": "musclesim-recording-1", "robot": "lever.toml"})";
   }
-  const auto found = run({"diagnose", "r1.csv", "r2.csv", "--muscle", "line", "--tune", "lever.bar_kg", "--out", "answer", "--quiet"});
+  const auto found =
+      run({"diagnose", "r1.csv", "r2.csv", "--muscle", "line", "--substeps", "5", "--tune", "lever.bar_kg", "--out", "answer", "--quiet"});
   ASSERT_EQ(found.status, 0) << found.err;
   const auto answer = nlohmann::json::parse(text("answer/diagnosis.json"));
   EXPECT_EQ(answer.at("verdict"), "no_gap") << found.out;

@@ -34,17 +34,20 @@ enum class MethodPart { nuisances, stand_ins, tempering };
 /// Throws BadParameter for an unknown name.
 MethodPart methodPartNamed(const std::string& name);
 
+inline constexpr int most_effects = 6;  ///< in an explanation
+
 struct DiagnosisOptions {
   ReplayOptions model;                  ///< the user's model
   std::vector<std::string> candidates;  ///< ids of effects to consider; empty: the whole catalogue
   std::vector<std::string> exclude;     ///< ids not to consider
   std::vector<std::string> tune;        ///< names of parameters of the model that nobody measured; they are fitted first
   bool trust_columns = false;           ///< take units, zeros, signs and order of the columns as they are: do not refuse doubtful ones
-  int max_effects = 4;                  ///< largest number of effects in an explanation, 1..6
-  std::vector<ActiveEffect> earlier;    ///< an earlier finding: a set that the search begins with, fitted anew and kept if it is believed
-  std::set<MethodPart> left_out;        ///< what the method does without, for studies
-  int job_count = 0;                    ///< threads; 0: one per core. The answer does not depend on it
-  std::uint64_t seed = 1;               ///< of the bootstrap and the negative control
+  double smallest_gap_percent = 1;    ///< of a signal's motion: a gap that is smaller in all signals is none. 0: every gap beyond the noise
+  int max_effects = 4;                ///< largest number of effects in an explanation, 1..most_effects
+  std::vector<ActiveEffect> earlier;  ///< an earlier finding: a set that the search begins with, fitted anew and kept if it is believed
+  std::set<MethodPart> left_out;      ///< what the method does without, for studies
+  int job_count = 0;                  ///< threads; 0: one per core. The answer does not depend on it
+  std::uint64_t seed = 1;             ///< of the bootstrap and the negative control
   /// Keeps the simulations, and has those of an earlier diagnosis of the same recordings with the same options, by the same program: they
   /// are not repeated. Null: nothing is kept.
   RecordFile* kept = nullptr;
@@ -52,8 +55,8 @@ struct DiagnosisOptions {
   std::function<bool()> interrupted;                       ///< return true to stop soon; the result is then partial
 };
 
-/// `no_gap`: no residual beyond the noise; `effects_found`; `unexplained`: a gap that no effect of the catalogue removes; `not_excited`:
-/// the recordings do not move the plant enough to tell.
+/// `no_gap`: no residual beyond the noise, or only a SmallGap; `effects_found`; `unexplained`: a gap that no effect of the catalogue
+/// removes; `not_excited`: the recordings do not move the plant enough to tell.
 enum class Verdict { no_gap, effects_found, unexplained, not_excited };
 std::string nameOf(Verdict verdict);
 
@@ -86,6 +89,14 @@ struct ExplanationProbability {
 
 struct SignalGap {
   double rmse = 0, noise_sigma = 0;
+  double motion = 0;  ///< RMS of the readings about their mean
+};
+
+/// A gap beyond the noise that is too small beside the motion to look for its causes: of no signal as large as
+/// DiagnosisOptions::smallest_gap_percent. Given is the signal of which it is the largest share.
+struct SmallGap {
+  std::string signal;
+  double percent_of_motion = 0;  ///< 100 sqrt(RMSE^2 - sigma^2) / motion
 };
 
 /// normalised = mean over signals of max(0, RMSE^2 - sigma^2) / sigma^2; signals and sigmas pooled over the recordings.
@@ -234,6 +245,7 @@ struct Diagnosis {
       model_effects;                     ///< "id@component" of effects that the diagnosed model has already: the recordings' active_effects
   std::vector<std::string> not_excited;  ///< effects that these recordings could not have shown
   std::vector<std::string> notes;        ///< remarks on the data and the answer for the user
+  std::optional<SmallGap> small_gap;     ///< with `no_gap` only
   Unsteady unsteady;
   Experiment next_experiment;
   std::vector<Screening> screenings;  ///< best first
@@ -243,6 +255,8 @@ struct Diagnosis {
   RobotDrawing drawing;
   std::vector<Trace> traces;
   bool partial = false;
+  /// Internal steps per control step of the simulations, if a replay would take others by itself; otherwise 0.
+  int substeps = 0;
   double simulated_s = 0, wall_s = 0;
   long simulation_count = 0;
 };

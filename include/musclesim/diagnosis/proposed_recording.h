@@ -18,6 +18,7 @@ RecordingInfo diagnosedModel(const Recording& recording, const ReplayOptions& mo
 
 /// The commands that the diagnosis proposes, for the plant that `model` describes (diagnosedModel). Both texts are empty if the diagnosis
 /// proposes nothing.
-ProposedRecording proposedRecording(const Diagnosis& diagnosis, const RecordingInfo& model);
+/// A robot file is named relative to the folder of `sidecar`, the file that the sidecar will be.
+ProposedRecording proposedRecording(const Diagnosis& diagnosis, const RecordingInfo& model, const std::string& sidecar = "next.json");
 
 }  // namespace musclesim

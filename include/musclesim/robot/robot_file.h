@@ -26,6 +26,10 @@ std::unique_ptr<Robot> makeRobotFromText(const std::string& text, const std::str
 /// Checks what does not depend on numbers: syntax, keys, types, names and references. Throws BadFile.
 void checkRobotText(const std::string& text, const std::string& file);
 
+/// Constants of muscles' own force laws that a file does not state, with the defaults that hold for them: one sentence for each set of
+/// muscles with the same ones. Defaults of 0 are left out. Throws as makeRobotFromFile.
+std::vector<std::string> unstatedConstants(const std::string& file);
+
 /// A robot that comes with the program: the files in robots/.
 struct ShippedRobot {
   std::string name, text, description;

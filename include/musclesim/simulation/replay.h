@@ -52,8 +52,8 @@ struct ReplayResult {
 /// its internal steps and all named parameters.
 RecordingInfo describeModel(Simulation& simulation, const std::string& initial_state);
 
-/// Signals of a recording that are not among the robot's signals `of_robot`; a replay does not compare them.
-std::vector<std::string> unknownSignals(const Recording& recording, const std::vector<std::string>& of_robot);
+/// A remark on each signal of a recording that the robot does not have, so that it is not compared; with the name that may be meant.
+std::vector<std::string> unknownSignalNotes(const Recording& recording, const Robot& robot);
 
 /// A remark for the user if the robot's file is no longer the one with which the recording was made; otherwise empty.
 std::string otherDescriptionNote(const RecordingInfo& info, const Robot& robot);
