@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <optional>
 
 #include "../log/diagram.h"
 #include "musclesim/base/error.h"
@@ -20,8 +21,10 @@ namespace musclesim {
 namespace {
 
 constexpr double free_range_deg = 90;    ///< shown of a joint without stops
+constexpr double free_range_mm = 0;      ///< looked at of a slide without stops: a load that hangs freely goes where it can
 constexpr int angle_count = 37;          ///< 5 degrees apart over a half turn
 constexpr double difference_rad = 1e-4;  ///< of lengths for moment arms: far above rounding, far below the curvature of any lever
+constexpr double difference_mm = 1e-2;   ///< the same of a slide
 
 const char* nameOf(Joint::Kind kind) {
   static const std::map<Joint::Kind, const char*> names = {{Joint::Kind::ball, "ball"},     {Joint::Kind::hinge, "hinge"},
@@ -137,25 +140,79 @@ void findLooseEnds(const Robot& robot, std::vector<std::string>& found) {
   }
 }
 
+std::optional<std::size_t> coordinateOf(const Skeleton& skeleton, const Joint& joint, int axis) {
+  const auto& all = skeleton.coordinates();
+  const auto place = std::ranges::find_if(all, [&](const Coordinate& c) { return c.joint == &joint && c.axis == axis; });
+  if (place == all.end()) return std::nullopt;
+  return static_cast<std::size_t>(place - all.begin());
+}
+
+/// Lengths of all muscles, and how far they pull a coordinate, over its range; all other coordinates stand as built.
+MomentArms armsOver(Skeleton& skeleton, const Robot& robot, std::size_t coordinate, const std::string& name) {
+  const Coordinate& moved = skeleton.coordinates()[coordinate];
+  const double per_unit = moved.turns ? rad_per_deg : 1, difference = moved.turns ? difference_rad : difference_mm;
+  const double free_range = moved.turns ? free_range_deg : free_range_mm;
+  const double low = std::isfinite(moved.low) ? moved.low / per_unit : -free_range;
+  const double high = std::isfinite(moved.high) ? moved.high / per_unit : free_range;
+  MomentArms arms{name, moved.turns, {}, {}, {}};
+  arms.arm_mm.resize(robot.actuators().size());
+  arms.length_mm.resize(robot.actuators().size());
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(skeleton.coordinates().size()));
+  const auto lengthAt = [&](std::size_t muscle, double value) {
+    q[static_cast<Eigen::Index>(coordinate)] = value;
+    skeleton.setPose(q);
+    skeleton.placeBodies();
+    return lengthMm(*robot.actuators()[muscle]);
+  };
+  for (int i = 0; i < angle_count; ++i) {
+    arms.position.push_back(low + (high - low) * i / (angle_count - 1));
+    const double at = arms.position.back() * per_unit;
+    for (std::size_t muscle = 0; muscle < arms.arm_mm.size(); ++muscle) {
+      const double shorter = lengthAt(muscle, at + difference), longer = lengthAt(muscle, at - difference);
+      arms.arm_mm[muscle].push_back((longer - shorter) / (2 * difference));
+      arms.length_mm[muscle].push_back(lengthAt(muscle, at));
+    }
+  }
+  return arms;
+}
+
+/// The same of the robot's slides with stops, where the arm is the share of the tension that pulls along the slide. Others, such as a load
+/// that hangs freely, are looked at in the pose as built alone.
+std::vector<MomentArms> slideArms(World& world, const Robot& robot) {
+  Skeleton skeleton(world);
+  std::vector<MomentArms> all;
+  for (const Robot::Slide& slide : robot.slides())
+    if (const auto coordinate = coordinateOf(skeleton, *slide.joint, 0)) all.push_back(armsOver(skeleton, robot, *coordinate, slide.name));
+  return all;
+}
+
 /// Muscles that the motion of a joint takes out of their range, and joints that no muscle moves.
 void findMotions(const std::vector<MomentArms>& arms, const Robot& robot, std::vector<std::string>& found) {
-  constexpr double still_mm = 0.01;  // a moment arm below this moves nothing
+  constexpr double still_mm = 0.01, still_share = 0.02;  // what is below this moves nothing
   for (const MomentArms& joint : arms) {
+    // Hinges may stand in a dead centre as built; a muscle across a slide pulls along it only where it stands oblique.
+    const auto as_built = std::ranges::min_element(joint.position, {}, [](double position) { return std::abs(position); });
+    const auto moves = [&](const std::vector<double>& arm) {
+      if (!joint.turns) return std::abs(arm[static_cast<std::size_t>(as_built - joint.position.begin())]) > still_share;
+      return std::ranges::any_of(arm, [&](double one) { return std::abs(one) > still_mm; });
+    };
+    const char* unit = joint.turns ? "deg" : "mm";
     bool moved = false;
     for (std::size_t m = 0; m < joint.arm_mm.size(); ++m) {
       const Actuator& muscle = *robot.actuators()[m];
-      moved = moved || std::ranges::any_of(joint.arm_mm[m], [](double arm) { return std::abs(arm) > still_mm; });
+      moved = moved || moves(joint.arm_mm[m]);
       const auto [shortest, longest] = std::ranges::minmax_element(joint.length_mm[m]);
-      const auto angleAt = [&](auto place) { return joint.angle_deg[static_cast<std::size_t>(place - joint.length_mm[m].begin())]; };
+      const auto positionAt = [&](auto place) { return joint.position[static_cast<std::size_t>(place - joint.length_mm[m].begin())]; };
       if (*shortest < muscle.minimumLengthMm())
-        found.push_back(fmt::format("{} would be {:.4g} mm long at {} = {:.3g} deg, shorter than its shortest length, {:.4g} mm",
-                                    muscle.name(), *shortest, joint.joint, angleAt(shortest), muscle.minimumLengthMm()));
+        found.push_back(fmt::format("{} would be {:.4g} mm long at {} = {:.3g} {}, shorter than its shortest length, {:.4g} mm",
+                                    muscle.name(), *shortest, joint.joint, positionAt(shortest), unit, muscle.minimumLengthMm()));
       if (*longest > muscle.maximumLengthMm())
         found.push_back(
-            fmt::format("{} would be {:.4g} mm long at {} = {:.3g} deg, longer than its longest length, {:.4g} mm: it stops the joint",
-                        muscle.name(), *longest, joint.joint, angleAt(longest), muscle.maximumLengthMm()));
+            fmt::format("{} would be {:.4g} mm long at {} = {:.3g} {}, longer than its longest length, {:.4g} mm: it stops the joint",
+                        muscle.name(), *longest, joint.joint, positionAt(longest), unit, muscle.maximumLengthMm()));
     }
-    if (!moved) found.push_back(fmt::format("no muscle moves {}: all moment arms are zero", joint.joint));
+    if (!moved)
+      found.push_back(fmt::format("no muscle moves {}: {}", joint.joint, joint.turns ? "all moment arms are zero" : "none pulls along it"));
   }
 }
 
@@ -167,35 +224,10 @@ std::string describeRobot(const World& world, const Robot& robot) {
 
 std::vector<MomentArms> momentArms(World& world, const Robot& robot) {
   Skeleton skeleton(world);
-  const auto& coordinates = skeleton.coordinates();
   std::vector<MomentArms> all;
-  for (const Robot::Angle& angle : robot.angles()) {
-    const auto place =
-        std::ranges::find_if(coordinates, [&](const Coordinate& c) { return c.joint == angle.joint && c.axis == angle.axis; });
-    if (place == coordinates.end()) continue;
-    const double low_deg = std::isfinite(place->low) ? place->low * deg_per_rad : -free_range_deg;
-    const double high_deg = std::isfinite(place->high) ? place->high * deg_per_rad : free_range_deg;
-    MomentArms arms{angle.name, {}, {}, {}};
-    arms.arm_mm.resize(robot.actuators().size());
-    arms.length_mm.resize(robot.actuators().size());
-    Eigen::VectorXd q = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(coordinates.size()));
-    const auto lengthAt = [&](std::size_t muscle, double angle_rad) {
-      q[place - coordinates.begin()] = angle_rad;
-      skeleton.setPose(q);
-      skeleton.placeBodies();
-      return lengthMm(*robot.actuators()[muscle]);
-    };
-    for (int i = 0; i < angle_count; ++i) {
-      arms.angle_deg.push_back(low_deg + (high_deg - low_deg) * i / (angle_count - 1));
-      const double at_rad = arms.angle_deg.back() * rad_per_deg;
-      for (std::size_t muscle = 0; muscle < arms.arm_mm.size(); ++muscle) {
-        const double shorter = lengthAt(muscle, at_rad + difference_rad), longer = lengthAt(muscle, at_rad - difference_rad);
-        arms.arm_mm[muscle].push_back((longer - shorter) / (2 * difference_rad));
-        arms.length_mm[muscle].push_back(lengthAt(muscle, at_rad));
-      }
-    }
-    all.push_back(std::move(arms));
-  }
+  for (const Robot::Angle& angle : robot.angles())
+    if (const auto coordinate = coordinateOf(skeleton, *angle.joint, angle.axis))
+      all.push_back(armsOver(skeleton, robot, *coordinate, angle.name));
   return all;
 }
 
@@ -205,7 +237,7 @@ std::string momentArmFigure(const std::vector<MomentArms>& arms, const Robot& ro
     Diagram diagram{joint.joint, "angle [deg]", "moment arm [mm]", {}};
     for (std::size_t muscle = 0; muscle < joint.arm_mm.size(); ++muscle)
       diagram.series.push_back(
-          {robot.actuators()[muscle]->name(), muscleColor(muscle, robot.namedMuscleColors()), joint.angle_deg, joint.arm_mm[muscle]});
+          {robot.actuators()[muscle]->name(), muscleColor(muscle, robot.namedMuscleColors()), joint.position, joint.arm_mm[muscle]});
     diagrams.push_back(std::move(diagram));
   }
   constexpr int most_columns = 2;
@@ -220,7 +252,9 @@ std::vector<std::string> oddities(World& world, const Robot& robot) {
   findLooseEnds(robot, found);
   findOverlaps(world, found);
   try {
-    if (!robot.actuators().empty()) findMotions(momentArms(world, robot), robot, found);
+    if (robot.actuators().empty()) return found;
+    findMotions(momentArms(world, robot), robot, found);
+    findMotions(slideArms(world, robot), robot, found);
   } catch (const BadParameter& problem) {
     found.push_back(fmt::format("not checked whether the joints take muscles out of their ranges: {}", problem.what()));
   }

@@ -15,8 +15,9 @@ std::string describeRobot(const World& world, const Robot& robot);
 /// Moment arms of all muscles over one joint:  r_i = -dl_i/dq,  in mm; positive: the muscle turns the joint towards greater angles. All
 /// other joints stand as built. For chains l is the straight distance of the ends.
 struct MomentArms {
-  std::string joint;  ///< name of the reported angle
-  std::vector<double> angle_deg;
+  std::string joint;             ///< name of the reported angle
+  bool turns = true;             ///< false: a slide, whose arms are numbers without a unit: the shares of the tensions that pull along it
+  std::vector<double> position;  ///< deg, or mm of a slide
   std::vector<std::vector<double>> arm_mm, length_mm;  ///< per muscle and angle
 };
 

@@ -88,6 +88,18 @@ fixed = true
   EXPECT_TRUE(contains(checked.out, "odd: bar and block overlap by 5 mm")) << checked.out;
 }
 
+TEST_F(RobotCommand, CheckLooksAtSlides) {
+  ASSERT_EQ(run({"robot", "export", "rig", "-o", "rig.toml"}).status, 0);
+  const auto as_shipped = run({"robot", "check", "rig.toml"});
+  EXPECT_FALSE(contains(as_shipped.out, "guide")) << as_shipped.out;
+  change("rig.toml", "type = \"slider\"", "type = \"slider\"\nlimits_mm = [-300, 50]");
+  const auto limited = run({"robot", "check", "rig.toml"});
+  EXPECT_TRUE(contains(limited.out, "mm long at guide = -300 mm, longer than its longest length")) << limited.out;
+  change("rig.toml", "axis = \"y\"", "axis = \"z\"");
+  const auto across = run({"robot", "check", "rig.toml"});
+  EXPECT_TRUE(contains(across.out, "no muscle moves guide: none pulls along it")) << across.out;
+}
+
 TEST_F(RobotCommand, CheckNamesConstantsThatHoldUnsaid) {
   ASSERT_EQ(run({"robot", "new", "lever"}).status, 0);
   const auto checkedWith = [&](const std::string& old, const std::string& law) {
