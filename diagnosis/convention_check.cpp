@@ -25,12 +25,17 @@ constexpr double beyond_stops_deg = 10;                     ///< more than soft 
 constexpr double beyond_length = 0.1;                       ///< of the shortest and the longest length: more than an attachment is off
 constexpr double beyond_full_scale = 0.3;                   ///< of it: more than pressures overshoot
 constexpr double atmosphere_kPa = 101.3, about_atmosphere_kPa = 10;
-constexpr double follows_from = 0.8;  ///< correlation
-constexpr double of_a_wave = 0.97;    ///< correlation: a wave that is late by half a period seems reversed; nothing follows from it
-constexpr double clearly = 0.5;       ///< share of the unexplained variance at which one correlation exceeds another
-constexpr double visible_sigmas = 2;  ///< standard deviation of a signal that moves, over its noise floor
-constexpr double longest_lag_s = 1;   ///< valves, loggers and buses are later than the model by less
-constexpr double lag_step_s = 0.02;   ///< much shorter than what moves
+constexpr double follows_from = 0.8;     ///< correlation
+constexpr double of_a_wave = 0.97;       ///< correlation: a wave that is late by half a period seems reversed; nothing follows from it
+constexpr double clearly = 0.5;          ///< share of the unexplained variance at which one correlation exceeds another
+constexpr double visible_sigmas = 2;     ///< standard deviation of a signal that moves, over its noise floor
+constexpr double longest_lag_s = 1;      ///< valves, loggers and buses are later than the model by less
+constexpr double lag_step_s = 0.02;      ///< much shorter than what moves
+constexpr double farthest_clock_s = 20;  ///< that a clock is off in which the motion is looked for
+constexpr double same_motion = 0.95;     ///< correlation of one motion under two clocks, which differ by effects only
+constexpr double much_clearer = 0.25;    ///< share of the unexplained variance that is left under the right clock
+constexpr int fewest_turns = 8;  ///< of the model about its mean: the few motions of a step or a ramp resemble their like at other times
+constexpr double shortest_overlap = 0.4;  ///< of a recording
 
 bool exceeds(double one, double other) {
   return one >= follows_from && other <= of_a_wave && 1 - one * one <= clearly * (1 - other * other);
@@ -105,6 +110,33 @@ class ConventionCheck {
       requireWithin(fmt::format("pressure_{}", m), 0, 1, beyond_full_scale, beyond_full_scale, "of full scale",
                     "as fractions of full scale do: is it in bar or kPa (pressure_0_bar, pressure_0_kPa)?");
     requireGaugePressures();
+  }
+
+  /// Refuses a signal that follows the model under a clock that is off by more than machines are late.
+  void requireClocks() const {
+    forEachReading([&](int signal, int recording) {
+      if (!(goesWithJoints(signal) || nameOf(signal).starts_with("pressure_"))) return;
+      const std::vector<double>&y = plant_.measured(recording, signal), &x = predictedOf(recording, signal);
+      const std::vector<double>& time_s = plant_.recordings()[index(recording)].time_s;
+      const double duration_s = time_s.back() - time_s.front();
+      const auto at = [&](int lag) {  // correlation; nothing if too few rows overlap
+        if (std::abs(lag) * lag_step_s > (1 - shortest_overlap) * duration_s) return 0.0;
+        const Sums sums = lag >= 0 ? sumsOf(time_s, x, y, lag) : sumsOf(time_s, y, x, -lag);
+        const double squares = sums.ofX() * sums.ofY();
+        return squares > 0 ? sums.ofBoth() / std::sqrt(squares) : 0.0;
+      };
+      if (!movesVisibly(signal, sumsOf(time_s, y, x, 0)) || turnsOf(x) < fewest_turns) return;
+      const int late = static_cast<int>(std::lround(longest_lag_s / lag_step_s)),
+                farthest = static_cast<int>(farthest_clock_s / lag_step_s);
+      double usual = 0, best = 0;
+      int best_lag = 0;
+      for (int lag = -late; lag <= late; ++lag) usual = std::max(usual, std::abs(at(lag)));
+      for (int lag = -farthest; lag <= farthest; ++lag)
+        if (const double r = at(lag); r > best) best = r, best_lag = lag;
+      if (usual >= follows_from || best < same_motion || 1 - best * best > much_clearer * (1 - usual * usual)) return;
+      refuse(recording, fmt::format("{} moves as in the model, but {:.1f} s {}: do its clock and that of the commands begin together?",
+                                    nameOf(signal), std::abs(best_lag) * lag_step_s, best_lag > 0 ? "later" : "earlier"));
+    });
   }
 
   /// Notes on signs.
@@ -190,10 +222,34 @@ class ConventionCheck {
     return result;
   }
 
-  /// Of one recording: predicted x and, `lag` steps of lag_step_s later, measured y.
+  /// How often the values pass their mean.
+  static int turnsOf(const std::vector<double>& values) {
+    double sum = 0, count = 0, last = 0;
+    for (const double value : values)
+      if (std::isfinite(value)) sum += value, ++count;
+    int turns = 0;
+    for (const double value : values) {
+      const double above = value - sum / count;
+      if (!std::isfinite(above) || above == 0) continue;
+      turns += above * last < 0 ? 1 : 0;
+      last = above;
+    }
+    return turns;
+  }
+
+  /// Whether the measured and the predicted signal, y and x of the sums or the other way round, move by more than the noise.
+  bool movesVisibly(int signal, const Sums& sums) const {
+    return std::min(sums.ofX(), sums.ofY()) > sums.n * std::pow(visible_sigmas * plant_.signals()[index(signal)].sigma.value, 2);
+  }
+
+  /// Of one recording: predicted x and measured y.
   Sums sumsOf(int recording, int measured, int predicted, int lag) const {
-    const std::vector<double>&y = plant_.measured(recording, measured), &x = predictedOf(recording, predicted);
-    const std::vector<double>& time_s = plant_.recordings()[index(recording)].time_s;
+    return sumsOf(plant_.recordings()[index(recording)].time_s, predictedOf(recording, predicted), plant_.measured(recording, measured),
+                  lag);
+  }
+
+  /// x and, `lag` steps of lag_step_s later, y.
+  static Sums sumsOf(const std::vector<double>& time_s, const std::vector<double>& x, const std::vector<double>& y, int lag) {
     Sums sums;
     std::size_t earlier = 0;
     double last_s = -lag_step_s;
@@ -267,6 +323,7 @@ std::vector<std::string> checkConventions(const Plant& plant, const std::vector<
   check.requireThousands();
   check.requireDegrees();
   check.requireZeros();
+  check.requireClocks();
   return check.requireSignsAndOrder();
 }
 

@@ -115,7 +115,8 @@ TEST(Conventions, ExchangedColumnsAreRefusedAndExchangedCommandsAreNot) {
   EXPECT_EQ(refusalOf(elbow(1.7, {{"channel_swap", "muscle_0+muscle_1", {}}})), "");
 }
 
-TEST(Conventions, ExchangedJointsAreRefused) {
+/// Levels that change at random, so that no part of the motion resembles another.
+Recording armUnderRandomLevels() {
   Recording plan;
   plan.file = "plan.csv";
   plan.info.robot = "pulley_arm";
@@ -133,6 +134,21 @@ TEST(Conventions, ExchangedJointsAreRefused) {
   Recording recording = replayRecording(plan, options).simulated;
   recording.file = "arm.csv";
   recording.info.active_effects.clear();
+  return recording;
+}
+
+TEST(Conventions, AnotherClockIsRefused) {
+  Recording recording = armUnderRandomLevels();
+  std::vector<double>& angle = valuesOf(recording, "angle_elbow_deg");
+  EXPECT_EQ(refusalOf(recording), "");
+  std::rotate(angle.begin(), angle.begin() + 150, angle.end());
+  std::fill(angle.end() - 150, angle.end(), std::nan(""));
+  const std::string refusal = refusalOf(recording);
+  EXPECT_TRUE(says(refusal, "angle_elbow_deg moves as in the model, but 1.4 s earlier: do its clock")) << refusal;
+}
+
+TEST(Conventions, ExchangedJointsAreRefused) {
+  Recording recording = armUnderRandomLevels();
   EXPECT_EQ(refusalOf(recording), "");
   std::swap(valuesOf(recording, "angle_shoulder_deg"), valuesOf(recording, "angle_elbow_deg"));
   const std::string refusal = refusalOf(recording);
