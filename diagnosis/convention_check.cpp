@@ -25,16 +25,16 @@ constexpr double beyond_stops_deg = 10;                     ///< more than soft 
 constexpr double beyond_length = 0.1;                       ///< of the shortest and the longest length: more than an attachment is off
 constexpr double beyond_full_scale = 0.3;                   ///< of it: more than pressures overshoot
 constexpr double atmosphere_kPa = 101.3, about_atmosphere_kPa = 10;
-constexpr double follows_from = 0.8;     ///< correlation
-constexpr double of_a_wave = 0.97;       ///< correlation: a wave that is late by half a period seems reversed; nothing follows from it
-constexpr double clearly = 0.5;          ///< share of the unexplained variance at which one correlation exceeds another
-constexpr double visible_sigmas = 2;     ///< standard deviation of a signal that moves, over its noise floor
-constexpr double longest_lag_s = 1;      ///< valves, loggers and buses are later than the model by less
-constexpr double lag_step_s = 0.02;      ///< much shorter than what moves
-constexpr double farthest_clock_s = 20;  ///< that a clock is off in which the motion is looked for
-constexpr double same_motion = 0.95;     ///< correlation of one motion under two clocks, which differ by effects only
-constexpr double much_clearer = 0.25;    ///< share of the unexplained variance that is left under the right clock
-constexpr int fewest_turns = 8;  ///< of the model about its mean: the few motions of a step or a ramp resemble their like at other times
+constexpr double follows_from = 0.8;      ///< correlation
+constexpr double of_a_wave = 0.97;        ///< correlation: a wave that is late by half a period seems reversed; nothing follows from it
+constexpr double clearly = 0.5;           ///< share of the unexplained variance at which one correlation exceeds another
+constexpr double visible_sigmas = 2;      ///< standard deviation of a signal that moves, over its noise floor
+constexpr double longest_lag_s = 1;       ///< valves, loggers and buses are later than the model by less
+constexpr double lag_step_s = 0.02;       ///< much shorter than what moves
+constexpr double farthest_clock_s = 20;   ///< that a clock is off in which the motion is looked for
+constexpr double same_motion = 0.95;      ///< correlation of one motion under two clocks, which differ by effects only
+constexpr double much_clearer = 0.25;     ///< share of the unexplained variance that is left under the right clock
+constexpr int fewest_turns = 8;           ///< about the mean: the few motions of a step or a ramp resemble their like at other times
 constexpr double shortest_overlap = 0.4;  ///< of a recording
 
 bool exceeds(double one, double other) {
@@ -125,7 +125,7 @@ class ConventionCheck {
         const double squares = sums.ofX() * sums.ofY();
         return squares > 0 ? sums.ofBoth() / std::sqrt(squares) : 0.0;
       };
-      if (!movesVisibly(signal, sumsOf(time_s, y, x, 0)) || turnsOf(x) < fewest_turns) return;
+      if (!movesVisibly(signal, sumsOf(time_s, y, x, 0)) || std::min(turnsOf(x, signal), turnsOf(y, signal)) < fewest_turns) return;
       const int late = static_cast<int>(std::lround(longest_lag_s / lag_step_s)),
                 farthest = static_cast<int>(farthest_clock_s / lag_step_s);
       double usual = 0, best = 0;
@@ -222,15 +222,16 @@ class ConventionCheck {
     return result;
   }
 
-  /// How often the values pass their mean.
-  static int turnsOf(const std::vector<double>& values) {
+  /// How often the values of a signal, measured or predicted, pass their mean by more than the noise.
+  int turnsOf(const std::vector<double>& values, int signal) const {
+    const double noise = visible_sigmas * plant_.signals()[index(signal)].sigma.value;
     double sum = 0, count = 0, last = 0;
     for (const double value : values)
       if (std::isfinite(value)) sum += value, ++count;
     int turns = 0;
     for (const double value : values) {
       const double above = value - sum / count;
-      if (!std::isfinite(above) || above == 0) continue;
+      if (!std::isfinite(above) || std::abs(above) <= noise) continue;
       turns += above * last < 0 ? 1 : 0;
       last = above;
     }
