@@ -19,14 +19,14 @@ constexpr double least_signal_change = 0.02;
 constexpr double usual_steps = 10;  ///< a dropout is longer than this number of usual steps
 
 std::vector<std::string> dropoutNotes(const Recording& recording) {
-  std::vector<double> steps;
-  for (std::size_t row = 1; row < recording.time_s.size(); ++row) steps.push_back(recording.time_s[row] - recording.time_s[row - 1]);
-  const double usual_s = medianSize(steps);
   std::vector<std::string> notes;
-  for (std::size_t row = 0; row < steps.size(); ++row)
-    if (steps[row] > usual_steps * usual_s)
-      notes.push_back(fmt::format("{}: no rows between {:.3f} and {:.3f} s; the simulation runs through with the command held",
-                                  recording.file, recording.time_s[row], recording.time_s[row + 1]));
+  for (const Dropout& dropout : dropoutsOf(recording))
+    notes.push_back(fmt::format(
+        "{}: no rows between {:.3f} and {:.3f} s; the simulation runs through with the command held{}", recording.file,
+        recording.time_s[dropout.next_row - 1], recording.time_s[dropout.next_row],
+        dropout.changes_commands
+            ? fmt::format(", and since it is another one after that, the readings of the next {:g} s are left out", forgotten_after_s)
+            : ""));
   return notes;
 }
 
@@ -40,6 +40,21 @@ double medianSize(const std::vector<double>& values) {
   const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
   std::ranges::nth_element(sizes, middle);
   return *middle;
+}
+
+std::vector<Dropout> dropoutsOf(const Recording& recording) {
+  std::vector<double> steps;
+  for (std::size_t row = 1; row < recording.time_s.size(); ++row) steps.push_back(recording.time_s[row] - recording.time_s[row - 1]);
+  const double usual_s = medianSize(steps);
+  std::vector<Dropout> dropouts;
+  for (std::size_t row = 1; row < recording.time_s.size(); ++row) {
+    if (steps[row - 1] <= usual_steps * usual_s) continue;
+    const bool changes = std::ranges::any_of(recording.signals, [&](const Signal& signal) {
+      return signal.name.starts_with("command_") && signal.values[row] != signal.values[row - 1];
+    });
+    dropouts.push_back({row, changes});
+  }
+  return dropouts;
 }
 
 bool commandsMove(const std::vector<Recording>& recordings) {

@@ -17,6 +17,15 @@ int firstChange(const Recording& recording);
 /// Whether a signal has the same value in every row of every recording that has it.
 bool neverChanges(const std::vector<Recording>& recordings, const std::string& name);
 
+/// A pause of more than ten usual steps.
+struct Dropout {
+  std::size_t next_row;   ///< the first one after it
+  bool changes_commands;  ///< they are others after it than before, and nothing says since when
+};
+std::vector<Dropout> dropoutsOf(const Recording& recording);
+/// How long readings depend on commands that are not known: valves, loggers and joints are slower by less.
+inline constexpr double forgotten_after_s = 1;
+
 /// Sentences about dropouts: pauses of more than ten usual steps, and rows without a number.
 std::vector<std::string> dataNotes(const std::vector<Recording>& recordings);
 

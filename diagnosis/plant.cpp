@@ -232,10 +232,24 @@ void Plant::dropDeadSegments() {
   }
 }
 
+/// Removes the readings that depend on commands within a dropout, which are not known.
+void Plant::dropAfterDropouts() {
+  for (Recording& recording : recordings_)
+    for (const Dropout& dropout : dropoutsOf(recording)) {
+      if (!dropout.changes_commands) continue;
+      const auto end = std::ranges::upper_bound(recording.time_s, recording.time_s[dropout.next_row] + forgotten_after_s);
+      for (Signal& signal : recording.signals)
+        if (!signal.name.starts_with("command_"))
+          std::fill(signal.values.begin() + static_cast<std::ptrdiff_t>(dropout.next_row),
+                    signal.values.begin() + (end - recording.time_s.begin()), nan);
+    }
+}
+
 void Plant::compareSignals() {
   measured_.resize(recordings_.size());
   notes_ = dataNotes(recordings_);
   dropDeadSegments();
+  dropAfterDropouts();
   const bool moves = commandsMove(recordings_);
   for (const std::string& name : reference_->robot().signalNames()) {
     if (name.starts_with("command_")) continue;

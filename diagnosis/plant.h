@@ -146,6 +146,7 @@ class Plant {
 
  private:
   void dropDeadSegments();
+  void dropAfterDropouts();
   void compareSignals();
   void requireNumbers(const std::vector<Segment>& part) const;
   Parameter numberNamed(const std::string& option, const std::string& name) const;

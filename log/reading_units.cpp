@@ -26,6 +26,7 @@ const std::vector<ReadingUnit>& readingUnits() {
       {"time", "s", "s", 1, true},
       {"time", "ms", "s", 1 / ms_per_s, false},
       {"time", "us", "s", s_per_us, false},
+      {"time", "ns", "s", 1e-3 * s_per_us, false},
       {"time", "min", "s", s_per_min, false},
   };
   return units;

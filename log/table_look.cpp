@@ -23,11 +23,12 @@ constexpr std::size_t sampled_lines = 400;
 /// Units that a name or a row of units may hold, and how mappings write them.
 const std::map<std::string, std::string>& unitWords() {
   static const std::map<std::string, std::string> words = {
-      {"s", "s"},     {"sec", "s"},   {"seconds", "s"},   {"second", "s"}, {"ms", "ms"},   {"us", "us"},   {"µs", "us"},
-      {"min", "min"}, {"kpa", "kPa"}, {"bar", "bar"},     {"mpa", "MPa"},  {"pa", "Pa"},   {"hpa", "hPa"}, {"mbar", "mbar"},
-      {"psi", "psi"}, {"mm", "mm"},   {"cm", "cm"},       {"m", "m"},      {"um", "um"},   {"µm", "um"},   {"inch", "inch"},
-      {"in", "inch"}, {"n", "N"},     {"mn", "mN"},       {"kn", "kN"},    {"kgf", "kgf"}, {"kg", "kgf"},  {"lbf", "lbf"},
-      {"deg", "deg"}, {"°", "deg"},   {"degrees", "deg"}, {"rad", "rad"},  {"v", "V"},     {"volt", "V"},  {"volts", "V"}};
+      {"s", "s"},   {"sec", "s"},       {"seconds", "s"}, {"second", "s"},  {"ms", "ms"},   {"us", "us"},
+      {"µs", "us"}, {"ns", "ns"},       {"min", "min"},   {"kpa", "kPa"},   {"bar", "bar"}, {"mpa", "MPa"},
+      {"pa", "Pa"}, {"hpa", "hPa"},     {"mbar", "mbar"}, {"psi", "psi"},   {"mm", "mm"},   {"cm", "cm"},
+      {"m", "m"},   {"um", "um"},       {"µm", "um"},     {"inch", "inch"}, {"in", "inch"}, {"n", "N"},
+      {"mn", "mN"}, {"kn", "kN"},       {"kgf", "kgf"},   {"kg", "kgf"},    {"lbf", "lbf"}, {"deg", "deg"},
+      {"°", "deg"}, {"degrees", "deg"}, {"rad", "rad"},   {"v", "V"},       {"volt", "V"},  {"volts", "V"}};
   return words;
 }
 
@@ -280,7 +281,7 @@ bool grows(const std::vector<double>& values, bool may_stand) {
 
 /// A unit of time that fits numbers without one: from 1970, the row's number, or by the usual step.
 std::string guessedTimeUnit(const std::vector<double>& values, double step) {
-  for (const auto& [from, unit] : {std::pair<double, const char*>{1e14, "us"}, {1e11, "ms"}, {1e8, "s"}})
+  for (const auto& [from, unit] : {std::pair<double, const char*>{1e17, "ns"}, {1e14, "us"}, {1e11, "ms"}, {1e8, "s"}})
     if (values.front() > from) return unit;
   const bool counts = values.size() > 2 && values.back() - values.front() == static_cast<double>(values.size() - 1) && step == 1;
   if (counts) return "";
@@ -327,8 +328,9 @@ class ClockLook {
     std::optional<std::size_t> found;
     for (std::size_t i = 0; i < look_.columns.size(); ++i) {
       const LookedColumn& column = look_.columns[i];
-      const bool is_called_time = column.name == "t" || column.name.find("ime") != std::string::npos;
-      const bool has_unit = column.unit == "s" || column.unit == "ms" || column.unit == "us" || column.unit == "min";
+      const bool is_called_time =
+          column.name == "t" || column.name.find("ime") != std::string::npos || column.name.find("stamp") != std::string::npos;
+      const bool has_unit = column.unit == "s" || column.unit == "ms" || column.unit == "us" || column.unit == "ns" || column.unit == "min";
       const bool is_likely = is_called_time || has_unit;
       if (!is_likely && !column.unit.empty()) continue;  // degrees that grow are no time
       if (!column.is_number || !grows(present(i), is_likely)) continue;
@@ -343,8 +345,9 @@ class ClockLook {
       clock_.unit = guessedTimeUnit(values, usualStep(values));
       clock_.unit_is_guessed = true;
     }
-    if (clock_.unit != "s" && clock_.unit != "ms" && clock_.unit != "us" && clock_.unit != "min" && !clock_.unit.empty()) clock_.unit = "s";
-    clock_.clock.factor = clock_.unit == "ms" ? 1e-3 : clock_.unit == "us" ? 1e-6 : clock_.unit == "min" ? 60 : 1;
+    static const std::map<std::string, double> factors = {{"", 1}, {"s", 1}, {"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}, {"min", 60}};
+    if (!factors.contains(clock_.unit)) clock_.unit = "s";
+    clock_.clock.factor = factors.at(clock_.unit);
     findTurns(values);
     return true;
   }

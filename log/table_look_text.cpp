@@ -52,7 +52,9 @@ bool looksAbsolute(const LookedColumn& column) {
                         : column.unit == "Pa"  ? 0.01
                         : column.unit == "psi" ? 68.94757
                                                : 1;
-  const bool may_be_pressure = column.unit.empty() || in_hPa != 1 || column.unit == "hPa" || column.unit == "mbar";
+  const bool is_called_pressure =
+      column.name.starts_with('p') || column.name.starts_with('P') || column.name.find("ress") != std::string::npos;
+  const bool may_be_pressure = (column.unit.empty() && is_called_pressure) || in_hPa != 1 || column.unit == "hPa" || column.unit == "mbar";
   return column.is_number && may_be_pressure && column.lowest * in_hPa > lowest_hPa && column.lowest * in_hPa < highest_hPa;
 }
 

@@ -44,6 +44,10 @@ TEST(DataChecks, NamesDropoutsAndRowsWithoutANumber) {
   recording.signals[1].values = {1, 2, 3, 4};
   recording.time_s = {0, 0.01, 0.02, 0.5};
   EXPECT_EQ(dataNotes({recording}),
+            std::vector<std::string>{"a.csv: no rows between 0.020 and 0.500 s; the simulation runs through with the command held, and "
+                                     "since it is another one after that, the readings of the next 1 s are left out"});
+  recording.signals[0].values.back() = 0;
+  EXPECT_EQ(dataNotes({recording}),
             std::vector<std::string>{"a.csv: no rows between 0.020 and 0.500 s; the simulation runs through with the command held"});
 }
 

@@ -159,6 +159,31 @@ TEST_F(EvidenceOnARig, PlacesOverlapThroughAllAndThroughPairsOfMuscles) {
   EXPECT_NEAR(priceOf({6}) - priceOf({8}), prices.shared_sensor, 1e-9) << "a fault that all sensors share";
 }
 
+/// Whether the only sensor or the only valve is late, nothing that is recorded says.
+TEST_F(EvidenceOnARig, ADelayOfTheOnlySignalIsOneOfAllSensors) {
+  const auto sharedOn = [&](const Plant& plant) {
+    DiagnosisOptions few;
+    few.candidates = {"sensor_delay", "sensor_bias", "transport_delay"};
+    Causes causes(plant, on_simulation_);
+    causes.hypotheses = hypotheses(plant, few);
+    const Evidence evidence(comparison_, nominal_, causes);
+    std::map<std::string, double> shared;
+    for (std::size_t i = 0; i < causes.hypotheses.size(); ++i) {
+      Explanation explanation;
+      explanation.members = {i};
+      explanation.z = Eigen::VectorXd::Zero(causes.hypotheses[i].coordinateCount());
+      shared[causes.hypotheses[i].label()] = evidence.complexityOf(explanation).shared_sensor;
+    }
+    return shared;
+  };
+  const auto of_length = sharedOn(plant_);
+  EXPECT_EQ(of_length.at("sensor_delay@signal_length_0"), 1);
+  EXPECT_EQ(of_length.at("sensor_bias@signal_length_0"), 0);
+  EXPECT_EQ(of_length.at("transport_delay@muscle_0"), 0);
+  const Plant with_pressure(planted::plant({}, planted::Pressure::measured), options_);
+  EXPECT_EQ(sharedOn(with_pressure).at("sensor_delay@signal_length_0"), 0);
+}
+
 /// A rig's muscle is the only one; an elbow has two, of which one may leak alone, or both.
 TEST_F(EvidenceOnARig, ComponentsShareThePriorOfAnEffect) {
   std::vector<Recording> recordings = planted::plant({});

@@ -72,6 +72,25 @@ TEST(DeadSensor, InOneRecordingIsLeftOutThere) {
 }
 
 /// The muscles of this arm end one millimetre outside their drums: an end that is off by three lies within, and no such robot can be built.
+TEST(Plant, LeavesOutWhatDependsOnCommandsInADropout) {
+  Recording recording = planted::recorded({}, 0.1, 1);  // other commands every half second
+  const auto cut = [&](int first, int last) {
+    recording.time_s.erase(recording.time_s.begin() + first, recording.time_s.begin() + last);
+    for (Signal& signal : recording.signals) signal.values.erase(signal.values.begin() + first, signal.values.begin() + last);
+  };
+  cut(30, 60);  // 0.3 .. 0.6 s, over a change of the command
+  const DiagnosisOptions options;
+  const Plant changed({recording}, options);
+  const std::vector<double>& y = changed.measured(0, 0);
+  EXPECT_TRUE(std::isfinite(y[29]));
+  EXPECT_TRUE(std::isnan(y[30]) && std::isnan(y[130]));
+  EXPECT_TRUE(std::isfinite(y[131]));
+  recording = planted::recorded({}, 0.1, 1);
+  cut(10, 40);  // within one step
+  const Plant held({recording}, options);
+  EXPECT_TRUE(std::isfinite(held.measured(0, 0)[10]));
+}
+
 TEST(Plant, AnEffectWithWhichARobotFileCannotBeBuiltDiverges) {
   std::vector<Recording> recordings;
   for (const double phase : {0.0, 1.0}) {
