@@ -131,9 +131,10 @@ class ConventionCheck {
       double usual = 0, best = 0;
       int best_lag = 0;
       for (int lag = -late; lag <= late; ++lag) usual = std::max(usual, std::abs(at(lag)));
+      if (usual >= follows_from) return;
       for (int lag = -farthest; lag <= farthest; ++lag)
         if (const double r = at(lag); r > best) best = r, best_lag = lag;
-      if (usual >= follows_from || best < same_motion || 1 - best * best > much_clearer * (1 - usual * usual)) return;
+      if (best < same_motion || 1 - best * best > much_clearer * (1 - usual * usual)) return;
       refuse(recording, fmt::format("{} moves as in the model, but {:.1f} s {}: do its clock and that of the commands begin together?",
                                     nameOf(signal), std::abs(best_lag) * lag_step_s, best_lag > 0 ? "later" : "earlier"));
     });

@@ -15,6 +15,7 @@
 #include "musclesim/robot/line_of_pull.h"
 #include "ode_vector.h"
 #include "skeleton.h"
+#include "springs.h"
 
 namespace musclesim {
 
@@ -58,6 +59,8 @@ class Tree {
     for (const auto& body : world_.bodies())
       if (std::ranges::find(shown_, body->id) == shown_.end()) addBody(*body, "free", "  ", out);
     for (const Actuator* actuator : world_.actuators()) addMuscle(*actuator, out);
+    for (const auto& element : world_.forceElements())
+      if (const auto* spring = dynamic_cast<const PointSpring*>(element.get())) addSpring(*spring, out);
     return out;
   }
 
@@ -103,6 +106,13 @@ class Tree {
                        actuator.lengthMm(), actuator.minimumLengthMm(), actuator.maximumLengthMm(),
                        actuator.calculateForce(1, actuator.lengthMm()), actuator.settings().slider_friction_N,
                        actuator.line() ? "" : " in each link");
+  }
+
+  static void addSpring(const PointSpring& spring, std::string& out) {
+    const PointSpringSettings& settings = spring.settings();
+    const double length_mm = spring.lengthMm(), force_N = settings.stiffness_N_per_mm * (length_mm - settings.rest_mm);
+    out += fmt::format("  spring: {:.4g} mm as built, {:.4g} mm at rest, {:.4g} N/mm: {:.4g} N as built\n", length_mm, settings.rest_mm,
+                       settings.stiffness_N_per_mm, settings.pulls_only ? std::max(0.0, force_N) : force_N);
   }
 
   const World& world_;

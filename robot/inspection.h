@@ -9,7 +9,7 @@
 namespace musclesim {
 
 /// The tree of bodies, each with mass, centre of mass and principal moments of inertia, under the joint that holds it; then the muscles
-/// with their lengths. The robot must stand as built.
+/// with their lengths, and springs between bodies. The robot must stand as built.
 std::string describeRobot(const World& world, const Robot& robot);
 
 /// Moment arms of all muscles over one joint:  r_i = -dl_i/dq,  in mm; positive: the muscle turns the joint towards greater angles. All

@@ -136,6 +136,10 @@ PointSpring::PointSpring(World& world, const Attachment& from, const Attachment&
   requireNotNegative("damping of a spring", settings.damping_Ns_per_m);
 }
 
+double PointSpring::lengthMm() const {
+  return (motionOf(ends_[1]).position - motionOf(ends_[0]).position).norm();
+}
+
 void PointSpring::load(bool at_rest, const AddLoad& add) const {
   const Motion from = motionOf(ends_[0]), to = motionOf(ends_[1]);
   const Vector along = to.position - from.position;

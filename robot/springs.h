@@ -32,6 +32,9 @@ class PointSpring final : public ForceElement {
   PointSpring(World& world, const Attachment& from, const Attachment& to, const PointSpringSettings& settings);
   void load(bool at_rest, const AddLoad& add) const override;
   void moveCenter(dBodyID body, const Vector& shift_mm) override;
+  /// Distance of the ends in the present pose.
+  double lengthMm() const;
+  const PointSpringSettings& settings() const { return settings_; }
 
  private:
   double speed_ratio_;  ///< true speed over speed in world units

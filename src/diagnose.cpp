@@ -226,7 +226,7 @@ Action addDiagnose(CLI::App& command, ModelOptions& model) {
       .add_option(
           "--smallest-gap-percent", arguments->smallest_gap_percent,
           "A gap below this share of the motion in every signal counts as none (default 1); 0: look into every gap beyond the noise")
-      ->check(CLI::Range(0, 100));
+      ->check(CLI::Range(0.0, 100.0));
   command.add_option("--fixed-effects", arguments->fixed_effects, "JSON file with effects of the model that are not fitted");
   command.add_flag("--without-active-effects", arguments->without_active_effects,
                    "Compare with the model without the active_effects of the recordings' sidecars: look for them");

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "commands.h"
+#include "diagnosis/data_checks.h"
 #include "log/table_look.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"
@@ -81,9 +82,13 @@ int importCommand(const ImportArguments& arguments) {
   requireOther(sidecarPath(arguments.out), inputs);
   if (!arguments.overwrite) requireNew(arguments.out);
   const Recording recording = importTable(arguments.table, mapping);
-  if (!arguments.quiet)
+  if (!arguments.quiet) {
     for (const auto& note : recording.notes) tell(note);
-  if (!arguments.quiet) noteRobot(recording, arguments.mapping);
+    for (const Dropout& dropout : dropoutsOf(recording))
+      tell(fmt::format("there are no rows between {:.3f} and {:.3f} s: a replay holds the command there",
+                       recording.time_s[dropout.next_row - 1], recording.time_s[dropout.next_row]));
+    noteRobot(recording, arguments.mapping);
+  }
   prepareRecording(arguments.out);
   writeRecording(recording, arguments.out);
   std::vector<std::string> names;

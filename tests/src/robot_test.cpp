@@ -147,6 +147,20 @@ TEST_F(RobotCommand, ShowPrintsTheTreeAndDrawsMomentArms) {
   EXPECT_TRUE(contains(text("picture-moment-arms.svg"), "moment arm [mm]"));
 }
 
+TEST_F(RobotCommand, ShowListsSprings) {
+  ASSERT_EQ(run({"robot", "new", "lever"}).status, 0);
+  change("lever.toml", "[hand]", R"([[spring]]
+from = { body = "bar", at_mm = [100, 0, 0] }
+to = { body = "world", at_mm = [100, -200, 0] }
+stiffness_N_per_mm = 2
+rest_mm = 150
+
+[hand])");
+  const auto shown = run({"robot", "show", "lever.toml"});
+  if (contains(shown.err, "cannot draw") || contains(shown.err, "OSMesa")) GTEST_SKIP() << shown.err;
+  EXPECT_TRUE(contains(shown.out, "spring: 200 mm as built, 150 mm at rest, 2 N/mm: 100 N as built")) << shown.out;
+}
+
 TEST_F(RobotCommand, ExportedRobotsCanBeUsed) {
   for (const std::string name : {"arm", "rig", "elbow", "wrist", "pulley_arm", "spring_bench"}) {
     const auto exported = run({"robot", "export", name, "-o", name + ".toml"});
