@@ -49,10 +49,12 @@ std::vector<Dropout> dropoutsOf(const Recording& recording) {
   std::vector<Dropout> dropouts;
   for (std::size_t row = 1; row < recording.time_s.size(); ++row) {
     if (steps[row - 1] <= usual_steps * usual_s) continue;
-    const bool changes = std::ranges::any_of(recording.signals, [&](const Signal& signal) {
-      return signal.name.starts_with("command_") && signal.values[row] != signal.values[row - 1];
-    });
-    dropouts.push_back({row, changes});
+    const auto any = [&](const auto& holds) { return std::ranges::any_of(recording.signals, holds); };
+    const bool changes =
+        any([&](const Signal& signal) { return signal.name.starts_with("command_") && signal.values[row] != signal.values[row - 1]; });
+    const bool is_of_machine =
+        any([&](const Signal& signal) { return !signal.name.starts_with("command_") && std::isfinite(signal.values[row - 1]); });
+    dropouts.push_back({row, changes && is_of_machine});
   }
   return dropouts;
 }

@@ -19,8 +19,10 @@ bool neverChanges(const std::vector<Recording>& recordings, const std::string& n
 
 /// A pause of more than ten usual steps.
 struct Dropout {
-  std::size_t next_row;   ///< the first one after it
-  bool changes_commands;  ///< they are others after it than before, and nothing says since when
+  std::size_t next_row;  ///< the first one after it
+  /// They are others after it than before, and nothing says since when. Of a row without readings, such as the one that a mapping's
+  /// before_s puts before the first, the commands are known to last until the next.
+  bool changes_commands;
 };
 std::vector<Dropout> dropoutsOf(const Recording& recording);
 /// How long readings depend on commands that are not known: valves, loggers and joints are slower by less.

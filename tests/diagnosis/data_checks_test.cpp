@@ -46,6 +46,13 @@ TEST(DataChecks, NamesDropoutsAndRowsWithoutANumber) {
   EXPECT_EQ(dataNotes({recording}),
             std::vector<std::string>{"a.csv: no rows between 0.020 and 0.500 s; the simulation runs through with the command held, and "
                                      "since it is another one after that, the readings of the next 1 s are left out"});
+  recording.time_s = {0, 0.9, 0.91, 0.92};
+  recording.signals[1].values[0] = nan;
+  ASSERT_EQ(dropoutsOf(recording).size(), 1U);
+  EXPECT_FALSE(dropoutsOf(recording)[0].changes_commands) << "the machine rested before the first row";
+  recording.signals[1].values[0] = 1;
+  EXPECT_TRUE(dropoutsOf(recording)[0].changes_commands);
+  recording.time_s = {0, 0.01, 0.02, 0.5};
   recording.signals[0].values.back() = 0;
   EXPECT_EQ(dataNotes({recording}),
             std::vector<std::string>{"a.csv: no rows between 0.020 and 0.500 s; the simulation runs through with the command held"});
