@@ -418,9 +418,11 @@ Fidelity Plant::possible(Fidelity fidelity) const {
   return substeps_ >= fewest_to_coarsen ? fidelity : Fidelity::fine;
 }
 
+/// Where more were chosen than a replay takes, never fewer than that: the search would lose effects in the error of longer steps.
 int Plant::substepsOf(Fidelity fidelity) const {
-  const int ratio = ratioOf(possible(fidelity));
-  return (substeps_ + ratio - 1) / ratio;
+  const int ratio = ratioOf(possible(fidelity)), usual = reference_->substeps();
+  const int substeps = (substeps_ + ratio - 1) / ratio;
+  return substeps_ > usual ? std::max(substeps, usual) : substeps;
 }
 
 void Plant::count(double simulated_s) const {
