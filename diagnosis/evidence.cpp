@@ -39,15 +39,6 @@ bool Evidence::actsWhereOthersDo(const Explanation& explanation, std::size_t mem
                      });
 }
 
-/// Of the only signal, only what the commands could do as well, such as a delay, counts as a fault of all sensors.
-bool Evidence::sharedByAllSensors(const Hypothesis& fault) const {
-  if (fault.info().stage != Stage::sensor) return false;
-  if (fault.component() == "all") return true;
-  return fault.placeCount() == 1 && !fault.strengths().empty() && std::ranges::any_of(causes_.hypotheses, [&](const Hypothesis& other) {
-           return other.info().stage == Stage::command && other.strengthNames() == fault.strengthNames();
-         });
-}
-
 Complexity Evidence::complexityOf(const Explanation& explanation) const {
   Complexity result;
   Eigen::Index first = 0;
@@ -61,7 +52,7 @@ Complexity Evidence::complexityOf(const Explanation& explanation) const {
     result.effects += (i > 0 ? 1 : 0) + hypothesis.furtherMechanisms();
     result.same_place += (actsWhereOthersDo(explanation, i) ? 1 : 0) + hypothesis.furtherMechanisms();
     result.excess += hypothesis.excess(explanation.z.segment(first, count));
-    result.shared_sensor += sharedByAllSensors(hypothesis) ? 1 : 0;
+    result.shared_sensor += hypothesis.info().stage == Stage::sensor && hypothesis.component() == "all" ? 1 : 0;
     result.places += std::log(hypothesis.placeCount());
     first += count;
   }

@@ -19,9 +19,8 @@ struct Complexity {
   double same_place = 0;  ///< effects on the same muscle or signal as an earlier one, or both on the body, and further mechanisms: they may
                           ///< only mend its law
   double excess = 0;      ///< e-folds by which parameters leave their usual range
-  double shared_sensor =
-      0;              ///< faults that all sensors share; of the only one, a delay, which the readings cannot tell from one of the commands
-  double places = 0;  ///< ln of the number of components that an effect could act on alone: they share its prior
+  double shared_sensor = 0;  ///< faults that all sensors share
+  double places = 0;         ///< ln of the number of components that an effect could act on alone: they share its prior
   constexpr std::array<double, 6> asArray() const { return {parameters, effects, same_place, excess, shared_sensor, places}; }
 };
 /// Nats for one of each; docs/developer/diagnosis.md says on which plants they were found.
@@ -62,7 +61,6 @@ class Evidence {
   double ofSomethingElse(const std::vector<Explanation>& explanations) const;
 
  private:
-  bool sharedByAllSensors(const Hypothesis& fault) const;
   bool actsWhereOthersDo(const Explanation& explanation, std::size_t member) const;
 
   const Comparison& comparison_;

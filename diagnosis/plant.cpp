@@ -110,9 +110,9 @@ int ratioOf(Fidelity fidelity) {
   return 1 << static_cast<int>(fidelity);
 }
 
-/// Whether a sidecar says with how many internal steps this program simulated the recording.
+/// Whether a sidecar says with how many internal steps this program simulated the recording, or which effects were simulated.
 bool isSimulated(const Recording& recording) {
-  return nlohmann::json::parse(recording.info.extra_json, nullptr, false).contains("substeps");
+  return !recording.info.active_effects.empty() || nlohmann::json::parse(recording.info.extra_json, nullptr, false).contains("substeps");
 }
 
 bool hasNumbers(const Signal& signal) {

@@ -42,23 +42,6 @@ class EvidenceOnARig : public testing::Test {
     return result;
   }
 
-  /// Of single effects that are not fitted, by label.
-  std::map<std::string, Complexity> complexityOfSingles(const Plant& plant, const std::vector<std::string>& candidates) const {
-    DiagnosisOptions options;
-    options.candidates = candidates;
-    Causes causes(plant, on_simulation_);
-    causes.hypotheses = hypotheses(plant, options);
-    const Evidence evidence(comparison_, nominal_, causes);
-    std::map<std::string, Complexity> result;
-    for (std::size_t i = 0; i < causes.hypotheses.size(); ++i) {
-      Explanation explanation;
-      explanation.members = {i};
-      explanation.z = Eigen::VectorXd::Zero(causes.hypotheses[i].coordinateCount());
-      result[causes.hypotheses[i].label()] = evidence.complexityOf(explanation);
-    }
-    return result;
-  }
-
   double ofSingle(std::size_t member, double sigmas) const { return evidence_.score(fitted({member}, sigmas)); }
   double priceOf(const std::vector<std::size_t>& members, double z = 0.1) const { return evidence_.price(fitted(members, 1, z)); }
 
@@ -176,17 +159,6 @@ TEST_F(EvidenceOnARig, PlacesOverlapThroughAllAndThroughPairsOfMuscles) {
   EXPECT_NEAR(priceOf({6}) - priceOf({8}), prices.shared_sensor, 1e-9) << "a fault that all sensors share";
 }
 
-/// Whether the only sensor or the only valve is late, nothing that is recorded says.
-TEST_F(EvidenceOnARig, ADelayOfTheOnlySignalIsOneOfAllSensors) {
-  const std::vector<std::string> ids = {"sensor_delay", "sensor_bias", "transport_delay"};
-  const auto of_length = complexityOfSingles(plant_, ids);
-  EXPECT_EQ(of_length.at("sensor_delay@signal_length_0").shared_sensor, 1);
-  EXPECT_EQ(of_length.at("sensor_bias@signal_length_0").shared_sensor, 0);
-  EXPECT_EQ(of_length.at("transport_delay@muscle_0").shared_sensor, 0);
-  const Plant with_pressure(planted::plant({}, planted::Pressure::measured), options_);
-  EXPECT_EQ(complexityOfSingles(with_pressure, ids).at("sensor_delay@signal_length_0").shared_sensor, 0);
-}
-
 /// A rig's muscle is the only one; an elbow has two, of which one may leak alone, or both.
 TEST_F(EvidenceOnARig, ComponentsShareThePriorOfAnEffect) {
   std::vector<Recording> recordings = planted::plant({});
@@ -197,12 +169,23 @@ TEST_F(EvidenceOnARig, ComponentsShareThePriorOfAnEffect) {
     const std::vector<double> command = recording.signals[0].values;
     recording.signals = {{"command_0", command}, {"command_1", command}, {"angle_elbow_deg", recording.signals[1].values}};
   }
-  const Plant elbow(recordings, options_);
-  const auto of = complexityOfSingles(elbow, {"leak", "payload"});
-  EXPECT_NEAR(of.at("leak@muscle_0").places, std::log(2), 1e-12);
-  EXPECT_NEAR(of.at("leak@muscle_1").places, std::log(2), 1e-12);
-  EXPECT_EQ(of.at("leak@all").places, 0);
-  EXPECT_EQ(of.at("payload@hand").places, 0);
+  DiagnosisOptions options;
+  options.candidates = {"leak", "payload"};
+  const Plant elbow(recordings, options);
+  Causes causes(elbow, on_simulation_);
+  causes.hypotheses = hypotheses(elbow, options);
+  const Evidence evidence(comparison_, nominal_, causes);
+  std::map<std::string, double> places;
+  for (std::size_t i = 0; i < causes.hypotheses.size(); ++i) {
+    Explanation explanation;
+    explanation.members = {i};
+    explanation.z = Eigen::VectorXd::Zero(causes.hypotheses[i].coordinateCount());
+    places[causes.hypotheses[i].label()] = evidence.complexityOf(explanation).places;
+  }
+  EXPECT_NEAR(places.at("leak@muscle_0"), std::log(2), 1e-12);
+  EXPECT_NEAR(places.at("leak@muscle_1"), std::log(2), 1e-12);
+  EXPECT_EQ(places.at("leak@all"), 0);
+  EXPECT_EQ(places.at("payload@hand"), 0);
 }
 
 /// A payload is usually up to 1 kg.
