@@ -51,8 +51,13 @@ ActiveEffect effectFrom(const py::handle& value) {
 }  // namespace
 
 Numbers numbersFrom(const py::handle& values, const std::string& what) {
-  Numbers numbers = Numbers::ensure(values);  // clears Python's error if there is one
-  if (!numbers) throw BadParameter(what, textOf(values), fmt::format("be an array of numbers, not {}", typeOf(values)));
+  Numbers numbers;
+  try {
+    numbers = Numbers(py::reinterpret_borrow<py::object>(values));
+  } catch (py::error_already_set& problem) {
+    if (problem.matches(PyExc_KeyboardInterrupt)) throw;
+    throw BadParameter(what, textOf(values), fmt::format("be an array of numbers, not {}", typeOf(values)));
+  }
   if (numbers.ndim() != 1) throw BadParameter(what, "shape " + textOf(numbers.attr("shape")), "have one axis");
   return numbers;
 }
