@@ -213,6 +213,7 @@ class Run {
     if (diagnosis_.before.normalised > 0) diagnosis_.unexplained_percent = 100 * diagnosis_.after.normalised / diagnosis_.before.normalised;
     if (before_residual_.size()) listHeldOut(search_, heldOut(), offer_.after, diagnosis_);
     diagnosis_.drawing = plant_.drawing();
+    diagnosis_.muscle_names = plant_.muscleNames();
     if (plant_.hasOwnSubsteps()) diagnosis_.substeps = plant_.substeps();
     const auto& given = options_.model.initial_state;
     diagnosis_.model_options = modelOptions(plant_, given ? given : plant_.recordings().front().info.initial_state, diagnosis_);

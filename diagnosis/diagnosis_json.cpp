@@ -147,6 +147,7 @@ std::string diagnosisJson(const Diagnosis& d, const std::string& schedule_file) 
   if (d.remainder.in_sigmas > 0) json["remainder"] = toJson(d.remainder);
   if (!d.numbers.empty()) json["numbers"] = listOf(d.numbers);
   if (!d.tuned.empty()) json["tuned"] = listOf(d.tuned);
+  if (!d.muscle_names.empty()) json["muscle_names"] = d.muscle_names;
   if (d.substeps > 0) json["substeps"] = d.substeps;
   json["unexplained_percent"] = d.unexplained_percent;
   json["not_excited"] = d.not_excited;
@@ -171,6 +172,7 @@ std::string diagnosisSummary(const Diagnosis& d) {
   constexpr std::size_t most_listed = 6;  ///< lines of effects, and of sets
   std::string text = verdictSentence(d) + "\n";
   if (d.partial) text = "Interrupted: these are only the results up to the interruption.\n" + text;
+  if (!d.muscle_names.empty()) text += fmt::format("muscles   {}\n", muscleNameWords(d));
   if (!d.tuned.empty()) text += fmt::format("tuned     {} of the model first, see nominal.toml\n", counted(d.tuned.size(), "parameter"));
   if (!d.where.empty()) text += fmt::format("where     {}\n", whereSentence(d));
   const auto listed = [&](const char* title, double probability, const std::string& words) {

@@ -22,7 +22,7 @@ RobotDrawing::Line lineOf(const DrawnPart& part) {
     width = part.size_mm[(longest + 1) % 3];
   }
   auto placed = [&](const Eigen::Vector3f& point) -> Eigen::Vector2d { return (part.pose * point.homogeneous()).head<2>().cast<double>(); };
-  return {"", {placed(-half), placed(half)}, width};
+  return {"", {placed(-half), placed(half)}, width, "bone"};
 }
 
 }  // namespace
@@ -31,8 +31,13 @@ RobotDrawing drawingOf(Simulation& simulation) {
   const Snapshot snapshot = SnapshotTaker(simulation).take(simulation.robot().truth());
   RobotDrawing drawing;
   for (const DrawnPart& part : snapshot.parts) drawing.lines.push_back(lineOf(part));
+  for (const DrawnSpring& spring : snapshot.springs) {
+    RobotDrawing::Line line{"", {}, 2 * spring.radius_mm, "spring"};
+    for (const Eigen::Vector3f& point : spring.points_mm) line.points_mm.push_back(point.head<2>().cast<double>());
+    drawing.lines.push_back(std::move(line));
+  }
   for (std::size_t i = 0; i < snapshot.hoses.size(); ++i) {
-    RobotDrawing::Line line{fmt::format("muscle_{}", i), {}, 2 * snapshot.hoses[i].radius_mm};
+    RobotDrawing::Line line{fmt::format("muscle_{}", i), {}, 2 * snapshot.hoses[i].radius_mm, simulation.robot().actuators()[i]->name()};
     for (const Eigen::Vector3f& point : snapshot.hoses[i].points_mm) line.points_mm.push_back(point.head<2>().cast<double>());
     drawing.lines.push_back(std::move(line));
   }

@@ -7,6 +7,7 @@
 
 #include "../log/columns.h"
 #include "../log/diagram.h"
+#include "loop_pairs.h"
 
 namespace musclesim {
 
@@ -38,11 +39,6 @@ Diagram residualDiagram(const ReplayGap& gap) {
   return diagram;
 }
 
-const ReplayGap* find(const std::vector<ReplayGap>& gaps, const std::string& name) {
-  const auto found = std::ranges::find(gaps, name, &ReplayGap::name);
-  return found == gaps.end() ? nullptr : &*found;
-}
-
 Diagram loop(const ReplayGap& x, const ReplayGap& y) {
   return {fmt::format("{} over {}", y.name, x.name),
           axisTitle(x.name),
@@ -51,40 +47,12 @@ Diagram loop(const ReplayGap& x, const ReplayGap& y) {
            {"simulated", simulated_color, x.simulated, y.simulated, SvgMark::none, simulated_width}}};
 }
 
-/// Pearson's coefficient over the rows where both are measured; 0 where one is constant.
-double correlation(const std::vector<double>& x, const std::vector<double>& y) {
-  double n = 0, sx = 0, sy = 0, sxx = 0, syy = 0, sxy = 0;
-  for (std::size_t row = 0; row < std::min(x.size(), y.size()); ++row) {
-    if (!std::isfinite(x[row]) || !std::isfinite(y[row])) continue;
-    n += 1, sx += x[row], sy += y[row];
-    sxx += x[row] * x[row], syy += y[row] * y[row], sxy += x[row] * y[row];
-  }
-  const double variances = (n * sxx - sx * sx) * (n * syy - sy * sy);
-  return variances > 0 ? (n * sxy - sx * sy) / std::sqrt(variances) : 0;
-}
-
-/// The pressure that goes with an angle most; null if no pressure is measured.
-const ReplayGap* pressureOf(const ReplayGap& angle, const std::vector<ReplayGap>& gaps) {
-  const ReplayGap* best = nullptr;
-  double strongest = 0;
-  for (const ReplayGap& gap : gaps) {
-    if (!gap.name.starts_with("pressure_")) continue;
-    const double strength = std::abs(correlation(gap.measured, angle.measured));
-    if (best && strength <= strongest) continue;
-    best = &gap;
-    strongest = strength;
-  }
-  return best;
-}
-
 std::vector<Diagram> loops(const std::vector<ReplayGap>& gaps) {
+  std::vector<TimedSignal> signals;
+  signals.reserve(gaps.size());
+  for (const ReplayGap& gap : gaps) signals.push_back({gap.name, gap.time_s, gap.measured});
   std::vector<Diagram> diagrams;
-  for (const ReplayGap& gap : gaps) {
-    const ReplayGap* pressure = nullptr;
-    if (gap.name.starts_with("length_")) pressure = find(gaps, fmt::format("pressure_{}", parseColumnName(gap.name).muscle));
-    if (gap.name.starts_with("angle_")) pressure = pressureOf(gap, gaps);
-    if (pressure) diagrams.push_back(loop(*pressure, gap));
-  }
+  for (const auto& [pressure, motion] : loopPairs(signals)) diagrams.push_back(loop(gaps[pressure], gaps[motion]));
   return diagrams;
 }
 

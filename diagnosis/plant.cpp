@@ -323,6 +323,16 @@ RobotDrawing Plant::drawing() const {
   return drawingOf(*reference_);
 }
 
+std::vector<std::string> Plant::muscleNames() const {
+  std::vector<std::string> names;
+  bool is_numbered = true;
+  for (const Actuator* muscle : reference_->robot().actuators()) {
+    is_numbered = is_numbered && muscle->name() == fmt::format("muscle_{}", names.size());
+    names.push_back(muscle->name());
+  }
+  return is_numbered ? std::vector<std::string>{} : names;
+}
+
 bool Plant::hasHand() const {
   return reference_->robot().getState().hand_mm.has_value();
 }

@@ -132,6 +132,8 @@ class Plant {
   bool hasOwnSubsteps() const { return options_.model.substeps > 0 || substeps_ != reference_->substeps(); }
   /// The robot as built.
   RobotDrawing drawing() const;
+  /// Diagnosis::muscle_names.
+  std::vector<std::string> muscleNames() const;
   bool hasHand() const;
   /// Where the model without effects has the hand in the rows of a recording, mm. No rows if nothing is the hand, or if the model diverges.
   Eigen::MatrixX3d nominalHandMm(int recording) const;

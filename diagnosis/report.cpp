@@ -141,8 +141,8 @@ std::string whatElse(const Diagnosis& d) {
 
 /// "Robot elbow; recordings r1.csv, r2.csv, r3.csv."
 std::string subject(const Diagnosis& d) {
-  return fmt::format("Robot {}; recordings {}.", std::filesystem::path(d.robot).filename().string(),
-                     fmt::join(shortNames(d.recordings), ", "));
+  return fmt::format("Robot {}; recordings {}.{}", std::filesystem::path(d.robot).filename().string(),
+                     fmt::join(shortNames(d.recordings), ", "), d.muscle_names.empty() ? "" : " Muscles: " + muscleNameWords(d) + ".");
 }
 
 std::string foot(const Diagnosis& d, const ReportOrigin& origin) {

@@ -145,7 +145,7 @@ std::string robotFigure(const RobotDrawing& drawing, const Place& place) {
         guilty   ? guilty_color
         : muscle ? "#9a9a9a"
                  : "#dcdcdc",
-        std::max(2.0, line.width_mm * scale) + (guilty ? 2 : 0), muscle ? line.component : "bone");
+        std::max(2.0, line.width_mm * scale) + (guilty ? 2 : 0), escapedXml(line.title));
     if (guilty && place.component != "all") {
       const SvgPoint before = points[(points.size() - 1) / 2], behind = points[points.size() / 2];
       labels += guiltyLabel({0.5 * (before.x + behind.x), 0.5 * (before.y + behind.y) - 12}, 14, line.component, width);

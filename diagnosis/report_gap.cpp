@@ -9,6 +9,7 @@
 #include "../base/short_names.h"
 #include "../log/svg.h"
 #include "effect_words.h"
+#include "loop_pairs.h"
 #include "musclesim/effect/catalogue.h"
 #include "report_page.h"
 #include "report_parts.h"
@@ -104,11 +105,6 @@ std::string traceRemark(const Diagnosis& d, const std::string& signal) {
   return shape.empty() ? text : text + (hasAfter(d) ? "; the rest is " : "; it is ") + shape;
 }
 
-const Trace* traceOf(const Diagnosis& d, const std::string& signal) {
-  const auto found = std::ranges::find(d.traces, signal, &Trace::signal);
-  return found == d.traces.end() ? nullptr : &*found;
-}
-
 /// The values of one signal over those of another, at the rows that both have.
 Loop loopOf(const Trace& across, const Trace& up) {
   Loop loop{fmt::format("{} over {}", signalTitle(up.signal), signalTitle(across.signal)),
@@ -177,15 +173,14 @@ std::string loops(const Diagnosis& d) {
   };
   const std::vector<FoundEffect> shown = shownEffects(d);
   if (d.verdict == Verdict::effects_found && std::ranges::none_of(shown, acts_behind_pressure)) return "";
-  constexpr int most_muscles = 4;
-  const auto first_angle = std::ranges::find_if(d.traces, [](const Trace& trace) { return trace.signal.starts_with("angle_"); });
+  constexpr std::size_t most_loops = 8;
+  std::vector<TimedSignal> signals;
+  signals.reserve(d.traces.size());
+  for (const Trace& trace : d.traces) signals.push_back({trace.signal, trace.time_s, trace.measured});
+  std::vector<std::pair<std::size_t, std::size_t>> pairs = loopPairs(signals);
+  if (pairs.size() > most_loops) pairs.resize(most_loops);
   std::string figures;
-  for (int muscle = 0; muscle < most_muscles; ++muscle) {
-    const Trace* pressure = traceOf(d, fmt::format("pressure_{}", muscle));
-    const Trace* length = traceOf(d, fmt::format("length_{}_mm", muscle));
-    if (!length && first_angle != d.traces.end()) length = &*first_angle;
-    if (pressure && length) figures += loopFigure(loopOf(*pressure, *length));
-  }
+  for (const auto& [pressure, motion] : pairs) figures += loopFigure(loopOf(d.traces[pressure], d.traces[motion]));
   if (figures.empty()) return "";
   return heading("Loops") + lead("The same data without time: friction and hysteresis open a loop, a wrong force law bends or shifts it.") +
          "<div class=loops>" + figures + "</div>\n";

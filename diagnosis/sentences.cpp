@@ -58,6 +58,12 @@ std::string effectSentence(const FoundEffect& effect) {
   return effect.label() + (parameters.empty() ? "" : ": " + parameters);
 }
 
+std::string muscleNameWords(const Diagnosis& d) {
+  std::vector<std::string> words;
+  for (const std::string& name : d.muscle_names) words.push_back(fmt::format("{} {}", words.size(), name));
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
 std::string counted(std::size_t count, const std::string& one, const std::string& several) {
   return count == 1 ? "1 " + one : fmt::format("{} {}", count, several.empty() ? one + "s" : several);
 }

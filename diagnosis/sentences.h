@@ -48,6 +48,8 @@ std::string shapeOfRest(const Diagnosis& diagnosis, const std::string& signal);
 /// RMS residual over sigma; 0 if sigma is 0.
 double overNoise(const SignalGap& gap);
 
+/// "0 right, 1 left": Diagnosis::muscle_names.
+std::string muscleNameWords(const Diagnosis& diagnosis);
 /// "1 number", "2 numbers".
 std::string counted(std::size_t count, const std::string& one, const std::string& several = "");
 /// What the numbers of the model take in where no cause is believed; empty if that is not worth telling.

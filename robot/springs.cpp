@@ -136,8 +136,13 @@ PointSpring::PointSpring(World& world, const Attachment& from, const Attachment&
   requireNotNegative("damping of a spring", settings.damping_Ns_per_m);
 }
 
+std::pair<Vector, Vector> PointSpring::endsMm() const {
+  return {motionOf(ends_[0]).position, motionOf(ends_[1]).position};
+}
+
 double PointSpring::lengthMm() const {
-  return (motionOf(ends_[1]).position - motionOf(ends_[0]).position).norm();
+  const auto [from, to] = endsMm();
+  return (to - from).norm();
 }
 
 void PointSpring::load(bool at_rest, const AddLoad& add) const {

@@ -32,6 +32,8 @@ class PointSpring final : public ForceElement {
   PointSpring(World& world, const Attachment& from, const Attachment& to, const PointSpringSettings& settings);
   void load(bool at_rest, const AddLoad& add) const override;
   void moveCenter(dBodyID body, const Vector& shift_mm) override;
+  /// The ends in the present pose, points of the world.
+  std::pair<Vector, Vector> endsMm() const;
   /// Distance of the ends in the present pose.
   double lengthMm() const;
   const PointSpringSettings& settings() const { return settings_; }

@@ -2,9 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "../robot/ode_vector.h"
+#include "../robot/springs.h"
 #include "contacts.h"
 #include "musclesim/base/color.h"
 #include "musclesim/robot/line_of_pull.h"
@@ -73,6 +76,25 @@ std::vector<Eigen::Vector3f> pointsOf(const Actuator& muscle) {
 DrawnHose hoseOf(const Actuator& muscle, const Color& color) {
   const float radius = muscle.line() ? line_radius_mm : static_cast<float>(muscle.settings().bead_radius_mm);
   return {pointsOf(muscle), radius, color, muscle.tensionN(), muscle.minimumLengthMm(), muscle.maximumLengthMm(), muscle.lengthMm()};
+}
+
+/// A coil has straight ends of a tenth of its length each, and the same number of windings at any length.
+DrawnSpring springOf(const PointSpring& spring) {
+  constexpr float wire_radius_mm = 1, coil_radius_mm = 6, straight_share = 0.1F;
+  constexpr int windings = 10, points_per_winding = 10;
+  const auto [from_mm, to_mm] = spring.endsMm();
+  const Eigen::Vector3f from = from_mm.cast<float>(), along = (to_mm - from_mm).cast<float>();
+  DrawnSpring drawn{{from}, wire_radius_mm, {0.35, 0.4, 0.45, ""}};
+  if (!spring.settings().pulls_only && along.norm() > 0) {
+    const Eigen::Vector3f side = along.unitOrthogonal(), other_side = along.normalized().cross(side);
+    for (int i = 0; i <= windings * points_per_winding; ++i) {
+      const float turned = static_cast<float>(i) / points_per_winding, angle = 2 * std::numbers::pi_v<float> * turned;
+      const float share = straight_share + (1 - 2 * straight_share) * turned / windings;
+      drawn.points_mm.push_back(from + share * along + coil_radius_mm * (std::cos(angle) * side + std::sin(angle) * other_side));
+    }
+  }
+  drawn.points_mm.push_back(to_mm.cast<float>());
+  return drawn;
 }
 
 std::optional<Vector> anchorOf(const Joint& joint) {
@@ -168,6 +190,8 @@ Snapshot SnapshotTaker::take(const State& state) {
       for (const Pulley& pulley : actuator->line()->pulleys()) snapshot.parts.push_back(partOf(pulley));
   const auto& muscles = simulation_.robot().actuators();
   for (std::size_t i = 0; i < muscles.size(); ++i) snapshot.hoses.push_back(hoseOf(*muscles[i], muscle_colors_[i]));
+  for (const auto& element : simulation_.world().forceElements())
+    if (const auto* spring = dynamic_cast<const PointSpring*>(element.get())) snapshot.springs.push_back(springOf(*spring));
   snapshot.frames = framesOf(simulation_);
   snapshot.target = target(state);
   snapshot.contacts = contactsOf(simulation_);
@@ -209,6 +233,8 @@ struct GrowingBox {
 Bounds boundsOf(const Snapshot& snapshot) {
   GrowingBox box;
   box.add(snapshot.parts, snapshot.hoses);
+  for (const DrawnSpring& spring : snapshot.springs)
+    for (const auto& point : spring.points_mm) box.add(point, spring.radius_mm);
   if (snapshot.ghost) box.add(snapshot.ghost->parts, snapshot.ghost->hoses);
   return box.bounds;
 }

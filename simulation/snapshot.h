@@ -31,6 +31,13 @@ struct DrawnHose {
   double minimum_length_mm, maximum_length_mm, length_mm;
 };
 
+/// A spring between two points, as the line of its wire: a coil, or straight if it is a rope.
+struct DrawnSpring {
+  std::vector<Eigen::Vector3f> points_mm;
+  float radius_mm;  ///< of the wire
+  Color color;
+};
+
 /// A pose that is drawn as a translucent ghost: the bones and muscles as they were measured.
 struct DrawnGhost {
   std::vector<DrawnPart> parts;  ///< in the order of the snapshot's own
@@ -71,6 +78,7 @@ struct Snapshot {
   std::optional<double> activity;
   std::vector<DrawnPart> parts;
   std::vector<DrawnHose> hoses;
+  std::vector<DrawnSpring> springs;
   std::vector<DrawnFrame> frames;
   std::optional<DrawnTarget> target;
   std::vector<DrawnContact> contacts = {};

@@ -215,6 +215,9 @@ void Scene::addGhost(std::vector<Item>& items, const DrawnGhost& ghost) const {
 std::vector<Scene::Item> Scene::itemsOf(const Snapshot& snapshot, const SceneStyle& style, const V& eye_mm) {
   std::vector<Item> items;
   for (std::size_t i = 0; i < snapshot.hoses.size(); ++i) addHose(items, snapshot.hoses[i], i, style);
+  for (const DrawnSpring& spring : snapshot.springs)
+    for (std::size_t i = 0; i + 1 < spring.points_mm.size(); ++i)
+      items.push_back({&cylinder_, between(spring.points_mm[i], spring.points_mm[i + 1], spring.radius_mm), rgb(spring.color)});
   if (style.frames)
     for (const DrawnFrame& frame : snapshot.frames) addFrame(items, frame);
   if (style.arrows) {

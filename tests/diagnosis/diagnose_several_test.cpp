@@ -50,7 +50,9 @@ TEST(DiagnoseSeveral, TakesNoSecondCauseThatOnlyMendsTheLawOfTheFirst) {
 }
 
 /// Three recordings of a rig with a line muscle under random steps of command, which hide a dead time behind the steep edges of a lag.
-std::vector<Recording> underRandomSteps(const std::vector<ActiveEffect>& effects) {
+/// `unlike_the_model`: numbers of the machine that its sidecar does not tell.
+std::vector<Recording> underRandomSteps(const std::vector<ActiveEffect>& effects,
+                                        const std::map<std::string, double>& unlike_the_model = {}) {
   std::vector<Recording> recordings;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     Recording plan;
@@ -65,7 +67,10 @@ std::vector<Recording> underRandomSteps(const std::vector<ActiveEffect>& effects
       plan.time_s.push_back(0.01 * row);
       plan.signals[0].values.push_back(command);
     }
+    const RecordingInfo told = plan.info;
+    for (const auto& [name, value] : unlike_the_model) plan.info.robot_parameters[name] = value;
     recordings.push_back(measuredUnder(effects, plan, seed, planted::Pressure::measured));
+    recordings.back().info.robot_parameters = told.robot_parameters;
   }
   return recordings;
 }
@@ -89,6 +94,24 @@ TEST(DiagnoseSeveral, IntervalsOfDeadTimeAndLagHoldTheTruth) {
         EXPECT_GT(estimate->second.high, value) << name;
         EXPECT_LT(estimate->second.high - estimate->second.low, 0.1 * value) << name;
       }
+}
+
+/// A load 4 % too heavy, half as much friction again, and a force law 3 % too strong, none of which is tuned.
+TEST(DiagnoseSeveral, NumbersThatNobodyMeasuredHideNoCause) {
+  const std::map<std::string, double> off = {{"rig.load_kg", 2.08}, {"muscle.slider_friction_N", 1.5}, {"force_law.c_kgf", 1.03 * 9.7996}};
+  const std::vector<std::vector<ActiveEffect>> plants = {
+      {{"valve_lag", "muscle_0", {{"fill_time_constant_s", 0.06}, {"vent_time_constant_s", 0.09}}}},
+      {{"transport_delay", "muscle_0", {{"delay_s", 0.05}}},
+       {"braid_hysteresis", "muscle_0", {{"relative_width", 0.1}, {"presliding_mm", 1.0}}}}};
+  for (const std::vector<ActiveEffect>& effects : plants) {
+    const Diagnosis found = diagnose(underRandomSteps(effects, off), {});
+    EXPECT_EQ(found.chosen.size(), effects.size()) << diagnosisSummary(found);
+    for (const ActiveEffect& effect : effects) {
+      const auto named = std::ranges::find(found.effects, effect.id, &FoundEffect::id);
+      ASSERT_NE(named, found.effects.end()) << diagnosisSummary(found);
+      EXPECT_GE(named->probability, 0.8) << diagnosisSummary(found);
+    }
+  }
 }
 
 /// A limited flow fills by whole internal steps, so that the dead time before it may change within one and no pressure with it.

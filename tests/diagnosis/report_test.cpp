@@ -28,6 +28,15 @@ TEST(Report, NamesRobotAndRecordingsFirst) {
   EXPECT_LT(page.find("Robot rig"), page.find("class=\"verdict"));
 }
 
+TEST(Report, TellsTheNamesOfMuscles) {
+  Diagnosis d = answer(Verdict::unexplained);
+  EXPECT_FALSE(contains(diagnosisReport(d), "Muscles:"));
+  d.muscle_names = {"flexor", "extensor <left>"};
+  EXPECT_TRUE(contains(diagnosisReport(d), "fast.csv. Muscles: 0 flexor, 1 extensor &lt;left&gt;."));
+  EXPECT_TRUE(contains(diagnosisSummary(d), "muscles   0 flexor, 1 extensor <left>\n"));
+  EXPECT_TRUE(contains(diagnosisJson(d), R"("muscle_names": [)"));
+}
+
 TEST(Report, SaysInPlainWordsWhatToBelieve) {
   const std::string page = diagnosisReport(sampleDiagnosis());
   EXPECT_TRUE(contains(page, "<strong>Explained</strong>"));
@@ -80,6 +89,10 @@ TEST(Report, ShowsWhatEachCauseRemoves) {
 TEST(Report, ShowsLoopsWhereACauseActsBehindThePressure) {
   Diagnosis d = sampleDiagnosis();
   EXPECT_TRUE(contains(diagnosisReport(d), "length of muscle 0 over pressure of muscle 0"));
+  d.traces.push_back({"fast.csv", "angle_hip_deg", {0, 1, 2}, {1, 2, 3}, {1, 2, 3}, {}});
+  d.traces.push_back({"fast.csv", "angle_knee_deg", {0, 1, 2}, {1, 2, 3}, {1, 2, 3}, {}});
+  EXPECT_TRUE(contains(diagnosisReport(d), "angle of the hip joint over")) << "every joint has a loop";
+  EXPECT_TRUE(contains(diagnosisReport(d), "angle of the knee joint over"));
   d.chosen.pop_back();
   EXPECT_FALSE(contains(diagnosisReport(d), "<h2>Loops"));
 }

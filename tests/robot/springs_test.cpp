@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "../../robot/ode_vector.h"
+#include "../../simulation/snapshot.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/units.h"
 #include "musclesim/simulation/simulation.h"
@@ -142,6 +143,23 @@ TEST(PointSpring, ARopeDoesNotPush) {
   bench.simulation.world().addForceElement(springTo(bench, {.stiffness_N_per_mm = 0.5, .rest_mm = 350, .pulls_only = true}));
   bench.run(0.2);
   EXPECT_NEAR(bench.machine.carriage->getPosition().x(), 0, 1e-9);
+}
+
+TEST(PointSpring, IsDrawnFromEndToEndAsACoilAndARopeAsALine) {
+  Bench bench;
+  bench.simulation.world().addForceElement(springTo(bench, {.stiffness_N_per_mm = 0.5, .rest_mm = 250}));
+  bench.simulation.world().addForceElement(springTo(bench, {.stiffness_N_per_mm = 0.5, .rest_mm = 250, .pulls_only = true}));
+  const Snapshot snapshot = SnapshotTaker(bench.simulation).take(bench.simulation.robot().truth());
+  ASSERT_EQ(snapshot.springs.size(), 2u);
+  const Eigen::Vector3f from(300, 500, 0), to(0, 500, 0);
+  for (const DrawnSpring& spring : snapshot.springs) {
+    EXPECT_LT((spring.points_mm.front() - from).norm(), 1e-3);
+    EXPECT_LT((spring.points_mm.back() - to).norm(), 1e-3);
+  }
+  EXPECT_EQ(snapshot.springs[1].points_mm.size(), 2u);
+  EXPECT_GT(snapshot.springs[0].points_mm.size(), 50u);
+  for (const Eigen::Vector3f& point : snapshot.springs[0].points_mm) EXPECT_LT((point - Eigen::Vector3f(point.x(), 500, 0)).norm(), 7);
+  EXPECT_GT(boundsOf(snapshot).high.x(), 300) << "the picture holds the end in the environment";
 }
 
 TEST(PointSpring, StaysInPlaceWhenTheCentreOfMassMoves) {

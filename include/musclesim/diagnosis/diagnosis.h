@@ -157,9 +157,10 @@ struct PhaseGap {
 /// Front view of the robot as built, in which the report marks a component.
 struct RobotDrawing {
   struct Line {
-    std::string component;  ///< "muscle_0"; bones have none
+    std::string component;  ///< "muscle_0"; bones and springs have none
     std::vector<Eigen::Vector2d> points_mm;
     double width_mm = 0;
+    std::string title = "bone";  ///< in words
   };
   struct Point {
     std::string component;  ///< "joint_elbow", "hand"
@@ -218,6 +219,7 @@ struct Attempt {
 
 struct Diagnosis {
   std::string robot;
+  std::vector<std::string> muscle_names;  ///< that the robot gave its muscles, in their order; empty if they only have numbers
   std::vector<std::string> recordings;
   Verdict verdict = Verdict::no_gap;
   std::vector<Place> where;
