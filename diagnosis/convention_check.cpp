@@ -19,17 +19,20 @@ namespace {
 
 constexpr double thousand_low = 300, thousand_high = 3000;  ///< about a thousand
 constexpr double radian_low = 30, radian_high = 170;        ///< 180 / pi = 57.3, beside friction that takes two thirds of the motion
-constexpr double shortest_s = 0.1;                          ///< no machine answers within less
-constexpr double nearly_all = 0.95;                         ///< share of the readings
-constexpr double beyond_stops_deg = 10;                     ///< more than soft stops give way
-constexpr double beyond_length = 0.1;                       ///< of the shortest and the longest length: more than an attachment is off
-constexpr double beyond_full_scale = 0.3;                   ///< of it: more than pressures overshoot
+constexpr double turn_deg = 360, about_turn_deg = 60, longest_row_s = 0.1;  ///< of a jump; in longer rows a joint may turn so far
+constexpr double shortest_s = 0.1;                                          ///< no machine answers within less
+constexpr double nearly_all = 0.95;                                         ///< share of the readings
+constexpr double beyond_stops_deg = 10;                                     ///< more than soft stops give way
+constexpr double beyond_length = 0.1;      ///< of the shortest and the longest length: more than an attachment is off
+constexpr double beyond_full_scale = 0.3;  ///< of it: more than pressures overshoot
 constexpr double atmosphere_kPa = 101.3, about_atmosphere_kPa = 10;
-constexpr double follows_from = 0.8;      ///< correlation
+constexpr double hardly_open = 0.05, much_more = 10;  ///< of full scale, at which muscles pull next to nothing; motion over the model's
+constexpr double follows_from = 0.8;                  ///< correlation
 constexpr double of_a_wave = 0.97;        ///< correlation: a wave that is late by half a period seems reversed; nothing follows from it
 constexpr double clearly = 0.5;           ///< share of the unexplained variance at which one correlation exceeds another
 constexpr double visible_sigmas = 2;      ///< standard deviation of a signal that moves, over its noise floor
 constexpr double longest_lag_s = 1;       ///< valves, loggers and buses are later than the model by less
+constexpr double earliest_s = 0.2;        ///< a machine is earlier than its model by less: nothing moves before its command
 constexpr double lag_step_s = 0.02;       ///< much shorter than what moves
 constexpr double farthest_clock_s = 20;   ///< that a clock is off in which the motion is looked for
 constexpr double same_motion = 0.95;      ///< correlation of one motion under two clocks, which differ by effects only
@@ -84,6 +87,25 @@ class ConventionCheck {
     });
   }
 
+  /// Refuses an angle that begins again after a turn.
+  void requireUnwrapped() const {
+    forEachReading([&](int signal, int recording) {
+      if (!nameOf(signal).starts_with("angle_")) return;
+      const std::vector<double>&y = plant_.measured(recording, signal), &time_s = plant_.recordings()[index(recording)].time_s;
+      int count = 0;
+      double first_s = 0;
+      for (std::size_t row = 1; row < y.size(); ++row) {
+        const double jump_deg = std::abs(y[row] - y[row - 1]);
+        if (!(std::abs(jump_deg - turn_deg) < about_turn_deg) || time_s[row] - time_s[row - 1] > longest_row_s) continue;
+        if (count++ == 0) first_s = time_s[row];
+      }
+      if (count > 0)
+        refuse(recording, fmt::format("{} jumps by about a turn from one row to the next at {:.2f} s{}: its sensor begins again after 360 "
+                                      "degrees, but the angle must count on (in a mapping: unwrap = 360)",
+                                      nameOf(signal), first_s, count > 1 ? fmt::format(", {} times in all", count) : ""));
+    });
+  }
+
   void requireDegrees() const {
     for (int i = 0; i < signalCount(); ++i) {
       if (!nameOf(i).starts_with("angle_")) continue;
@@ -112,7 +134,7 @@ class ConventionCheck {
     requireGaugePressures();
   }
 
-  /// Refuses a signal that follows the model under a clock that is off by more than machines are late.
+  /// Refuses a signal that follows the model under a clock that is off by more than machines are late or early.
   void requireClocks() const {
     forEachReading([&](int signal, int recording) {
       if (!(goesWithJoints(signal) || nameOf(signal).starts_with("pressure_"))) return;
@@ -127,16 +149,61 @@ class ConventionCheck {
       };
       if (!movesVisibly(signal, sumsOf(time_s, y, x, 0)) || std::min(turnsOf(x, signal), turnsOf(y, signal)) < fewest_turns) return;
       const int late = static_cast<int>(std::lround(longest_lag_s / lag_step_s)),
-                farthest = static_cast<int>(farthest_clock_s / lag_step_s);
+                early = static_cast<int>(std::lround(earliest_s / lag_step_s)), farthest = static_cast<int>(farthest_clock_s / lag_step_s);
       double usual = 0, best = 0;
       int best_lag = 0;
-      for (int lag = -late; lag <= late; ++lag) usual = std::max(usual, std::abs(at(lag)));
-      if (usual >= follows_from) return;
+      for (int lag = -early; lag <= late; ++lag) usual = std::max(usual, std::abs(at(lag)));
       for (int lag = -farthest; lag <= farthest; ++lag)
         if (const double r = at(lag); r > best) best = r, best_lag = lag;
-      if (best < same_motion || 1 - best * best > much_clearer * (1 - usual * usual)) return;
+      const bool is_early = best_lag < -early && best_lag >= -late;  // neighbouring lags resemble each other, so that some may follow, too
+      if ((usual >= follows_from && !is_early) || best < same_motion || 1 - best * best > much_clearer * (1 - usual * usual)) return;
       refuse(recording, fmt::format("{} moves as in the model, but {:.1f} s {}: do its clock and that of the commands begin together?",
                                     nameOf(signal), std::abs(best_lag) * lag_step_s, best_lag > 0 ? "later" : "earlier"));
+    });
+  }
+
+  /// Refuses a recording in which a signal is reversed, or two pressures are exchanged, while they are right in the others: a machine is
+  /// one and the same.
+  void requireLikeTheOthers() const {
+    forEachReading([&](int signal, int recording) {
+      if (goesWithJoints(signal) && correlation(signal, signal, Of::one, recording).isReversed() &&
+          correlation(signal, signal, Of::others, recording).follows())
+        refuse(recording, fmt::format("{} moves opposite to the model there, but not in the other recordings: has its sign changed? In a "
+                                      "mapping, factor = -1 reverses a column",
+                                      nameOf(signal)));
+      for (int other = 0; other < signal; ++other) {
+        if (!nameOf(signal).starts_with("pressure_") || !nameOf(other).starts_with("pressure_")) continue;
+        const auto crossed = [&](Of which) {
+          return std::min(correlation(signal, other, which, recording).highest, correlation(other, signal, which, recording).highest);
+        };
+        const auto own = [&](Of which) {
+          return std::max(correlation(signal, signal, which, recording).highest, correlation(other, other, which, recording).highest);
+        };
+        if (exceeds(crossed(Of::one), own(Of::one)) && exceeds(own(Of::others), crossed(Of::others)))
+          refuse(recording,
+                 fmt::format("{} follows the model's {} there and the other way round, but not in the other recordings: are the two "
+                             "columns exchanged?",
+                             nameOf(signal), nameOf(other)));
+      }
+    });
+  }
+
+  /// Refuses commands that hardly open a valve while the machine moves.
+  void requireFullScale() const {
+    forEachReading([&](int signal, int recording) {
+      if (!goesWithJoints(signal)) return;
+      double largest = 0;
+      for (const Signal& command : plant_.recordings()[index(recording)].signals)
+        for (std::size_t row = 0; command.name.starts_with("command_") && row < command.values.size(); ++row)
+          if (std::isfinite(command.values[row])) largest = std::max(largest, command.values[row]);
+      if (largest > hardly_open) return;
+      const Sums sums = sumsOf(recording, signal, signal, 0);  // x predicted, y measured
+      const double noise = visible_sigmas * plant_.signals()[index(signal)].sigma.value;
+      if (!(sums.n > 0) || sums.ofY() < sums.n * noise * noise || sums.ofY() < much_more * much_more * sums.ofX()) return;
+      refuse(recording,
+             fmt::format("commands stay below {:.2g} % of full scale, at which the model moves {} by {:.2g} (standard deviation), but "
+                         "{:.2g} was measured: are commands and pressures in the unit of their names (bar or MPa, not kPa)?",
+                         100 * largest, nameOf(signal), std::sqrt(sums.ofX() / sums.n), std::sqrt(sums.ofY() / sums.n)));
     });
   }
 
@@ -202,12 +269,14 @@ class ConventionCheck {
   }
 
   /// Zero if either signal does not move visibly.
-  Correlation correlation(int measured, int predicted) const {
+  enum class Of { all, one, others };  ///< recordings: all, a given one, or all but that
+
+  Correlation correlation(int measured, int predicted, Of which = Of::all, int given = 0) const {
     Correlation result;
     for (int lag = 0; lag * lag_step_s <= longest_lag_s; ++lag) {
       double xx = 0, xy = 0, yy = 0, n = 0;
       forEachReading([&](int signal, int recording) {
-        if (signal != measured) return;
+        if (signal != measured || (which != Of::all && (recording == given) != (which == Of::one))) return;
         const Sums sums = sumsOf(recording, measured, predicted, lag);
         xx += sums.ofX(), xy += sums.ofBoth(), yy += sums.ofY(), n += sums.n;
       });
@@ -292,8 +361,11 @@ class ConventionCheck {
       if (differences.empty()) return;
       const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
       std::ranges::nth_element(differences, middle);
-      const double above_kPa = *middle * *full_scale_kPa;
+      const double above = *middle, above_kPa = above * *full_scale_kPa;
       if (std::abs(above_kPa - atmosphere_kPa) > about_atmosphere_kPa) return;
+      const auto alike =
+          std::ranges::count_if(differences, [&](double d) { return std::abs(d - above) * *full_scale_kPa < about_atmosphere_kPa; });
+      if (2 * alike < std::ssize(differences) && !correlation(signal, signal).follows()) return;  // another muscle's pressure
       refuse(recording, fmt::format("{} is {:.0f} kPa above the command, about one atmosphere: it must be the pressure above that of the "
                                     "atmosphere, not the absolute one (in a mapping: offset = {:.4g} for bar, {:.4g} for kPa)",
                                     nameOf(signal), above_kPa, -atmosphere_kPa / kPa_per_bar, -atmosphere_kPa));
@@ -323,8 +395,11 @@ std::vector<std::string> checkConventions(const Plant& plant, const std::vector<
   const ConventionCheck check(plant, nominal);
   check.requireSeconds();
   check.requireThousands();
+  check.requireUnwrapped();
+  check.requireFullScale();
   check.requireDegrees();
   check.requireZeros();
+  check.requireLikeTheOthers();
   check.requireClocks();
   return check.requireSignsAndOrder();
 }

@@ -8,6 +8,7 @@
 #include <map>
 #include <mutex>
 #include <ranges>
+#include <set>
 #include <variant>
 
 #include "../base/parallel.h"
@@ -18,6 +19,7 @@
 #include "musclesim/diagnosis/diagnosis.h"
 #include "musclesim/robot/robot_file.h"
 #include "next_experiment.h"
+#include "odd_recording.h"
 #include "plant.h"
 #include "schedule.h"
 #include "search.h"
@@ -112,7 +114,10 @@ class Run {
     for (const ActiveEffect& effect : plant_.recordings().front().info.active_effects)
       diagnosis_.model_effects.push_back(effect.id + "@" + effect.component);
     for (const std::string& note : plant_.notes()) diagnosis_.notes.push_back(note);
-    for (const auto& [name, value] : plant_.nominalParameters()) diagnosis_.refitted.push_back(name);
+    std::set<std::string> refitted;
+    for (const auto& [name, value] : plant_.nominalParameters()) refitted.insert(name);
+    for (const UncertainNumber& number : plant_.numbers()) refitted.insert(number.parameter.name);
+    diagnosis_.refitted.assign(refitted.begin(), refitted.end());
     diagnosis_.held_out = plant_.split().held_out_words;
     describeCandidates();
     noteEstimated(NoiseSigma::Source::quiet_rows, "the noise floor was estimated from quiet rows");
@@ -183,7 +188,7 @@ class Run {
                                                   search_.hypotheses(), search_.catalogue().sensitivities);
     diagnosis_.where = isolation.places;
     diagnosis_.where_method = isolation.method;
-    monitor_.phase("fitting the likely effects", 600);
+    monitor_.phase("fitting the likely effects", 0);  // a thousand simulations or twenty thousand
     search_.decide();
     diagnosis_.none_of_these = search_.noneOfThese();
     if (!plant_.interrupted()) {
@@ -191,6 +196,9 @@ class Run {
       offer_ = judge(
           search_, heldOut(), options_, [this] { monitor_.count(); }, diagnosis_);
     }
+    const bool is_offered = offer_.after.size() > 0;
+    diagnosis_.odd_recordings = oddRecordings(search_, heldOut(), is_offered ? offer_.explanation.residual : search_.nominalResidual(),
+                                              is_offered ? offer_.after : before_residual_);
     listNumbers(plant_, offer_.explanation, diagnosis_);
     listEffects(search_, heldOut(), options_, diagnosis_);
     listTrials(search_, diagnosis_);

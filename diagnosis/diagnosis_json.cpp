@@ -29,8 +29,11 @@ Json toJson(const Gap& gap) {
 Json toJson(const FoundEffect& effect) {
   Json parameters = Json::object();
   for (const auto& [name, estimate] : effect.parameters) {
-    parameters[name] = {{"value", toJson(estimate.value)}, {"ci95", {toJson(estimate.low), toJson(estimate.high)}}};
-    if (!estimate.is_determined) parameters[name]["determined"] = false;
+    parameters[name] = {{"value", toJson(estimate.value)}};
+    if (estimate.is_determined)
+      parameters[name]["ci95"] = {toJson(estimate.low), toJson(estimate.high)};
+    else
+      parameters[name]["determined"] = false;
   }
   Json json = {{"id", effect.id}, {"component", effect.component}, {"probability", effect.probability}, {"parameters", parameters}};
   if (effect.reduction_percent) json["shrink_percent"] = *effect.reduction_percent;
@@ -147,6 +150,7 @@ std::string diagnosisJson(const Diagnosis& d, const std::string& schedule_file) 
   if (d.remainder.in_sigmas > 0) json["remainder"] = toJson(d.remainder);
   if (!d.numbers.empty()) json["numbers"] = listOf(d.numbers);
   if (!d.tuned.empty()) json["tuned"] = listOf(d.tuned);
+  if (!d.odd_recordings.empty()) json["odd_recordings"] = d.odd_recordings;
   if (!d.muscle_names.empty()) json["muscle_names"] = d.muscle_names;
   if (d.substeps > 0) json["substeps"] = d.substeps;
   json["unexplained_percent"] = d.unexplained_percent;
@@ -196,6 +200,7 @@ std::string diagnosisSummary(const Diagnosis& d) {
     text += fmt::format("how far   {} of the gap on {}; nominal refit {:.1f} %, negative control {:.1f} %\n          {}\n",
                         percentWords(d.reduction_percent), d.held_out, d.nominal_refit_percent, d.negative_control_percent,
                         elsewhereSentence({d.reduction_percent, d.reduction_low_percent, d.reduction_high_percent}));
+  for (const std::string& odd : d.odd_recordings) text += fmt::format("but       {}\n", odd);
   if (!d.next_experiment.commands.empty()) text += fmt::format("next      record next.csv, {}\n", d.next_experiment.why);
   return text;
 }

@@ -108,6 +108,11 @@ std::string ownerWords(const std::string& id, const std::string& component) {
   return spaced(component);
 }
 
+double usualScale(const EffectParameter& parameter) {
+  const double low = parameter.usual_low, high = parameter.usual_high, scale = low > 0 ? std::sqrt(low * high) : (high - low) / 2;
+  return std::isfinite(scale) ? scale : 0;
+}
+
 namespace {
 
 /// A number with its unit as it is said: seconds below one as ms, shares in percent.
@@ -144,13 +149,6 @@ std::string fewDigits(double value, double half) {
   return fmt::format("{:.{}g}", value, count);
 }
 
-/// What is known of a number without any recording: the middle of a usual range of positive numbers by factors, which may span orders of
-/// magnitude; else half of the range. 0 if there is none.
-double usualScale(const EffectParameter& parameter) {
-  const double low = parameter.usual_low, high = parameter.usual_high, scale = low > 0 ? std::sqrt(low * high) : (high - low) / 2;
-  return std::isfinite(scale) ? scale : 0;
-}
-
 /// An interval says something if it is no wider than the usual scale or than plus and minus the value; of a parameter that only says how
 /// something acts, than the value.
 bool saysSomething(const Estimate& estimate, const EffectParameter& parameter) {
@@ -167,12 +165,13 @@ bool doesNothing(const Estimate& estimate, const EffectParameter& parameter) {
   return estimate.value == parameter.neutral;
 }
 
-std::string remarkFor(const Estimate& estimate, const EffectParameter& parameter, const Said& said) {
+/// `is_correction`: the number is added to another one, so that its own usual range says nothing.
+std::string remarkFor(const Estimate& estimate, const EffectParameter& parameter, const Said& said, bool is_correction) {
   const auto limited = [&](double bound) { return std::isfinite(bound) && estimate.value == bound && bound != parameter.neutral; };
   if (limited(parameter.minimum) || limited(parameter.maximum)) return "at its bound";
   if (estimate.low < estimate.high && !saysSomething(estimate, parameter)) return "these recordings hardly determine it";
   if (!estimate.is_determined) return "these recordings do not determine it";
-  if (estimate.value >= parameter.usual_low && estimate.value <= parameter.usual_high) return "";
+  if (is_correction || (estimate.value >= parameter.usual_low && estimate.value <= parameter.usual_high)) return "";
   return fmt::format("usual range {:.4g} to {:.4g} {}", said.factor * parameter.usual_low, said.factor * parameter.usual_high, said.unit);
 }
 
@@ -182,6 +181,11 @@ std::string readingUnit(const FoundEffect& effect, const std::vector<std::string
   for (const std::string& signal : signals)
     if (signal == name || signal.starts_with(name + "_")) return signalUnitWords(signal);
   return "";
+}
+
+/// Whether the effect's numbers are added to those of the model.
+bool isCorrection(const FoundEffect& effect) {
+  return std::ranges::any_of(effect.choices, [](const auto& choice) { return choice.second == "corrected"; });
 }
 
 /// The catalogue's parameters of an effect; none for one that the catalogue does not have.
@@ -210,7 +214,7 @@ std::vector<ParameterLine> parameterLines(const FoundEffect& effect, const std::
     if (number(estimate.value).find_first_of("123456789") == std::string::npos) continue;  // too small to be told
     lines.push_back({spaced(words.label), number(estimate.value) + unit,
                      with_interval ? fmt::format("{} to {}{}", number(estimate.low), number(estimate.high), unit) : "",
-                     remarkFor(estimate, parameter, said)});
+                     remarkFor(estimate, parameter, said, isCorrection(effect))});
   }
   return lines;
 }
@@ -253,15 +257,23 @@ std::string claimOf(const FoundEffect& effect) {
 }  // namespace
 
 std::vector<std::string> claimSentences(const std::vector<FoundEffect>& effects, const std::vector<std::string>& signals) {
-  std::vector<std::pair<std::string, std::vector<std::string>>> claims;
+  struct Claim {
+    std::string words;
+    std::vector<std::string> numbers = {};
+    double probability = 1;  ///< the least of its effects
+  };
+  std::vector<Claim> claims;
   for (const FoundEffect& effect : effects) {
-    const std::string claim = claimOf(effect);
-    auto same = std::ranges::find(claims, claim, &std::pair<std::string, std::vector<std::string>>::first);
-    if (same == claims.end()) same = claims.insert(claims.end(), {claim, {}});
-    if (const std::string numbers = numbersOf(effect, signals); !numbers.empty()) same->second.push_back(numbers);
+    const std::string words = claimOf(effect);
+    auto same = std::ranges::find(claims, words, &Claim::words);
+    if (same == claims.end()) same = claims.insert(claims.end(), {words});
+    if (const std::string numbers = numbersOf(effect, signals); !numbers.empty()) same->numbers.push_back(numbers);
+    same->probability = std::min(same->probability, effect.probability);
   }
   std::vector<std::string> sentences;
-  for (const auto& [claim, numbers] : claims) sentences.push_back(claim + (numbers.empty() ? "" : ": " + listed(numbers)) + ".");
+  for (const Claim& claim : claims)
+    sentences.push_back(claim.words + (claim.numbers.empty() ? "" : ": " + listed(claim.numbers)) +
+                        (claim.probability < nearly_sure ? fmt::format(" ({} likely)", probabilityWords(claim.probability)) : "") + ".");
   return sentences;
 }
 

@@ -33,8 +33,15 @@ struct ParameterLine {
 /// The parameters that do something, in the catalogue's order. `signals` are the compared columns, for the units of readings.
 std::vector<ParameterLine> parameterLines(const FoundEffect& effect, const std::vector<std::string>& signals);
 
+/// What is known of a number without any recording: the middle of a usual range of positive numbers by factors, which may span orders of
+/// magnitude; else half of the range. 0 if there is none.
+double usualScale(const EffectParameter& parameter);
+
+/// Probability below which a cause is not claimed without it.
+inline constexpr double nearly_sure = 0.8;
+
 /// "The pressure of muscle 1 comes late: a dead time of 25 ms and a lag of 40 ms (filling) and 70 ms (venting)." One sentence per
-/// component and claim: effects on one component that claim the same share a sentence.
+/// component and claim: effects on one component that claim the same share a sentence. What is not nearly sure ends with "(38 % likely)".
 std::vector<std::string> claimSentences(const std::vector<FoundEffect>& effects, const std::vector<std::string>& signals);
 
 /// The first letter as a capital.

@@ -11,6 +11,7 @@
 
 #include "../base/parallel.h"
 #include "actuation_phases.h"
+#include "effect_words.h"
 #include "sentences.h"
 #include "tune.h"
 
@@ -26,6 +27,8 @@ std::string labelOf(const Search& search, std::size_t hypothesis) {
   return search.hypotheses()[hypothesis].label();
 }
 
+constexpr double wide = 10;  ///< an interval, over the number or its usual size: nothing is known of its order of magnitude
+
 std::map<std::string, Estimate> estimates(const Hypothesis& hypothesis, const Explanation& fitted, Eigen::Index first) {
   const Eigen::Index count = hypothesis.coordinateCount();
   const Eigen::VectorXd z = fitted.z.segment(first, count), half = fitted.half_width.segment(first, count);
@@ -37,6 +40,11 @@ std::map<std::string, Estimate> estimates(const Hypothesis& hypothesis, const Ex
     result[at[i].first] = {at[i].second, std::min(one[i].second, other[i].second), std::max(one[i].second, other[i].second),
                            coordinate >= count || std::isfinite(half[coordinate])};
   }
+  for (const EffectParameter& parameter : hypothesis.info().parameters)
+    if (const auto found = result.find(parameter.name); found != result.end()) {
+      Estimate& estimate = found->second;
+      if (estimate.high - estimate.low > wide * std::max(usualScale(parameter), std::abs(estimate.value))) estimate.is_determined = false;
+    }
   return result;
 }
 
@@ -300,7 +308,7 @@ void describeRemainder(const Search& search, const HeldOut& held_out, const Eige
   remainder.is_within_steps = stands_out && isWithinSteps(left, diagnosis.unsteady);
   remainder.is_significant = stands_out && !remainder.is_within_steps;
   remainder.percent_of_gap = 100 * left.normalised / diagnosis.before.normalised;
-  remainder.probability = search.noneOfThese();
+  remainder.probability = probabilityOfSomethingElse(search, held_out, after);
   for (const auto& [signal, gap] : left.per_signal)
     if (const double in_sigmas = overNoise(gap); in_sigmas > remainder.in_sigmas) {
       remainder.in_sigmas = in_sigmas;

@@ -24,7 +24,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nats_per_misfit = 24;  ///< of all recordings together, per mean log misfit
 constexpr double scatter = 4;           ///< noise sigmas by which readings scatter
-constexpr double worth_it = 2e-4;       ///< least probability of distinguishing the rivals for a schedule to be proposed
+constexpr double worth_it = 0.05;       ///< least share of its largest possible worth that a schedule must have to be proposed
 constexpr double apart = 0.5;           ///< least difference, in noise sigmas, of rivals that a schedule is said to separate
 
 /// An interval of a signal's values; initially empty.
@@ -236,9 +236,10 @@ Difference differenceOf(const Plant& plant, const InSigmas& in_sigmas, const Eig
   return {std::sqrt(sum / static_cast<double>(plant.signals().size())), plant.signals()[most].name, std::sqrt(largest)};
 }
 
-/// The worth of a schedule, and the difference of every rival from the most probable one; 0 for that one itself.
+/// The worth of a schedule, the worth of one that surely tells all rivals apart, and the difference of every rival from the most probable
+/// one; 0 for that one itself.
 struct Worth {
-  double told = 0;
+  double told = 0, largest = 0;
   std::vector<Difference> from_likeliest;
 };
 
@@ -249,7 +250,7 @@ Worth worthOf(const Plant& plant, const TriedSchedule& trial, const std::vector<
   const Eigen::VectorXd gap = in_sigmas.difference(likeliest, trial.nominal ? *trial.nominal : likeliest);
   double all = 0;
   for (const Rival& rival : rivals) all += rival.probability;
-  Worth worth{0, std::vector<Difference>(rivals.size())};
+  Worth worth{0, 0, std::vector<Difference>(rivals.size())};
   worth.from_likeliest.front() = {0, "", 0};
   for (std::size_t a = 0; a < rivals.size(); ++a)
     for (std::size_t b = a + 1; b < rivals.size(); ++b) {
@@ -257,7 +258,9 @@ Worth worthOf(const Plant& plant, const TriedSchedule& trial, const std::vector<
       for (const std::size_t refitted : {a, b}) {
         const Eigen::VectorXd left = slopes.empty() ? between : leftBy(rivals[refitted], slopes[refitted], in_sigmas, between);
         const double told = -std::expm1(-per_log_misfit * in_sigmas.logMisfit(left, gap));
-        worth.told += rivals[a].probability / all * rivals[b].probability / all * told;
+        const double likely = rivals[a].probability / all * rivals[b].probability / all;
+        worth.told += likely * told;
+        worth.largest += likely;
         if (a > 0) continue;
         const Difference difference = differenceOf(plant, in_sigmas, left);
         if (difference.overall < worth.from_likeliest[b].overall) worth.from_likeliest[b] = difference;
@@ -310,11 +313,11 @@ Experiment nextExperiment(const Plant& plant, const std::vector<Rival>& rivals, 
   for (std::size_t i = 0; i < trials.size(); ++i) order.emplace_back(-worthOf(plant, trials[i], rivals, {}).told, i);
   std::ranges::sort(order);
   Experiment best;
-  double most = worth_it;
+  double most = 0;
   for (std::size_t rank = 0; rank < std::min(refined_count, order.size()); ++rank) {
     const TriedSchedule& trial = trials[order[rank].second];
     const Worth worth = worthOf(plant, trial, rivals, slopesOf(plant, trial, rivals, fidelity, job_count, on_simulation));
-    if (worth.told <= most) continue;
+    if (worth.told <= most || worth.told < worth_it * worth.largest) continue;
     most = worth.told;
     best = experimentOf(trial, rivals, worth);
   }

@@ -22,6 +22,17 @@ struct SignWords {
   std::string sentence;
 };
 
+/// Where something else is left, and no other cause would do as well.
+std::string sentenceOfPart(const Diagnosis& d) {
+  const bool are_several = d.chosen.size() > 1;
+  const char *causes = are_several ? "causes" : "cause", *their = are_several ? "their" : "its";
+  const std::vector<FoundEffect> shown = shownEffects(d);
+  if (std::ranges::all_of(shown, [](const FoundEffect& effect) { return effect.probability >= nearly_sure; }))
+    return fmt::format("Believe the place and the kind of the {}; {} numbers are rough, and something else is left.", causes, their);
+  return fmt::format("Believe the {} only as far as the percentages below say; {} numbers are rough, and something else is left.", causes,
+                     their);
+}
+
 SignWords signWords(const Diagnosis& d, Belief belief) {
   const bool are_several = d.chosen.size() > 1;
   switch (belief) {
@@ -32,8 +43,7 @@ SignWords signWords(const Diagnosis& d, Belief belief) {
       return {"partly", "Explained in part",
               isAmbiguous(d) ? fmt::format("Other causes would explain these recordings as well: record more before you rely on {}.",
                                            are_several ? "these" : "this one")
-                             : fmt::format("Believe the place and the kind of the {}; {} numbers are rough, and something else is left.",
-                                           are_several ? "causes" : "cause", are_several ? "their" : "its")};
+                             : sentenceOfPart(d)};
     case Belief::cannot_tell:
       return {"cannot_tell", "Cannot tell", "Believe none of the causes yet."};
     case Belief::no_gap:

@@ -60,13 +60,18 @@ std::string referenceOf(const std::string& id) {
       escapedXml(id));
 }
 
+/// "96.2 %", or "nothing (it makes the gap larger)".
+std::string removedWords(double percent) {
+  return percent < 0 ? "nothing (it makes the gap larger)" : percentWords(percent);
+}
+
 std::string effectCard(const FoundEffect& effect, const Diagnosis& d) {
   std::string facts;
   if (effect.probability > 0) facts = fmt::format("Probability {}. ", probabilityWords(effect.probability));
-  if (effect.reduction_percent) facts += fmt::format("Removes {} of the gap alone", percentWords(*effect.reduction_percent));
+  if (effect.reduction_percent) facts += fmt::format("Removes {} of the gap alone", removedWords(*effect.reduction_percent));
   if (effect.removes_percent && d.chosen.size() > 1)
     facts +=
-        fmt::format("{} {} {}", effect.reduction_percent ? ", and" : "Removes", percentWords(*effect.removes_percent), "beside the others");
+        fmt::format("{} {} {}", effect.reduction_percent ? ", and" : "Removes", removedWords(*effect.removes_percent), "beside the others");
   if (effect.reduction_percent || (effect.removes_percent && d.chosen.size() > 1)) facts += ".";
   return fmt::format(
       "<article class=card data-effect=\"{0}\"><div><div><h3>{1}</h3><p "
@@ -88,7 +93,7 @@ std::string otherCauses(const Diagnosis& d, const std::vector<FoundEffect>& show
         "<td class=number data-head=\"removes alone\">{}</td></tr>\n",
         escapedXml(effectTitleOn(effect.label())), breakableCode(effect.label()), probabilityWords(effect.probability),
         escapedXml(fmt::format("{}", fmt::join(values, "; "))),
-        effect.reduction_percent ? percentWords(*effect.reduction_percent) : "not tried");
+        effect.reduction_percent ? removedWords(*effect.reduction_percent) : "not tried");
   }
   rows += fmt::format("<tr><td data-head=cause>none of these</td><td class=number data-head=probability>{}</td><td></td><td></td></tr>\n",
                       probabilityWords(d.none_of_these));

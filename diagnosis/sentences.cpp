@@ -305,8 +305,9 @@ std::string unsteadyWords(const Unsteady& unsteady) {
 /// The probability that something else acts than the candidates, if it is worth saying.
 std::string noneWords(const Diagnosis& d) {
   constexpr double worth_saying = 0.1;
-  if (d.none_of_these < worth_saying) return "";
-  std::string words = fmt::format("With a probability of {}, something acts that is ", probabilityWords(d.none_of_these));
+  const double something_else = std::max(d.none_of_these, d.remainder.probability);
+  if (something_else < worth_saying) return "";
+  std::string words = fmt::format("With a probability of {}, something acts that is ", probabilityWords(something_else));
   if (d.candidates.empty()) return words + "none of the known effects, alone or beside them.";
   if (d.candidates.size() == 1)
     words += fmt::format("not {}, alone or beside it", d.candidates.front());

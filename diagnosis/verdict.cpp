@@ -12,6 +12,7 @@ namespace {
 
 constexpr double named = 0.5;    ///< probability above which an explanation, or none_of_these, is the answer
 constexpr double clearly = 2.5;  ///< nats by which an explanation must be ahead of a model without effects
+constexpr double expected = 2;   ///< tolerances by which a number of the model may be off (95 % of all are less)
 
 std::vector<std::string> labelsOf(const Model& model) {
   std::vector<std::string> labels;
@@ -38,6 +39,13 @@ bool numbersDoAsWell(const Search& search, const Eigen::VectorXd& refitted, doub
   return score < clearly + std::max(of_refit, search.nothing().score);
 }
 
+/// Offers the model without effects, with its numbers fitted, and its residual on the held-out rows. Offers nothing if it diverges.
+Offer numbersAlone(const Search& search, const HeldOut& held_out) {
+  const Eigen::VectorXd predicted = held_out.comparison.predicted(search.modelOf(search.nothing()));
+  if (!predicted.size()) return {};
+  return {search.nothing(), held_out.comparison.measured() - predicted};
+}
+
 /// Measures the controls, the negative one with as many disturbances as the best explanation has coordinates. True if
 /// numbersDoAsWell().
 bool measureControls(const Search& search, const HeldOut& held_out, const DiagnosisOptions& options, const OnSimulation& on_simulation,
@@ -54,16 +62,27 @@ bool measureControls(const Search& search, const HeldOut& held_out, const Diagno
           negativeControlResidual(comparison, held_out.comparison, static_cast<int>(best.z.size()), options.seed, on_simulation);
   });
   const auto percentOf = [&](const Eigen::VectorXd& residual) { return residual.size() ? held_out.reductionPercent(residual) : 0.0; };
-  diagnosis.nominal_refit_percent = percentOf(nominal.held_out);
+  diagnosis.nominal_refit_percent = std::max(percentOf(nominal.held_out), percentOf(numbersAlone(search, held_out).after));
   diagnosis.negative_control_percent = percentOf(negative_control);
   return numbersDoAsWell(search, nominal.fitted, search.likeliest().score);
 }
 
-/// Offers the model without effects, with its numbers fitted, and its residual on the held-out rows. Offers nothing if it diverges.
-Offer numbersAlone(const Search& search, const HeldOut& held_out) {
-  const Eigen::VectorXd predicted = held_out.comparison.predicted(search.modelOf(search.nothing()));
-  if (!predicted.size()) return {};
-  return {search.nothing(), held_out.comparison.measured() - predicted};
+/// Whether no signal stands out of its noise, or only by a SmallGap, which is then told.
+bool isSmall(const Comparison& comparison, const Eigen::VectorXd& residual, const DiagnosisOptions& options,
+             std::optional<SmallGap>& told) {
+  if (isWithinNoise(comparison, residual)) return true;
+  const SmallGap left = largestBesideMotion(comparison, residual);
+  if (!(left.percent_of_motion < options.smallest_gap_percent)) return false;
+  told = left;
+  return true;
+}
+
+/// Whether the numbers of the model, none of them further off than is to be expected, leave no gap or a SmallGap on the fitted recordings.
+bool numbersSuffice(const Search& search, const DiagnosisOptions& options) {
+  const Explanation& no_effect = search.nothing();
+  std::optional<SmallGap> left;
+  return no_effect.numbers.size() > 0 && no_effect.numbers.cwiseAbs().maxCoeff() <= expected &&
+         no_effect.residual.size() == search.fitComparison().size() && isSmall(search.fitComparison(), no_effect.residual, options, left);
 }
 
 /// Reports the gap with fitted numbers; `are_all` says that no more than noise or a SmallGap is left, so that the verdict is `no_gap`.
@@ -77,6 +96,10 @@ void acceptNumbers(const Eigen::VectorXd& after, const HeldOut& held_out, bool a
 
 }  // namespace
 
+double probabilityOfSomethingElse(const Search& search, const HeldOut& held_out, const Eigen::VectorXd& after) {
+  return std::max(search.noneOfThese(), probabilityOfUnknown(shareOfMisfitLeft(held_out.comparison, held_out.before, after)));
+}
+
 double HeldOut::reductionPercent(const Eigen::VectorXd& residual) const {
   return gapReductionPercent(comparison.gap(before), comparison.gap(residual));
 }
@@ -86,14 +109,9 @@ Offer judge(const Search& search, const HeldOut& held_out, const DiagnosisOption
   if (search.explanations().empty()) return {};
   const Explanation& best = search.explanations().front();
   const double likeliest = search.likeliest().probability, ahead = std::log(likeliest / search.nothing().probability);  // nats
-  if (ahead < 0 || (ahead < clearly && likeliest <= named)) {
+  if (ahead < 0 || (ahead < clearly && likeliest <= named) || numbersSuffice(search, options)) {
     Offer numbers = numbersAlone(search, held_out);
-    bool are_all = numbers.after.size() > 0 && isWithinNoise(held_out.comparison, numbers.after);
-    if (numbers.after.size() > 0 && !are_all) {
-      const SmallGap left = largestBesideMotion(held_out.comparison, numbers.after);
-      are_all = left.percent_of_motion < options.smallest_gap_percent;
-      if (are_all) diagnosis.small_gap = left;
-    }
+    const bool are_all = numbers.after.size() > 0 && isSmall(held_out.comparison, numbers.after, options, diagnosis.small_gap);
     if (are_all || ahead < 0) {
       if (numbers.after.size() > 0) acceptNumbers(numbers.after, held_out, are_all, diagnosis);
       return numbers;
@@ -114,10 +132,7 @@ Offer judge(const Search& search, const HeldOut& held_out, const DiagnosisOption
   const bool is_of_use = std::min(left_of_rms, search.noneOfThese()) <= named;
   const bool found = is_of_use && !numbers_do_as_well && attempt.reduction_percent > diagnosis.nominal_refit_percent &&
                      clearlyBeats(attempt.reduction_percent, diagnosis.negative_control_percent);
-  if (found) {
-    const double on_held_out = probabilityOfUnknown(shareOfMisfitLeft(held_out.comparison, held_out.before, after));
-    diagnosis.none_of_these = std::min(named, std::max(search.noneOfThese(), on_held_out));
-  }
+  if (found) diagnosis.none_of_these = stand_in_share * std::min(named, probabilityOfSomethingElse(search, held_out, after));
   // Not offered, because it does not hold on the held-out data or gains no more than a control.
   if (!found && attempt.reduction_percent <= std::max({0.0, diagnosis.nominal_refit_percent, diagnosis.negative_control_percent}))
     return {};

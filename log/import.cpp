@@ -182,7 +182,7 @@ class Import {
         const bool is_own = mapping_.places.contains(memberOf(column) + ".time");
         const std::string of_table = clockMember(fmt::format("tables.{}.", column.table));
         std::vector<double> times_s = timesOf(other, *column.clock, is_own ? memberOf(column) + ".time" : of_table);
-        shift(times_s);
+        if (countsFrom1970(times_s)) shift(times_s);
         addSeries(column, other, times_s, ImportSeries::Clock::own);
         series_.back().requireOverlap(column, clock_);
       }
@@ -205,6 +205,12 @@ class Import {
     for (const ColumnName& column : {clock.from, clock.date})
       if (!column.empty()) indexIn(table, column, member);
     return rowTimes(table, clock, notes_);
+  }
+
+  /// A clock beside one that counts from 1970 may count from elsewhere: then its times, with their offset, are those after the first row.
+  static bool countsFrom1970(const std::vector<double>& times_s) {
+    const auto first = std::ranges::find_if(times_s, [](double time_s) { return !std::isnan(time_s); });
+    return first != times_s.end() && std::abs(*first) >= epoch_s;
   }
 
   /// A clock that counts from 1970 begins at 0 in the recording.

@@ -162,6 +162,15 @@ void readLimits(ImportColumn& column, Members& members, const toml::table& table
     members.refuse(table, column.written + ": clipped_below must be less than clipped_above");
 }
 
+void readUnwrap(ImportColumn& column, Members& members, const toml::table& table) {
+  column.unwrap = members.get<double>("unwrap", "a number");
+  if (!column.unwrap) return;
+  if (!(*column.unwrap > 0))
+    members.refuse(table, fmt::format("{}: unwrap = {:g} must be positive: 360 for degrees", column.written, *column.unwrap));
+  if (column.name.starts_with("command_") || column.from.empty())
+    members.refuse(table, column.written + ": unwrap is for a sensor that begins again, which commands and constants do not");
+}
+
 ImportColumn readColumn(const std::string& name, const toml::node& node, const std::string& file) {
   if (const auto from = node.value<std::string>()) return importColumn(name, {*from, 0});
   ImportColumn column = importColumn(name, {});
@@ -179,6 +188,7 @@ ImportColumn readColumn(const std::string& name, const toml::node& node, const s
   column.minimum = members.get<double>("minimum", "a number").value_or(column.minimum);
   column.maximum = members.get<double>("maximum", "a number").value_or(column.maximum);
   readLimits(column, members, *table);
+  readUnwrap(column, members, *table);
   column.linear = members.get<bool>("linear", "true or false").value_or(column.linear);
   subtractAmbient(column, members, node);
   column.value = value.value_or(0);

@@ -42,10 +42,17 @@ ImportSeries::ImportSeries(double constant) : time_s_{-std::numeric_limits<doubl
 ImportSeries::ImportSeries(const ImportColumn& column, const DataTable& table, std::size_t table_column, const std::vector<double>& times_s,
                            const ImportMapping& mapping, Clock clock, std::vector<std::string>& notes)
     : clock_(clock), table_(&table), column_(table_column) {
-  std::size_t empty_count = 0, clipped_count = 0;
-  double last_s = no_reading;
+  std::size_t empty_count = 0, clipped_count = 0, wrap_count = 0;
+  double last_s = no_reading, last_cell = no_reading, turned = 0;
   for (std::size_t row = 0; row < times_s.size(); ++row) {
-    const double cell = table.number(row, column_), value = column.valueOf(cell);
+    const double cell = table.number(row, column_);
+    if (column.unwrap && !std::isnan(cell)) {
+      const double turns = std::isnan(last_cell) ? 0 : std::round((last_cell - cell) / *column.unwrap);
+      turned += turns * *column.unwrap;
+      wrap_count += turns != 0;
+      last_cell = cell;
+    }
+    const double value = column.valueOf(cell + turned);
     if (!isTime(times_s[row]) || times_s[row] == last_s) continue;
     last_s = times_s[row];
     empty_count += std::isnan(value);
@@ -56,6 +63,8 @@ ImportSeries::ImportSeries(const ImportColumn& column, const DataTable& table, s
     rows_.push_back(row);
   }
   if (empty_count > 0) notes.push_back(fmt::format("{}: {} of {} cells hold no reading", column.name, empty_count, times_s.size()));
+  if (wrap_count > 0)
+    notes.push_back(fmt::format("{}: begins again after {:g}, {} times; the readings count on", column.name, *column.unwrap, wrap_count));
   if (clipped_count > 0)
     notes.push_back(fmt::format("{}: {} of {} cells are where the sensor or the table clips, and are not measured", column.name,
                                 clipped_count, times_s.size()));

@@ -208,6 +208,8 @@ std::string mappingText(const TableLook& look) {
       inQuotes(std::filesystem::path(look.file).filename().string()));
   text += "robot = \"rig\"                        # rig, elbow, arm, wrist, pulley_arm, spring_bench, or a robot file\n";
   text += "pressure_full_scale_kPa = 600        # the pressure that counts as 1\n";
+  if (std::ranges::any_of(look.columns, [](const LookedColumn& column) { return column.unit == "V"; }))
+    text += "command_full_scale_V = 10            # the voltage that counts as 1\n";
   if (!isMatlabFile(look.file)) text += formatMembers(look.format);
   text += "\n[columns]                            # column of the recording = column of the table\n" + clockLine(look) + "\n";
   Suggestions suggestions;

@@ -150,6 +150,31 @@ void findLooseEnds(const Robot& robot, std::vector<std::string>& found) {
   }
 }
 
+/// Bodies whose moment of inertia needs mass far outside of their shapes: likely another unit.
+void findInertias(const World& world, std::vector<std::string>& found) {
+  constexpr double far_out = 2;  // times as far from the centre of mass as any point of the shapes
+  for (const auto& body : world.bodies()) {
+    dMass mass;
+    dBodyGetMass(body->id, &mass);
+    const double largest = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(matrixFromOde(mass.I)).eigenvalues().maxCoeff();
+    const double radius_mm = std::sqrt(largest / mass.mass);
+    double farthest_mm = 0;
+    for (const Primitive* part : body->parts) {
+      dReal box[6];  // least and greatest x, y, z
+      dGeomGetAABB(part->geom(), box);
+      for (int corner = 0; corner < 8; ++corner) {
+        const Vector at(box[corner & 1], box[2 + (corner >> 1 & 1)], box[4 + (corner >> 2 & 1)]);
+        farthest_mm = std::max(farthest_mm, (at - positionOf(body->id)).norm());
+      }
+    }
+    if (farthest_mm > 0 && radius_mm > far_out * farthest_mm)
+      found.push_back(
+          fmt::format("{} has the moment of inertia of a mass {:.3g} mm away from its centre (its radius of gyration), but its shape "
+                      "ends at {:.3g} mm: are mass and inertia in g and g mm^2?",
+                      body->parts.front()->name(), radius_mm, farthest_mm));
+  }
+}
+
 std::optional<std::size_t> coordinateOf(const Skeleton& skeleton, const Joint& joint, int axis) {
   const auto& all = skeleton.coordinates();
   const auto place = std::ranges::find_if(all, [&](const Coordinate& c) { return c.joint == &joint && c.axis == axis; });
@@ -261,6 +286,7 @@ std::vector<std::string> oddities(World& world, const Robot& robot) {
     found.emplace_back("neither an angle nor a hand is reported: recordings hold pressures, forces and lengths only");
   findLooseEnds(robot, found);
   findOverlaps(world, found);
+  findInertias(world, found);
   try {
     if (robot.actuators().empty()) return found;
     findMotions(momentArms(world, robot), robot, found);

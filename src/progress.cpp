@@ -55,6 +55,7 @@ void Progress::show(double simulated_s, const std::string& detail) {
 
 void PhaseProgress::show(const std::string& phase, long done, long expected) {
   if (!line_.isDue(false)) return;
+  if (done >= expected) return line_.show(fmt::format("{}: {} simulations so far, {}", phase, done, duration(line_.wallS())));
   const double left_s = done > 0 ? line_.wallS() / static_cast<double>(done) * static_cast<double>(expected - done) : 0;
   line_.show(fmt::format("{}: {} of about {} simulations, about {} left in this phase", phase, done, expected, duration(left_s)));
 }

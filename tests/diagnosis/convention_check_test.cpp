@@ -147,6 +147,77 @@ TEST(Conventions, AnotherClockIsRefused) {
   EXPECT_TRUE(says(refusal, "angle_elbow_deg moves as in the model, but 1.4 s earlier: do its clock")) << refusal;
 }
 
+/// No machine moves half a second before its command; half a second late it may be.
+TEST(Conventions, AClockThatIsALittleEarlyIsRefused) {
+  const auto movedBy = [](std::ptrdiff_t rows) {
+    Recording recording = armUnderRandomLevels();
+    for (const char* name : {"angle_elbow_deg", "angle_shoulder_deg"}) {
+      std::vector<double>& angle = valuesOf(recording, name);
+      if (rows > 0) {
+        std::rotate(angle.begin(), angle.begin() + rows, angle.end());
+        std::fill(angle.end() - rows, angle.end(), std::nan(""));
+      } else {
+        std::rotate(angle.rbegin(), angle.rbegin() - rows, angle.rend());
+        std::fill(angle.begin(), angle.begin() - rows, std::nan(""));
+      }
+    }
+    return refusalOf(recording);
+  };
+  EXPECT_TRUE(says(movedBy(55), "s earlier: do its clock")) << movedBy(55);
+  EXPECT_EQ(movedBy(10), "") << "a twentieth of a second: the model may be as slow";
+  EXPECT_EQ(movedBy(-50), "");
+}
+
+/// What the refusal of three recordings says, of which the second one is changed.
+std::string refusalAmongOthers(const std::function<void(Recording&)>& change) {
+  std::vector<Recording> recordings = {elbow(1.7), elbow(1.1), elbow(1.4)};
+  for (std::size_t i = 0; i < recordings.size(); ++i) recordings[i].file = fmt::format("r{}.csv", i + 1);
+  change(recordings[1]);
+  DiagnosisOptions options;
+  const Plant plant(recordings, options);
+  try {
+    checkConventions(plant, {plant.predict(0, Model{}), plant.predict(1, Model{}), plant.predict(2, Model{})});
+  } catch (const BadFile& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Conventions, OneRecordingThatIsUnlikeTheOthersIsRefused) {
+  EXPECT_EQ(refusalAmongOthers([](Recording&) {}), "");
+  const std::string reversed = refusalAmongOthers([](Recording& r) {
+    for (double& v : valuesOf(r, "angle_elbow_deg")) v = -v;
+  });
+  EXPECT_TRUE(says(reversed, "r2.csv: angle_elbow_deg moves opposite to the model there, but not in the other recordings")) << reversed;
+  const std::string exchanged = refusalAmongOthers([](Recording& r) { std::swap(valuesOf(r, "pressure_0"), valuesOf(r, "pressure_1")); });
+  EXPECT_TRUE(says(exchanged, "r2.csv: pressure_1 follows the model's pressure_0 there")) << exchanged;
+}
+
+TEST(Conventions, AnAngleThatBeginsAgainAfterATurnIsRefused) {
+  const std::string refusal = refusalAfter([](Recording& r) {
+    for (double& v : valuesOf(r, "angle_elbow_deg")) v = v < 3 ? v + 360 : v;
+  });
+  EXPECT_TRUE(says(refusal, "angle_elbow_deg jumps by about a turn") && says(refusal, "unwrap = 360")) << refusal;
+}
+
+TEST(Conventions, CommandsThatOpenNoValveWhileTheMachineMovesAreRefused) {
+  const std::string refusal = refusalAfter([](Recording& r) {
+    for (const char* name : {"command_0", "command_1", "pressure_0", "pressure_1"})
+      for (double& v : valuesOf(r, name)) v /= 100;
+  });
+  EXPECT_TRUE(says(refusal, "commands stay below 0.65 % of full scale") && says(refusal, "bar or MPa, not kPa")) << refusal;
+}
+
+/// Pressures of antagonists that are exchanged may differ by about one atmosphere in the mean.
+TEST(Conventions, AnotherMusclesPressureIsNotTakenForAnAbsoluteOne) {
+  const std::string refusal = refusalAfter([](Recording& r) {
+    std::vector<double>&one = valuesOf(r, "pressure_0"), &other = valuesOf(r, "pressure_1");
+    std::swap(one, other);
+    for (double& v : one) v += 101.3 / full_scale_kPa;
+  });
+  EXPECT_FALSE(says(refusal, "atmosphere")) << refusal;
+}
+
 TEST(Conventions, ExchangedJointsAreRefused) {
   Recording recording = armUnderRandomLevels();
   EXPECT_EQ(refusalOf(recording), "");

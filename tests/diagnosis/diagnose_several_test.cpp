@@ -114,6 +114,20 @@ TEST(DiagnoseSeveral, NumbersThatNobodyMeasuredHideNoCause) {
   }
 }
 
+/// One of three recordings was made with another load, of which its sidecar says nothing.
+TEST(DiagnoseSeveral, TellsWhichRecordingContradictsTheOthers) {
+  const std::vector<ActiveEffect> lag = {{"valve_lag", "muscle_0", {{"fill_time_constant_s", 0.06}, {"vent_time_constant_s", 0.09}}}};
+  std::vector<Recording> recordings = underRandomSteps(lag);
+  const Diagnosis alike = diagnose(recordings, few({"valve_lag", "transport_delay"}));
+  EXPECT_TRUE(alike.odd_recordings.empty()) << diagnosisSummary(alike);
+  recordings[0] = underRandomSteps(lag, {{"rig.load_kg", 2.6}})[0];
+  const Diagnosis found = diagnose(recordings, few({"valve_lag", "transport_delay"}));
+  ASSERT_EQ(found.odd_recordings.size(), 1U) << diagnosisSummary(found);
+  EXPECT_TRUE(found.odd_recordings.front().starts_with("steps_1.csv contradicts the other recordings: length_0_mm is left off by "))
+      << found.odd_recordings.front();
+  EXPECT_TRUE(contains(diagnosisReport(found), found.odd_recordings.front()));
+}
+
 /// A limited flow fills by whole internal steps, so that the dead time before it may change within one and no pressure with it.
 TEST(DiagnoseSeveral, ADeadTimeIsNotKnownBetterThanTheInternalStep) {
   const std::vector<ActiveEffect> effects = {{"transport_delay", "muscle_0", {{"delay_s", 0.045}}},

@@ -456,6 +456,13 @@ TEST_F(ForeignTable, LookingMentionsWhatIsThereTwice) {
     EXPECT_TRUE(contains(mapping, line));
 }
 
+TEST_F(ForeignTable, AMappingOfVoltagesSaysTheirFullScale) {
+  const std::string volts = mappingText(lookAtTable(write("a.csv", "time [s],u [V]\n0,2\n1,3\n2,4\n")));
+  EXPECT_TRUE(contains(volts, "\ncommand_full_scale_V = 10 ") && contains(volts, "# command_0_V = \"u [V]\"")) << volts;
+  const std::string bar = mappingText(lookAtTable(write("b.csv", "time [s],u [bar]\n0,2\n1,3\n2,4\n")));
+  EXPECT_FALSE(contains(bar, "full_scale_V")) << bar;
+}
+
 TEST_F(ForeignTable, LookingShowsRangesThatCanBeRead) {
   const TableLook epoch = lookAtTable(write("a.csv", "time,x\n1741560950.25,1\n1741560955.25,2\n1741560960.25,3\n"));
   EXPECT_TRUE(contains(lookText(epoch), "1741560950.25 .. 1741560960.25 (2025-03-09 22:55:50 .. 2025-03-09 22:56:00 UTC)"));

@@ -105,6 +105,33 @@ TEST_F(ImportTest, ColumnsMayComeFromATableWithAClockOfItsOwn) {
   EXPECT_EQ(r.find("command_0")->values, (std::vector<double>{0, 0.5, 1}));
 }
 
+TEST_F(ImportTest, AClockWithoutDatesBesideOneWithDatesCountsFromTheFirstRow) {
+  write("encoder.csv", "t,a\n10.0,1\n10.3,1.6\n11.0,3\n11.3,3.6\n12.0,5\n");
+  const Recording r = import("when,u\n2026-11-02 14:03:05.5,0\n2026-11-02 14:03:06.5,1\n",
+                             "robot = \"elbow\"\n[columns]\ntime_s = { from = \"when\", format = \"%Y-%m-%d %H:%M:%S\" }\n"
+                             "command_0 = \"u\"\ncommand_1 = { value = 0 }\nangle_elbow_deg = { from = \"a\", table = \"encoder.csv\" }\n"
+                             "[tables.\"encoder.csv\"]\ntime_s = { from = \"t\", offset = -10.5 }\n");
+  EXPECT_EQ(r.time_s, (std::vector<double>{0, 1}));
+  EXPECT_EQ(r.find("angle_elbow_deg")->values, (std::vector<double>{2, 4}));
+}
+
+TEST_F(ImportTest, AnEncoderThatBeginsAgainAfterATurnCountsOn) {
+  const std::string columns = "robot = \"elbow\"\n[columns]\ntime_s = \"t\"\ncommand_0 = \"u\"\ncommand_1 = { value = 0 }\n";
+  const std::string table = "t,u,a\n0,0,350\n1,0,358\n2,0,\n3,0,6\n4,0,2\n5,0,355\n";
+  const Recording r = import(table, columns + "angle_elbow_deg = { from = \"a\", unwrap = 360, offset = -350 }\n");
+  const std::vector<double>& angle = r.find("angle_elbow_deg")->values;
+  ASSERT_EQ(angle.size(), 6U);
+  EXPECT_TRUE(std::isnan(angle[2]));
+  for (const auto& [row, expected] : std::vector<std::pair<std::size_t, double>>{{0, 0}, {1, 8}, {3, 16}, {4, 12}, {5, 5}})
+    EXPECT_EQ(angle[row], expected) << row;
+  const auto tellsOf = [](const std::string& note) {
+    return note == "angle_elbow_deg: begins again after 360, 2 times; the readings count on";
+  };
+  EXPECT_EQ(std::ranges::count_if(r.notes, tellsOf), 1) << testing::PrintToString(r.notes);
+  EXPECT_THROW(import(table, columns + "angle_elbow_deg = { from = \"a\", unwrap = 0 }\n"), BadFile);
+  EXPECT_THROW(import(table, "robot = \"rig\"\n[columns]\ntime_s = \"t\"\ncommand_0 = { from = \"u\", unwrap = 360 }\n"), BadFile);
+}
+
 TEST_F(ImportTest, NamesTheTableWhoseClockRunsBackwards) {
   write("commands.csv", "when,u\n2,0\n0,1\n");
   const std::string mapping = std::string(head) +

@@ -100,6 +100,16 @@ TEST_F(RobotCommand, CheckLooksAtSlides) {
   EXPECT_TRUE(contains(across.out, "no muscle moves guide: none pulls along it")) << across.out;
 }
 
+TEST_F(RobotCommand, CheckNamesAnInertiaOfMassFarAway) {
+  ASSERT_EQ(run({"robot", "new", "lever"}).status, 0);
+  change("lever.toml", "mass_g = \"bar_kg * 1000\"", "mass_g = 0.4\ninertia_g_mm2 = [1e5, 1.5e6, 1.5e6]");
+  const std::string out = run({"robot", "check", "lever.toml"}).out;
+  EXPECT_TRUE(contains(out,
+                       "bar has the moment of inertia of a mass 1.94e+03 mm away from its centre (its radius of gyration), but its shape "
+                       "ends at 101 mm"))
+      << out;
+}
+
 TEST_F(RobotCommand, CheckNamesConstantsThatHoldUnsaid) {
   ASSERT_EQ(run({"robot", "new", "lever"}).status, 0);
   const auto checkedWith = [&](const std::string& old, const std::string& law) {

@@ -23,7 +23,7 @@ class RecordFile;
 struct DiagnosisProgress {
   std::string phase;  ///< in a few words
   long done = 0;      ///< simulations so far
-  long expected = 0;  ///< expected in all, as far as known
+  long expected = 0;  ///< expected in all; equal to `done` where that is not known, or more have been done than were expected
 };
 
 /// Parts of the method that a study may leave out, to measure what they are worth:
@@ -246,8 +246,9 @@ struct Diagnosis {
   std::vector<std::string>
       model_effects;                     ///< "id@component" of effects that the diagnosed model has already: the recordings' active_effects
   std::vector<std::string> not_excited;  ///< effects that these recordings could not have shown
-  std::vector<std::string> notes;        ///< remarks on the data and the answer for the user
-  std::optional<SmallGap> small_gap;     ///< with `no_gap` only
+  std::vector<std::string> odd_recordings;  ///< sentences on recordings that are explained far worse than all others
+  std::vector<std::string> notes;           ///< remarks on the data and the answer for the user
+  std::optional<SmallGap> small_gap;        ///< with `no_gap` only
   Unsteady unsteady;
   Experiment next_experiment;
   std::vector<Screening> screenings;  ///< best first

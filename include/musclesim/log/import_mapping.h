@@ -21,7 +21,8 @@ struct ImportColumn {
   double factor = 1, offset = 0, value = 0;
   double minimum, maximum;
   std::optional<double> clipped_below, clipped_above;  ///< limits of the sensor or table, in the table's unit: x there is no reading
-  bool linear = true;                                  ///< false: hold the last value between rows (default for commands)
+  std::optional<double> unwrap;  ///< in the table's unit: the sensor begins again after so much, a turn; the readings count on
+  bool linear = true;            ///< false: hold the last value between rows (default for commands)
 
   /// Whether the table's value x is at one of the limits or beyond it.
   bool isClipped(double x) const { return (clipped_below && x <= *clipped_below) || (clipped_above && x >= *clipped_above); }
