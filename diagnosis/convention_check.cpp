@@ -107,14 +107,14 @@ class ConventionCheck {
   }
 
   void requireDegrees() const {
-    for (int i = 0; i < signalCount(); ++i) {
-      if (!nameOf(i).starts_with("angle_")) continue;
-      const Correlation with_model = correlation(i, i);
+    forEachReading([&](int signal, int recording) {
+      if (!nameOf(signal).starts_with("angle_")) return;
+      const Correlation with_model = correlation(signal, signal, Of::one, recording);
       const double size = std::max(with_model.ratio, 1 / with_model.ratio);
-      if (!(with_model.follows() || with_model.isReversed()) || !(size > radian_low && size < radian_high)) continue;
-      refuse(0, fmt::format("{} moves {:.0f} times {} than in the model: it must be in degrees, not in rad (1 rad is 57.3 degrees)",
-                            nameOf(i), size, with_model.ratio < 1 ? "less" : "more"));
-    }
+      if (!(with_model.follows() || with_model.isReversed()) || !(size > radian_low && size < radian_high)) return;
+      refuse(recording, fmt::format("{} moves {:.0f} times {} than in the model: it must be in degrees, not in rad (1 rad is 57.3 degrees)",
+                                    nameOf(signal), size, with_model.ratio < 1 ? "less" : "more"));
+    });
   }
 
   void requireZeros() const {

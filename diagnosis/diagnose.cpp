@@ -200,9 +200,9 @@ class Run {
     diagnosis_.odd_recordings = oddRecordings(search_, heldOut(), is_offered ? offer_.explanation.residual : search_.nominalResidual(),
                                               is_offered ? offer_.after : before_residual_);
     listNumbers(plant_, offer_.explanation, diagnosis_);
-    listEffects(search_, heldOut(), options_, diagnosis_);
     listTrials(search_, diagnosis_);
-    if (!plant_.interrupted()) proposeExperiment();
+    listEffects(search_, heldOut(), options_, diagnosis_);
+    if (!plant_.interrupted() && diagnosis_.verdict != Verdict::no_gap) proposeExperiment();
   }
 
   void proposeExperiment() {

@@ -12,7 +12,6 @@ namespace {
 
 constexpr double named = 0.5;    ///< probability above which an explanation, or none_of_these, is the answer
 constexpr double clearly = 2.5;  ///< nats by which an explanation must be ahead of a model without effects
-constexpr double expected = 2;   ///< tolerances by which a number of the model may be off (95 % of all are less)
 
 std::vector<std::string> labelsOf(const Model& model) {
   std::vector<std::string> labels;
@@ -77,11 +76,12 @@ bool isSmall(const Comparison& comparison, const Eigen::VectorXd& residual, cons
   return true;
 }
 
-/// Whether the numbers of the model, none of them further off than is to be expected, leave no gap or a SmallGap on the fitted recordings.
+/// Whether the numbers of the model leave no gap or a SmallGap on the fitted recordings, and are so near to what was given that no
+/// explanation is clearly ahead for their sake.
 bool numbersSuffice(const Search& search, const DiagnosisOptions& options) {
   const Explanation& no_effect = search.nothing();
   std::optional<SmallGap> left;
-  return no_effect.numbers.size() > 0 && no_effect.numbers.cwiseAbs().maxCoeff() <= expected &&
+  return no_effect.numbers.size() > 0 && 0.5 * no_effect.numbers.squaredNorm() <= clearly &&
          no_effect.residual.size() == search.fitComparison().size() && isSmall(search.fitComparison(), no_effect.residual, options, left);
 }
 
@@ -109,7 +109,7 @@ Offer judge(const Search& search, const HeldOut& held_out, const DiagnosisOption
   if (search.explanations().empty()) return {};
   const Explanation& best = search.explanations().front();
   const double likeliest = search.likeliest().probability, ahead = std::log(likeliest / search.nothing().probability);  // nats
-  if (ahead < 0 || (ahead < clearly && likeliest <= named) || numbersSuffice(search, options)) {
+  if (ahead < 0 || (likeliest <= named && (ahead < clearly || numbersSuffice(search, options)))) {
     Offer numbers = numbersAlone(search, held_out);
     const bool are_all = numbers.after.size() > 0 && isSmall(held_out.comparison, numbers.after, options, diagnosis.small_gap);
     if (are_all || ahead < 0) {

@@ -189,6 +189,10 @@ TEST(Conventions, OneRecordingThatIsUnlikeTheOthersIsRefused) {
     for (double& v : valuesOf(r, "angle_elbow_deg")) v = -v;
   });
   EXPECT_TRUE(says(reversed, "r2.csv: angle_elbow_deg moves opposite to the model there, but not in the other recordings")) << reversed;
+  const std::string in_rad = refusalAmongOthers([](Recording& r) {
+    for (double& v : valuesOf(r, "angle_elbow_deg")) v *= std::numbers::pi / 180;
+  });
+  EXPECT_TRUE(says(in_rad, "r2.csv: angle_elbow_deg moves") && says(in_rad, "not in rad")) << in_rad;
   const std::string exchanged = refusalAmongOthers([](Recording& r) { std::swap(valuesOf(r, "pressure_0"), valuesOf(r, "pressure_1")); });
   EXPECT_TRUE(says(exchanged, "r2.csv: pressure_1 follows the model's pressure_0 there")) << exchanged;
 }
