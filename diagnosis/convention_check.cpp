@@ -268,9 +268,9 @@ class ConventionCheck {
     return names;
   }
 
-  /// Zero if either signal does not move visibly.
   enum class Of { all, one, others };  ///< recordings: all, a given one, or all but that
 
+  /// Zero if either signal does not move visibly.
   Correlation correlation(int measured, int predicted, Of which = Of::all, int given = 0) const {
     Correlation result;
     for (int lag = 0; lag * lag_step_s <= longest_lag_s; ++lag) {

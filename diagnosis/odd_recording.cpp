@@ -12,8 +12,8 @@ namespace musclesim {
 
 namespace {
 
-constexpr double far_worse = 5;        ///< times as much as in any other recording, and noise floors at least
-constexpr std::size_t few_enough = 3;  ///< recordings
+constexpr double far_worse = 5;               ///< times as much as in any other recording, and noise floors at least
+constexpr std::size_t fewest_recordings = 3;  ///< of two, nothing tells which is the odd one
 
 using MeanSquares = std::map<int, std::map<int, std::pair<double, double>>>;  ///< by signal and recording: sum of squares, count
 
@@ -32,7 +32,7 @@ void add(const Comparison& comparison, const Eigen::VectorXd& residual, MeanSqua
 std::vector<std::string> oddRecordings(const Search& search, const HeldOut& held_out, const Eigen::VectorXd& fitted,
                                        const Eigen::VectorXd& after) {
   const Plant& plant = search.causes().plant();
-  if (plant.recordings().size() < few_enough) return {};
+  if (plant.recordings().size() < fewest_recordings) return {};
   MeanSquares sums;
   add(search.fitComparison(), fitted, sums);
   add(held_out.comparison, after, sums);
@@ -51,7 +51,7 @@ std::vector<std::string> oddRecordings(const Search& search, const HeldOut& held
       double largest_other = noise;
       for (const auto& [other, other_sum] : of_recording)
         if (other != recording) largest_other = std::max(largest_other, std::sqrt(other_sum.first / other_sum.second));
-      if (of_recording.size() < few_enough || rms < far_worse * largest_other) continue;
+      if (of_recording.size() < fewest_recordings || rms < far_worse * largest_other) continue;
       if (rms / largest_other > odd[recording].times) odd[recording] = {rms / largest_other, rms, signal};
     }
   }

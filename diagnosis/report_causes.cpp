@@ -60,19 +60,18 @@ std::string referenceOf(const std::string& id) {
       escapedXml(id));
 }
 
-/// "96.2 %", or "nothing (it makes the gap larger)".
-std::string removedWords(double percent) {
-  return percent < 0 ? "nothing (it makes the gap larger)" : percentWords(percent);
+/// "removes 96.2 % of the gap alone", or that it makes the gap larger.
+std::string removal(double percent, const char* how) {
+  return percent < 0 ? fmt::format("makes the gap larger {}", how) : fmt::format("removes {} of the gap {}", percentWords(percent), how);
 }
 
 std::string effectCard(const FoundEffect& effect, const Diagnosis& d) {
   std::string facts;
   if (effect.probability > 0) facts = fmt::format("Probability {}. ", probabilityWords(effect.probability));
-  if (effect.reduction_percent) facts += fmt::format("Removes {} of the gap alone", removedWords(*effect.reduction_percent));
-  if (effect.removes_percent && d.chosen.size() > 1)
-    facts +=
-        fmt::format("{} {} {}", effect.reduction_percent ? ", and" : "Removes", removedWords(*effect.removes_percent), "beside the others");
-  if (effect.reduction_percent || (effect.removes_percent && d.chosen.size() > 1)) facts += ".";
+  std::vector<std::string> removals;
+  if (effect.reduction_percent) removals.push_back(removal(*effect.reduction_percent, "alone"));
+  if (effect.removes_percent && d.chosen.size() > 1) removals.push_back(removal(*effect.removes_percent, "beside the others"));
+  if (!removals.empty()) facts += capitalised(fmt::format("{}.", fmt::join(removals, ", and ")));
   return fmt::format(
       "<article class=card data-effect=\"{0}\"><div><div><h3>{1}</h3><p "
       "class=small><code>{0}</code></p><p>{2}</p>{3}<p>{4}</p>{5}</div>{6}</div></article>\n",
@@ -93,7 +92,9 @@ std::string otherCauses(const Diagnosis& d, const std::vector<FoundEffect>& show
         "<td class=number data-head=\"removes alone\">{}</td></tr>\n",
         escapedXml(effectTitleOn(effect.label())), breakableCode(effect.label()), probabilityWords(effect.probability),
         escapedXml(fmt::format("{}", fmt::join(values, "; "))),
-        effect.reduction_percent ? removedWords(*effect.reduction_percent) : "not tried");
+        !effect.reduction_percent       ? "not tried"
+        : *effect.reduction_percent < 0 ? "nothing"
+                                        : percentWords(*effect.reduction_percent));
   }
   rows += fmt::format("<tr><td data-head=cause>none of these</td><td class=number data-head=probability>{}</td><td></td><td></td></tr>\n",
                       probabilityWords(d.none_of_these));
