@@ -202,7 +202,7 @@ class Run {
     listNumbers(plant_, offer_.explanation, diagnosis_);
     listTrials(search_, diagnosis_);
     listEffects(search_, heldOut(), options_, diagnosis_);
-    if (!plant_.interrupted() && diagnosis_.verdict != Verdict::no_gap) proposeExperiment();
+    if (!plant_.interrupted()) proposeExperiment();
   }
 
   void proposeExperiment() {
