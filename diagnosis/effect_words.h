@@ -41,7 +41,8 @@ double usualScale(const EffectParameter& parameter);
 inline constexpr double nearly_sure = 0.8;
 
 /// "The pressure of muscle 1 comes late: a dead time of 25 ms and a lag of 40 ms (filling) and 70 ms (venting)." One sentence per
-/// component and claim: effects on one component that claim the same share a sentence. What is not nearly sure ends with "(38 % likely)".
+/// component and claim: effects on one component that claim the same share a sentence. A sentence on an effect whose probability is below
+/// nearly_sure ends with it: "(38 % likely)".
 std::vector<std::string> claimSentences(const std::vector<FoundEffect>& effects, const std::vector<std::string>& signals);
 
 /// The first letter as a capital.

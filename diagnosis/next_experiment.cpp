@@ -236,8 +236,8 @@ Difference differenceOf(const Plant& plant, const InSigmas& in_sigmas, const Eig
   return {std::sqrt(sum / static_cast<double>(plant.signals().size())), plant.signals()[most].name, std::sqrt(largest)};
 }
 
-/// The worth of a schedule, the worth of one that surely tells all rivals apart, and the difference of every rival from the most probable
-/// one; 0 for that one itself.
+/// What a recording of a schedule would tell. `told`: its worth; `largest`: the worth of a schedule that tells all rivals apart for
+/// certain; `from_likeliest`: by rival, the difference from the most probable one, which itself has 0.
 struct Worth {
   double told = 0, largest = 0;
   std::vector<Difference> from_likeliest;

@@ -96,10 +96,6 @@ void acceptNumbers(const Eigen::VectorXd& after, const HeldOut& held_out, bool a
 
 }  // namespace
 
-double probabilityOfSomethingElse(const Search& search, const HeldOut& held_out, const Eigen::VectorXd& after) {
-  return std::max(search.noneOfThese(), probabilityOfUnknown(shareOfMisfitLeft(held_out.comparison, held_out.before, after)));
-}
-
 double HeldOut::reductionPercent(const Eigen::VectorXd& residual) const {
   return gapReductionPercent(comparison.gap(before), comparison.gap(residual));
 }
@@ -132,7 +128,10 @@ Offer judge(const Search& search, const HeldOut& held_out, const DiagnosisOption
   const bool is_of_use = std::min(left_of_rms, search.noneOfThese()) <= named;
   const bool found = is_of_use && !numbers_do_as_well && attempt.reduction_percent > diagnosis.nominal_refit_percent &&
                      clearlyBeats(attempt.reduction_percent, diagnosis.negative_control_percent);
-  if (found) diagnosis.none_of_these = stand_in_share * std::min(named, probabilityOfSomethingElse(search, held_out, after));
+  if (found) {
+    const double on_held_out = probabilityOfUnknown(shareOfMisfitLeft(held_out.comparison, held_out.before, after));
+    diagnosis.none_of_these = stand_in_share * std::min(named, std::max(search.noneOfThese(), on_held_out));
+  }
   // Not offered, because it does not hold on the held-out data or gains no more than a control.
   if (!found && attempt.reduction_percent <= std::max({0.0, diagnosis.nominal_refit_percent, diagnosis.negative_control_percent}))
     return {};

@@ -14,10 +14,6 @@ struct HeldOut {
   double reductionPercent(const Eigen::VectorXd& residual) const;
 };
 
-/// The probability that something else acts, by what is left on the fitted recordings (Search::noneOfThese) or, if that is more, by what an
-/// explanation leaves on the held-out ones.
-double probabilityOfSomethingElse(const Search& search, const HeldOut& held_out, const Eigen::VectorXd& after);
-
 /// What is reported, believed or not: an explanation, and the residual on the held-out rows with it; both empty if nothing is offered.
 struct Offer {
   Explanation explanation;
