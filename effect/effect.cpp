@@ -74,6 +74,10 @@ void JointEffect::addTorqueNm(double torque_Nm) const {
   dJointAddHingeTorque(joint_->id(), torque_Nm * mm_per_m * force_per_N_);
 }
 
+void JointEffect::addDryFrictionNm(double torque_Nm) const {
+  joint_->addDryFriction(torque_Nm * mm_per_m * force_per_N_);
+}
+
 void SlideEffect::attach(const EffectPlace& place) {
   for (const auto& slide : place.robot.slides())
     if (slide.name == place.joint) joint_ = slide.joint;
@@ -87,6 +91,10 @@ double SlideEffect::rateMmPerS() const {
 
 void SlideEffect::addForceN(double force_N) const {
   dJointAddSliderForce(joint_->id(), force_N * force_per_N_);
+}
+
+void SlideEffect::addDryFrictionN(double force_N) const {
+  joint_->addDryFriction(force_N * force_per_N_);
 }
 
 void HandEffect::attach(const EffectPlace& place) {

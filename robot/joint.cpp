@@ -76,6 +76,53 @@ void Joint::takeReference() {
   if (kind_ == Kind::slider || kind_ == Kind::fixed) reference_ = separation();
 }
 
+void Joint::setParameter(int which, double value) const {
+  switch (kind_) {
+    case Kind::slider:
+      return dJointSetSliderParam(id_, which, value);
+    case Kind::hinge:
+      return dJointSetHingeParam(id_, which, value);
+    case Kind::universal:
+      return dJointSetUniversalParam(id_, which, value);
+    default:
+      throw BadParameter(fmt::format("joint {} is neither a slider nor has it an axis of a hinge", name_));
+  }
+}
+
+double Joint::parameter(int which) const {
+  return kind_ == Kind::slider  ? dJointGetSliderParam(id_, which)
+         : kind_ == Kind::hinge ? dJointGetHingeParam(id_, which)
+                                : dJointGetUniversalParam(id_, which);
+}
+
+void Joint::addDryFriction(double force) {
+  if (force == 0) return;
+  dry_friction_ += force;
+  has_damping_motor_ = false;
+  setParameter(dParamVel, 0);
+  setParameter(dParamFMax, dry_friction_);
+  // CFM (softness) is a speed per force: under its full friction the joint creeps by a millionth of a rad or mm per second.
+  constexpr double creep_per_s = 1e-6;
+  setParameter(dParamCFM, creep_per_s / dry_friction_);
+}
+
+void Joint::dampByMotor(double softness) {
+  if (dry_friction_ > 0) return;
+  has_damping_motor_ = true;
+  setParameter(dParamVel, 0);
+  setParameter(dParamFMax, dInfinity);
+  setParameter(dParamCFM, softness);
+}
+
+void Joint::freeAtStops() const {
+  if (!has_damping_motor_) return;
+  const double position = kind_ == Kind::slider  ? dJointGetSliderPosition(id_)
+                          : kind_ == Kind::hinge ? dJointGetHingeAngle(id_)
+                                                 : dJointGetUniversalAngle1(id_);
+  const bool at_stop = position <= parameter(dParamLoStop) || position >= parameter(dParamHiStop);
+  setParameter(dParamFMax, at_stop ? 0 : dInfinity);
+}
+
 int Joint::angleCount() const {
   if (kind_ == Kind::hinge) return 1;
   return kind_ == Kind::hinge2 || kind_ == Kind::universal ? 2 : 0;

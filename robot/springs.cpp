@@ -51,34 +51,35 @@ void push(const Attachment& point, const Motion& motion, const Vector& force_N, 
   if (point.primitive) add(point.primitive->body().id, {force_N, motion.arm.cross(force_N)});
 }
 
-/// Spring and damper on the first axis of a joint.
+/// Spring and damper on the first axis of a joint. Dry friction takes the joint's motor; the damping is a force then.
 class JointSpring final : public ForceElement {
  public:
   JointSpring(World& world, const Joint& joint, double damping, double stiffness, double rest)
       : joint_(joint), speed_ratio_(trueSpeedRatio(world.physics())), damping_(damping), stiffness_(stiffness), rest_(rest) {}
 
   void load(bool at_rest, const AddLoad& add) const override {
-    const bool slides = joint_.kind() == Joint::Kind::slider;
-    slides ? loadSlider(at_rest, add) : loadHinge(at_rest, add);
+    joint_.freeAtStops();
+    const double damping = at_rest || joint_.dryFriction() == 0 ? 0 : damping_;
+    if (stiffness_ == 0 && damping == 0) return;
+    joint_.kind() == Joint::Kind::slider ? loadSlider(damping, add) : loadHinge(damping, add);
   }
 
  private:
-  void loadHinge(bool at_rest, const AddLoad& add) const {
+  void loadHinge(double damping, const AddLoad& add) const {
     dVector3 axis;
     const bool hinge = joint_.kind() == Joint::Kind::hinge;
     hinge ? dJointGetHingeAxis(joint_.id(), axis) : dJointGetUniversalAxis1(joint_.id(), axis);
     const double rate = hinge ? dJointGetHingeAngleRate(joint_.id()) : dJointGetUniversalAngle1Rate(joint_.id());
-    const double torque_Nm = -stiffness_ * (joint_.angleDeg() - rest_) * rad_per_deg - (at_rest ? 0 : damping_ * rate * speed_ratio_);
+    const double torque_Nm = -stiffness_ * (joint_.angleDeg() - rest_) * rad_per_deg - damping * rate * speed_ratio_;
     const Vector torque_Nmm = torque_Nm * mm_per_m * fromOde(axis);
     for (const int side : {0, 1})
       if (const dBodyID body = dJointGetBody(joint_.id(), side)) add(body, {Vector::Zero(), side == 0 ? torque_Nmm : Vector(-torque_Nmm)});
   }
-  void loadSlider(bool at_rest, const AddLoad& add) const {
+  void loadSlider(double damping, const AddLoad& add) const {
     dVector3 axis;
     dJointGetSliderAxis(joint_.id(), axis);
     const double rate = dJointGetSliderPositionRate(joint_.id());
-    const double force_N =
-        -stiffness_ * (dJointGetSliderPosition(joint_.id()) - rest_) - (at_rest ? 0 : damping_ * rate * speed_ratio_ / mm_per_m);
+    const double force_N = -stiffness_ * (dJointGetSliderPosition(joint_.id()) - rest_) - damping * rate * speed_ratio_ / mm_per_m;
     const Vector force = force_N * fromOde(axis);
     for (const int side : {0, 1})
       if (const dBodyID body = dJointGetBody(joint_.id(), side)) add(body, {side == 0 ? force : Vector(-force), Vector::Zero()});
@@ -87,17 +88,6 @@ class JointSpring final : public ForceElement {
   const Joint& joint_;
   double speed_ratio_, damping_, stiffness_, rest_;
 };
-
-void setMotor(const Joint& joint, int which, double value) {
-  switch (joint.kind()) {
-    case Joint::Kind::slider:
-      return dJointSetSliderParam(joint.id(), which, value);
-    case Joint::Kind::hinge:
-      return dJointSetHingeParam(joint.id(), which, value);
-    default:
-      return dJointSetUniversalParam(joint.id(), which, value);
-  }
-}
 
 }  // namespace
 
@@ -109,22 +99,10 @@ void addJointMechanics(World& world, Joint& joint, const JointMechanics& m) {
   if (!std::isfinite(m.rest)) throw BadParameter("rest" + of, fmt::format("{}", m.rest), "be finite");
   const PhysicsSettings& physics = world.physics();
   const bool slides = joint.kind() == Joint::Kind::slider;
-  if (m.friction > 0) {
-    const double largest = m.friction * physics.force_per_N * (slides ? 1 : mm_per_m);
-    setMotor(joint, dParamVel, 0);
-    setMotor(joint, dParamFMax, largest);
-    // CFM (softness) is a speed per force: under its full friction the joint creeps by a millionth of a rad or mm per second.
-    constexpr double creep_per_s = 1e-6;
-    setMotor(joint, dParamCFM, creep_per_s / largest);
-  } else if (m.damping > 0) {
-    const double per_speed = m.damping * physics.force_per_N * trueSpeedRatio(physics) * (slides ? 1 / mm_per_m : mm_per_m);
-    setMotor(joint, dParamVel, 0);
-    setMotor(joint, dParamFMax, dInfinity);
-    setMotor(joint, dParamCFM, 1 / per_speed);
-  }
-  const double explicit_damping = m.friction > 0 ? m.damping : 0;
-  if (m.stiffness > 0 || explicit_damping > 0)
-    world.addForceElement(std::make_unique<JointSpring>(world, joint, explicit_damping, m.stiffness, m.rest));
+  joint.addDryFriction(m.friction * physics.force_per_N * (slides ? 1 : mm_per_m));
+  if (m.damping > 0) joint.dampByMotor(1 / (m.damping * physics.force_per_N * trueSpeedRatio(physics) * (slides ? 1 / mm_per_m : mm_per_m)));
+  if (m.stiffness > 0 || m.damping > 0)
+    world.addForceElement(std::make_unique<JointSpring>(world, joint, m.damping, m.stiffness, m.rest));
 }
 
 PointSpring::PointSpring(World& world, const Attachment& from, const Attachment& to, const PointSpringSettings& settings)

@@ -31,13 +31,7 @@ JointCoulombFriction::JointCoulombFriction(double torque_Nm, double presliding_d
 void JointCoulombFriction::attach(const EffectPlace& place) {
   JointEffect::attach(place);
   if (presliding_rad_ > 0) return;
-  const double before = dJointGetHingeParam(joint().id(), dParamFMax);
-  dJointSetHingeParam(joint().id(), dParamVel, 0);
-  const double largest = before + torque_Nm_ * mm_per_m * forcePerN();
-  dJointSetHingeParam(joint().id(), dParamFMax, largest);
-  // CFM (softness) is a speed per torque; with this one the joint creeps at creep_rad_per_s under the full torque.
-  constexpr double creep_rad_per_s = 1e-6;
-  dJointSetHingeParam(joint().id(), dParamCFM, creep_rad_per_s / largest);
+  addDryFrictionNm(torque_Nm_);
 }
 
 void JointCoulombFriction::apply(const StepTime& time) {

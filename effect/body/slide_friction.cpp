@@ -26,12 +26,7 @@ EffectInfo SlideFriction::info() {
 void SlideFriction::attach(const EffectPlace& place) {
   SlideEffect::attach(place);
   if (presliding_mm_ > 0) return;
-  const double largest = dJointGetSliderParam(joint().id(), dParamFMax) + force_N_ * forcePerN();
-  dJointSetSliderParam(joint().id(), dParamVel, 0);
-  dJointSetSliderParam(joint().id(), dParamFMax, largest);
-  // CFM (softness) is a speed per force; with this one the load creeps at creep_mm_per_s under the full force.
-  constexpr double creep_mm_per_s = 1e-6;
-  dJointSetSliderParam(joint().id(), dParamCFM, creep_mm_per_s / largest);
+  addDryFrictionN(force_N_);
 }
 
 void SlideFriction::apply(const StepTime& time) {

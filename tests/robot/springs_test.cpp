@@ -83,6 +83,28 @@ TEST_P(JointMechanicsTest, StrongDampingDoesNotMakeAStepUnstable) {
   EXPECT_LT(std::abs(bench.barRadPerS()), 1e-3);
 }
 
+/// I dv/dt = -F - d v
+TEST_P(JointMechanicsTest, DryFrictionThatComesLaterActsBesideTheDamping) {
+  addJointMechanics(bench.simulation.world(), *bench.machine.hinge, {.damping = 0.01});
+  bench.machine.hinge->addDryFriction(0.01 * mm_per_m * bench.simulation.physics().force_per_N);
+  bench.turnBar(2);
+  bench.run(0.2);
+  EXPECT_NEAR(bench.barRadPerS(), 3 * std::exp(-0.01 / Machine::bar_kgm2 * 0.2) - 1, 2e-3);
+  bench.run(1);
+  EXPECT_NEAR(bench.barRadPerS(), 0, 1e-5);
+}
+
+TEST_P(JointMechanicsTest, DampedJointReachesItsStopAndLeavesIt) {
+  dJointSetHingeParam(bench.machine.hinge->id(), dParamLoStop, -1);
+  dJointSetHingeParam(bench.machine.hinge->id(), dParamHiStop, 0.1);
+  addJointMechanics(bench.simulation.world(), *bench.machine.hinge, {.damping = 0.01, .stiffness = 0.05});
+  bench.turnBar(2);
+  bench.run(0.06);
+  EXPECT_NEAR(bench.machine.hinge->angleDeg(), 0.1 * deg_per_rad, 0.2);
+  bench.run(0.5);
+  EXPECT_LT(bench.machine.hinge->angleDeg(), 2);
+}
+
 TEST_P(JointMechanicsTest, SliderHasFrictionDampingAndSpring) {
   addJointMechanics(bench.simulation.world(), *bench.machine.rail, {.friction = 2});
   dBodySetLinearVel(bench.machine.carriage->body().id, 1000, 0, 0);

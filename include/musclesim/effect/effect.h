@@ -174,11 +174,12 @@ class JointEffect : public BodyEffect {
   double angleDeg() const;
   double rateRadPerS() const;
   void addTorqueNm(double torque_Nm) const;
+  /// Once, when it is attached: dry friction beside what the joint has.
+  void addDryFrictionNm(double torque_Nm) const;
   const Joint& joint() const { return *joint_; }
-  double forcePerN() const { return force_per_N_; }
 
  private:
-  const Joint* joint_ = nullptr;
+  Joint* joint_ = nullptr;
   double force_per_N_ = 0;
 };
 
@@ -190,11 +191,11 @@ class SlideEffect : public BodyEffect {
  protected:
   double rateMmPerS() const;
   void addForceN(double force_N) const;
-  const Joint& joint() const { return *joint_; }
-  double forcePerN() const { return force_per_N_; }
+  /// Once, when it is attached: dry friction beside what the guide has.
+  void addDryFrictionN(double force_N) const;
 
  private:
-  const Joint* joint_ = nullptr;
+  Joint* joint_ = nullptr;
   double force_per_N_ = 0;
 };
 
