@@ -27,7 +27,8 @@ constexpr double beyond_length = 0.1;      ///< of the shortest and the longest 
 constexpr double beyond_full_scale = 0.3;  ///< of it: more than pressures overshoot
 constexpr double atmosphere_kPa = 101.3, about_atmosphere_kPa = 10;
 constexpr double hardly_open = 0.05, much_more = 10;  ///< of full scale, at which muscles pull next to nothing; motion over the model's
-constexpr double follows_from = 0.8;                  ///< correlation
+constexpr double unlike = 3;              ///< motion over the model's where something other than a unit is wrong, such as friction
+constexpr double follows_from = 0.8;      ///< correlation
 constexpr double of_a_wave = 0.97;        ///< correlation: a wave that is late by half a period seems reversed; nothing follows from it
 constexpr double clearly = 0.5;           ///< share of the unexplained variance at which one correlation exceeds another
 constexpr double visible_sigmas = 2;      ///< standard deviation of a signal that moves, over its noise floor
@@ -78,6 +79,7 @@ class ConventionCheck {
       const double measured = medianSize(plant_.measured(recording, signal)), predicted = medianSize(predictedOf(recording, signal));
       if (measured <= 0 || predicted <= plant_.signals()[index(signal)].sigma.value) return;
       const double ratio = measured / predicted;
+      if (measured < visible_sigmas * plant_.signals()[index(signal)].sigma.value) return;  // it rests at its zero
       for (const double factor : {ratio, 1 / ratio})
         if (factor > thousand_low && factor < thousand_high)
           refuse(recording,
@@ -106,14 +108,22 @@ class ConventionCheck {
     });
   }
 
+  /// Refuses an angle in radians, in all recordings or in one. A machine that friction holds moves as little, but in all its signals and
+  /// with the same noise as elsewhere.
   void requireDegrees() const {
     forEachReading([&](int signal, int recording) {
       if (!nameOf(signal).starts_with("angle_")) return;
-      const Correlation with_model = correlation(signal, signal, Of::one, recording);
-      const double size = std::max(with_model.ratio, 1 / with_model.ratio);
-      if (!(with_model.follows() || with_model.isReversed()) || !(size > radian_low && size < radian_high)) return;
-      refuse(recording, fmt::format("{} moves {:.0f} times {} than in the model: it must be in degrees, not in rad (1 rad is 57.3 degrees)",
-                                    nameOf(signal), size, with_model.ratio < 1 ? "less" : "more"));
+      for (const Of which : {Of::all, Of::one}) {
+        const Correlation with_model = correlation(signal, signal, which, recording);
+        const double size = std::max(with_model.ratio, 1 / with_model.ratio);
+        if (!(with_model.follows() || with_model.isReversed()) || !(size > radian_low && size < radian_high)) continue;
+        const std::vector<double> others = ratiosOfOtherMotions(signal, which, recording);
+        const bool moves_so = std::ranges::any_of(others, [](double ratio) { return ratio < 1 / unlike || ratio > unlike; });
+        if (moves_so || (others.empty() && which == Of::one && !hasOtherNoise(signal, recording))) continue;
+        refuse(recording,
+               fmt::format("{} moves {:.0f} times {} than in the model: it must be in degrees, not in rad (1 rad is 57.3 degrees)",
+                           nameOf(signal), size, with_model.ratio < 1 ? "less" : "more"));
+      }
     });
   }
 
@@ -290,6 +300,32 @@ class ConventionCheck {
       result.lowest = std::min(result.lowest, r);
     }
     return result;
+  }
+
+  /// How much the other lengths, angles and coordinates of the hand that the model moves were moved, measured over predicted.
+  std::vector<double> ratiosOfOtherMotions(int signal, Of which, int recording) const {
+    std::vector<double> ratios;
+    for (int other = 0; other < signalCount(); ++other) {
+      if (other == signal || !isMotion(nameOf(other))) continue;
+      if (const double ratio = correlation(other, other, which, recording).ratio; ratio > 0) ratios.push_back(ratio);
+    }
+    return ratios;
+  }
+
+  /// Whether the noise of a signal differs from that in the other recordings by as much as another unit makes it.
+  bool hasOtherNoise(int signal, int recording) const {
+    const auto noiseIn = [&](int which) {
+      Recording alone = plant_.recordings()[index(which)];
+      alone.info.noise_std.clear();
+      const NoiseSigma sigma = noiseSigma({alone}, nameOf(signal));
+      return sigma.source == NoiseSigma::Source::quiet_rows ? sigma.value : 0;
+    };
+    const double here = noiseIn(recording);
+    std::vector<double> elsewhere;
+    for (int other = 0; other < static_cast<int>(plant_.recordings().size()); ++other)
+      if (other != recording && plant_.recordings()[index(other)].find(nameOf(signal))) elsewhere.push_back(noiseIn(other));
+    const double there = medianSize(elsewhere);
+    return here > 0 && there > 0 && std::max(here / there, there / here) > much_more;
   }
 
   /// How often the values of a signal, measured or predicted, pass their mean by more than the noise.

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <numeric>
 
 #include "musclesim/base/error.h"
 #include "musclesim/base/random.h"
@@ -168,11 +169,13 @@ TEST(Conventions, AClockThatIsALittleEarlyIsRefused) {
   EXPECT_EQ(movedBy(-50), "");
 }
 
-/// What the refusal of three recordings says, of which the second one is changed.
-std::string refusalAmongOthers(const std::function<void(Recording&)>& change) {
+/// What the refusal of three recordings says, of which the second one is changed, and then all as `measure` does.
+std::string refusalAmongOthers(const std::function<void(Recording&)>& change, const std::function<void(Recording&)>& measure = {}) {
   std::vector<Recording> recordings = {elbow(1.7), elbow(1.1), elbow(1.4)};
   for (std::size_t i = 0; i < recordings.size(); ++i) recordings[i].file = fmt::format("r{}.csv", i + 1);
   change(recordings[1]);
+  if (measure)
+    for (Recording& recording : recordings) measure(recording);
   DiagnosisOptions options;
   const Plant plant(recordings, options);
   try {
@@ -195,6 +198,28 @@ TEST(Conventions, OneRecordingThatIsUnlikeTheOthersIsRefused) {
   EXPECT_TRUE(says(in_rad, "r2.csv: angle_elbow_deg moves") && says(in_rad, "not in rad")) << in_rad;
   const std::string exchanged = refusalAmongOthers([](Recording& r) { std::swap(valuesOf(r, "pressure_0"), valuesOf(r, "pressure_1")); });
   EXPECT_TRUE(says(exchanged, "r2.csv: pressure_1 follows the model's pressure_0 there")) << exchanged;
+}
+
+/// Friction holds a joint under a weak signal: its angle follows the model, but moves by a fiftieth of it. So do the lengths; and the noise
+/// stays.
+TEST(Conventions, AMachineThatFrictionHoldsInOneRecordingIsNotInRad) {
+  const auto hold = [](Recording& r, const std::string& name) {
+    std::vector<double>& values = valuesOf(r, name);
+    const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+    for (double& v : values) v = mean + (v - mean) / 55;
+  };
+  EXPECT_EQ(refusalAmongOthers([&](Recording& r) {
+              for (const char* name : {"angle_elbow_deg", "length_0_mm", "length_1_mm"}) hold(r, name);
+            }),
+            "");
+  const auto angleAlone = [&](const std::function<void(Recording&)>& change) {
+    RandomStream noise(3, "test");
+    return refusalAmongOthers(change, [&](Recording& r) {
+      leaveOut(r, "length_");
+      for (double& v : valuesOf(r, "angle_elbow_deg")) v += 0.1 * noise.normal();
+    });
+  };
+  EXPECT_EQ(angleAlone([&](Recording& r) { hold(r, "angle_elbow_deg"); }), "");
 }
 
 TEST(Conventions, AnAngleThatBeginsAgainAfterATurnIsRefused) {
