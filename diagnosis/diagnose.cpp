@@ -24,6 +24,7 @@
 #include "schedule.h"
 #include "search.h"
 #include "tune.h"
+#include "unknown_start.h"
 #include "verdict.h"
 
 namespace musclesim {
@@ -103,6 +104,9 @@ class Run {
     diagnosis_.partial = plant_.interrupted();
     return std::move(diagnosis_);
   }
+
+  /// After diagnose().
+  const UnknownStarts& unknownStarts() const { return unknown_starts_; }
 
  private:
   void describe() {
@@ -197,12 +201,14 @@ class Run {
           search_, heldOut(), options_, [this] { monitor_.count(); }, diagnosis_);
     }
     const bool is_offered = offer_.after.size() > 0;
-    diagnosis_.odd_recordings = oddRecordings(search_, heldOut(), is_offered ? offer_.explanation.residual : search_.nominalResidual(),
-                                              is_offered ? offer_.after : before_residual_);
+    const Eigen::VectorXd &fitted = is_offered ? offer_.explanation.residual : search_.nominalResidual(),
+                          &after = is_offered ? offer_.after : before_residual_;
+    diagnosis_.odd_recordings = oddRecordings(search_, heldOut(), fitted, after);
+    unknown_starts_ = musclesim::unknownStarts(search_, heldOut(), fitted, after);
     listNumbers(plant_, offer_.explanation, diagnosis_);
     listTrials(search_, diagnosis_);
     listEffects(search_, heldOut(), options_, diagnosis_);
-    if (!plant_.interrupted()) proposeExperiment();
+    if (!plant_.interrupted() && unknown_starts_.seconds.empty()) proposeExperiment();
   }
 
   void proposeExperiment() {
@@ -237,7 +243,23 @@ class Run {
   Diagnosis diagnosis_;
   Eigen::VectorXd before_residual_;
   Offer offer_;
+  UnknownStarts unknown_starts_;
 };
+
+/// Diagnoses once, or twice if some recordings turn out to begin in the middle of a motion: then without their first readings.
+Diagnosis run(std::vector<Recording> recordings, const DiagnosisOptions& options, const std::map<std::string, double>& given = {}) {
+  Run first(recordings, options, given);
+  Diagnosis diagnosis = first.diagnose();
+  const UnknownStarts& starts = first.unknownStarts();
+  if (starts.seconds.empty() || diagnosis.partial) return diagnosis;
+  for (const auto& [recording, seconds] : starts.seconds) recordings[static_cast<std::size_t>(recording)].info.skip_start_s = seconds;
+  Diagnosis again = Run(std::move(recordings), options, given).diagnose();
+  again.notes.push_back(starts.sentence);
+  again.simulation_count += diagnosis.simulation_count;
+  again.simulated_s += diagnosis.simulated_s;
+  again.wall_s += diagnosis.wall_s;
+  return again;
+}
 
 }  // namespace
 
@@ -271,13 +293,13 @@ Diagnosis diagnose(std::vector<Recording> recordings, const DiagnosisOptions& op
     throw BadParameter("max_effects", std::to_string(options.max_effects), fmt::format("lie in 1..{}", most_effects));
   if (!(options.smallest_gap_percent >= 0))
     throw BadParameter("smallest_gap_percent", fmt::format("{:g}", options.smallest_gap_percent), "be 0 or more");
-  if (options.tune.empty()) return Run(std::move(recordings), options).diagnose();
+  if (options.tune.empty()) return run(std::move(recordings), options);
   const auto start = std::chrono::steady_clock::now();
   DiagnosisOptions with_tuned = options;
   const Tuning tuning = tune(recordings, with_tuned);
   std::map<std::string, double> given;
   for (const TunedParameter& parameter : tuning.parameters) given[parameter.name] = parameter.start;
-  Diagnosis diagnosis = Run(std::move(recordings), with_tuned, given).diagnose();
+  Diagnosis diagnosis = run(std::move(recordings), with_tuned, given);
   std::vector<TunedParameter> with_all;
   for (std::size_t i = 0; i < tuning.parameters.size(); ++i) {
     const Estimate with_effects = diagnosis.tuned.empty() ? tuning.parameters[i].fitted : diagnosis.tuned[i].with_effects;

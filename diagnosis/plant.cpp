@@ -174,11 +174,23 @@ void Plant::dropAfterDropouts() {
     }
 }
 
+/// Removes the readings at the beginning that depend on what the machine did before.
+void Plant::dropStarts() {
+  for (Recording& recording : recordings_) {
+    const double skipped_s = options_.skip_start_s.value_or(recording.info.skip_start_s.value_or(0));
+    const auto end = std::ranges::lower_bound(recording.time_s, recording.time_s.front() + skipped_s);
+    for (Signal& signal : recording.signals)
+      if (!signal.name.starts_with("command_")) std::fill_n(signal.values.begin(), end - recording.time_s.begin(), nan);
+    if (skipped_s > 0) notes_.push_back(fmt::format("{}: the readings of the first {:g} s are left out", recording.file, skipped_s));
+  }
+}
+
 void Plant::compareSignals() {
   measured_.resize(recordings_.size());
   notes_ = dataNotes(recordings_);
   dropDeadSegments();
   dropAfterDropouts();
+  dropStarts();
   const bool moves = commandsMove(recordings_);
   for (const std::string& name : reference_->robot().signalNames()) {
     if (name.starts_with("command_")) continue;

@@ -84,6 +84,8 @@ class Plant {
   const std::vector<double>& measured(int recording, int signal) const;
   /// How the signals of motion of a recording must agree with each other. Thread-safe.
   const ParityRelations& parity(int recording) const;
+  /// Whether nothing tells how a recording begins: neither a sidecar nor an option, and this program did not simulate it.
+  bool beginsUnknown(int recording) const;
   /// All components of the robot on which an effect can act.
   std::vector<std::string> componentsFor(const EffectInfo& info) const;
   /// Whether a component "signal_<stem>" (or "all") names a compared signal.
@@ -149,6 +151,7 @@ class Plant {
  private:
   void dropDeadSegments();
   void dropAfterDropouts();
+  void dropStarts();
   void compareSignals();
   void requireNumbers(const std::vector<Segment>& part) const;
   Parameter numberNamed(const std::string& option, const std::string& name) const;

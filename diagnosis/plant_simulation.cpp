@@ -45,6 +45,12 @@ bool isSimulated(const Recording& recording) {
 
 }  // namespace
 
+bool Plant::beginsUnknown(int recording) const {
+  const Recording& recorded = recordings_[static_cast<std::size_t>(recording)];
+  return !options_.skip_start_s && !options_.model.initial_state && !recorded.info.skip_start_s && !recorded.info.initial_state &&
+         !isSimulated(recorded);
+}
+
 /// Machines have no internal steps: where these are few, as with massless muscles, twice as many are taken until the error that is left,
 /// twice what doubling changes, is below the noise of every signal. Recordings of this program are replayed in the steps they were made in.
 void Plant::chooseSubsteps() {

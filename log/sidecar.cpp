@@ -37,6 +37,7 @@ const std::vector<std::string>& knownMembers() {
                                                  "repeat_of",
                                                  "seed",
                                                  "step_s",
+                                                 "skip_start_s",
                                                  "program",
                                                  "complete"};
   return names;
@@ -77,6 +78,7 @@ class SidecarReader {
   std::vector<std::string> texts(const std::string& member) const;
   std::optional<std::string> choice(const std::string& member, const std::vector<std::string>& allowed) const;
   std::optional<double> positive(const std::string& member, const std::string& unit) const;
+  std::optional<double> notNegative(const std::string& member, const std::string& unit) const;
   std::optional<std::uint64_t> seed() const;
   std::optional<bool> complete() const;
   void readRobotParameters(const json& values, const std::string& prefix, std::map<std::string, Parameter::Value>& parameters) const;
@@ -108,6 +110,7 @@ RecordingInfo SidecarReader::read(std::vector<std::string>& notes) {
   info.pressure_full_scale_kPa = positive("pressure_full_scale_kPa", "kPa");
   info.command_full_scale_V = positive("command_full_scale_V", "V");
   info.step_s = positive("step_s", "s");
+  info.skip_start_s = notNegative("skip_start_s", "s");
   info.seed = seed();
   info.complete = complete();
   readNoise(info);
@@ -155,6 +158,13 @@ std::optional<double> SidecarReader::positive(const std::string& member, const s
   const json* value = document_.find(member);
   if (!value) return std::nullopt;
   if (!value->is_number() || !(value->get<double>() > 0)) refuse(member, member, *value, fmt::format("be a number above 0 {}", unit));
+  return value->get<double>();
+}
+
+std::optional<double> SidecarReader::notNegative(const std::string& member, const std::string& unit) const {
+  const json* value = document_.find(member);
+  if (!value) return std::nullopt;
+  if (!value->is_number() || !(value->get<double>() >= 0)) refuse(member, member, *value, fmt::format("be a number of 0 {} or more", unit));
   return value->get<double>();
 }
 

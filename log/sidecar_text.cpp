@@ -53,6 +53,7 @@ OrderedJson sidecarJson(const RecordingInfo& info) {
   if (!info.active_effects.empty()) object["active_effects"] = jsonOf(info.active_effects);
   if (info.seed) object["seed"] = *info.seed;
   addNumber(object, "step_s", info.step_s);
+  addNumber(object, "skip_start_s", info.skip_start_s);
   addText(object, "program", info.program);
   if (info.complete) object["complete"] = *info.complete;
   if (info.extra_json.empty()) return object;

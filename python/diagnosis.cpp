@@ -65,7 +65,7 @@ std::vector<Recording> named(std::vector<Recording> recordings, bool without_act
 py::dict diagnoseRecordings(const std::vector<Recording>& given, const py::dict& model, const std::vector<std::string>& candidates,
                             const std::vector<std::string>& exclude, const std::vector<std::string>& tune, double smallest_gap_percent,
                             int max_effects, int threads, std::uint64_t seed, const py::object& earlier, bool without_active_effects,
-                            bool trust_columns, const py::object& progress) {
+                            bool trust_columns, std::optional<double> skip_start_s, const py::object& progress) {
   const std::vector<Recording> recordings = named(given, without_active_effects);
   DiagnosisOptions options;
   options.model = replayOptionsFrom(model);
@@ -75,6 +75,7 @@ py::dict diagnoseRecordings(const std::vector<Recording>& given, const py::dict&
   options.smallest_gap_percent = smallest_gap_percent;
   options.max_effects = max_effects;
   options.trust_columns = trust_columns;
+  options.skip_start_s = skip_start_s;
   options.job_count = threads;
   options.seed = seed;
   options.earlier = effectsFrom(earlier);
@@ -97,7 +98,7 @@ py::dict diagnoseRecordings(const std::vector<Recording>& given, const py::dict&
 void bindDiagnosis(py::module_& module) {
   module.def("_diagnose", &diagnoseRecordings, py::arg("recordings"), py::arg("model"), py::arg("candidates"), py::arg("exclude"),
              py::arg("tune"), py::arg("smallest_gap_percent"), py::arg("max_effects"), py::arg("threads"), py::arg("seed"),
-             py::arg("earlier"), py::arg("without_active_effects"), py::arg("trust_columns"), py::arg("progress"));
+             py::arg("earlier"), py::arg("without_active_effects"), py::arg("trust_columns"), py::arg("skip_start_s"), py::arg("progress"));
 }
 
 }  // namespace musclesim::python

@@ -187,6 +187,7 @@ int diagnoseCommand(const ModelOptions& model, const DiagnoseArguments& argument
   options.smallest_gap_percent = arguments.smallest_gap_percent;
   options.max_effects = arguments.max_effects;
   options.trust_columns = arguments.trust_columns;
+  options.skip_start_s = arguments.skip_start_s;
   options.job_count = arguments.jobs;
   options.seed = model.seed.value_or(1);
   options.interrupted = [] { return interruptSignal() != 0; };
@@ -236,6 +237,11 @@ Action addDiagnose(CLI::App& command, ModelOptions& model) {
   addList(command, "--ignore-columns", arguments->ignore_columns, "Columns to skip, separated by commas");
   command.add_flag("--trust-columns", arguments->trust_columns,
                    "Take units, zeros, signs and order of the columns as they are: do not refuse recordings in which they look wrong");
+  command
+      .add_option("--skip-start", arguments->skip_start_s,
+                  "Seconds at the beginning of every recording whose readings are left out, because the machine had been moving (default: "
+                  "skip_start_s of the sidecars, and 1 s of recordings that turn out to begin in motion); 0: none")
+      ->check(CLI::NonNegativeNumber);
   addModelOptions(command, model);
   command.remove_option(command.get_option("--json"));
   command.get_option("--effects")

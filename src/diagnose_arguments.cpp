@@ -44,6 +44,7 @@ nlohmann::json optionsOf(const ModelOptions& model, const DiagnoseArguments& arg
                             {"--candidates", fmt::format("{}", fmt::join(arguments.candidates, ","))},
                             {"--exclude", fmt::format("{}", fmt::join(arguments.exclude, ","))},
                             {"--tune", fmt::format("{}", fmt::join(arguments.tune, ","))},
+                            {"--skip-start", arguments.skip_start_s ? fmt::format("{:g}", *arguments.skip_start_s) : "by recording"},
                             {"--effects", hashOf(model.effects)},
                             {"--fixed-effects", hashOf(arguments.fixed_effects)},
                             {"--stepper", model.stepper},

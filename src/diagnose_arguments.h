@@ -17,6 +17,7 @@ struct DiagnoseArguments {
   int jobs = 0, max_effects = 4;
   double smallest_gap_percent = DiagnosisOptions().smallest_gap_percent;
   bool without_active_effects = false, resume = false, trust_columns = false;
+  std::optional<double> skip_start_s;
 };
 
 /// All that the answer depends on, by name, as one line of JSON: the recordings, the diagnosed model, the options, and the program with its

@@ -136,5 +136,6 @@ class _Stop:
 
 def _replay(recording: Recording, model: dict[str, Any]) -> Replay: ...
 def _diagnose(recordings: Sequence[Recording], model: dict[str, Any], candidates: Sequence[str], exclude: Sequence[str], tune: Sequence[str],
-              max_effects: int, threads: int, seed: int, earlier: _Effects, without_active_effects: bool,
+              smallest_gap_percent: float, max_effects: int, threads: int, seed: int, earlier: _Effects, without_active_effects: bool,
+              trust_columns: bool, skip_start_s: float | None,
               progress: Callable[[str, int, int], Any] | None) -> dict[str, Any]: ...

@@ -73,7 +73,8 @@ class Diagnosis:
 def diagnose(recordings: Recording | str | os.PathLike[str] | Iterable[Recording | str | os.PathLike[str]], *,
              candidates: Sequence[str] = (), exclude: Sequence[str] = (), tune: Sequence[str] = (), smallest_gap_percent: float = 1,
              max_effects: int = 4, threads: int = 0, seed: int = 1, earlier: Any = None, without_active_effects: bool = False,
-             trust_columns: bool = False, progress: Callable[[str, int, int], Any] | None = None, **model: Any) -> Diagnosis:
+             trust_columns: bool = False, skip_start_s: float | None = None,
+             progress: Callable[[str, int, int], Any] | None = None, **model: Any) -> Diagnosis:
     """Finds from recordings of one plant where they differ from the model and which effects explain it.
 
     recordings: Recordings or their files.  candidates, exclude: ids of effects to consider (default: the whole catalogue) or not to.
@@ -81,12 +82,14 @@ def diagnose(recordings: Recording | str | os.PathLike[str] | Iterable[Recording
     as none; 0: every gap beyond the noise is looked into.  max_effects: largest number of effects in an explanation, 1..6.  threads: 0: one
     per core; the answer does not depend on it.  earlier: effects of an earlier finding, to begin with.  without_active_effects: compare with
     the model without the effects that the recordings' sidecars say are active, and look for them.  trust_columns: take units, zeros, signs
-    and order of the columns as they are instead of refusing doubtful ones.  progress(phase, done, expected): called a few times a second by
-    the calling thread; an exception that it raises ends the diagnosis.  **model: as for replay.
+    and order of the columns as they are instead of refusing doubtful ones.  skip_start_s: readings of this many seconds at the beginning of
+    every recording are left out, because the machine had been moving; None: as the sidecars say, and a second of recordings that turn out
+    to begin in motion.  progress(phase, done, expected): called a few times a second by the calling thread; an exception that it raises ends
+    the diagnosis.  **model: as for replay.
     Raises BadParameter, BadFile, Diverged, KeyboardInterrupt.
     """
     if isinstance(recordings, (Recording, str, os.PathLike)):
         recordings = [recordings]
     return Diagnosis(_musclesim._diagnose([_as_recording(one) for one in recordings], _checked(model), list(candidates), list(exclude),
                                           list(tune), smallest_gap_percent, max_effects, threads, seed, earlier, without_active_effects,
-                                          trust_columns, progress))
+                                          trust_columns, skip_start_s, progress))

@@ -52,7 +52,7 @@ TEST(DiagnoseSeveral, TakesNoSecondCauseThatOnlyMendsTheLawOfTheFirst) {
 /// Three recordings of a rig with a line muscle under random steps of command, which hide a dead time behind the steep edges of a lag.
 /// `unlike_the_model`: numbers of the machine that its sidecar does not tell.
 std::vector<Recording> underRandomSteps(const std::vector<ActiveEffect>& effects,
-                                        const std::map<std::string, double>& unlike_the_model = {}) {
+                                        const std::map<std::string, double>& unlike_the_model = {}, int row_count = 400) {
   std::vector<Recording> recordings;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     Recording plan;
@@ -62,7 +62,7 @@ std::vector<Recording> underRandomSteps(const std::vector<ActiveEffect>& effects
     plan.signals = {{"command_0", {}}};
     RandomStream random(seed, "steps");
     double command = 0.45;
-    for (int row = 0; row < 400; ++row) {
+    for (int row = 0; row < row_count; ++row) {
       if (row % 40 == 0) command = random.uniform(0.1, 0.9);
       plan.time_s.push_back(0.01 * row);
       plan.signals[0].values.push_back(command);
@@ -112,6 +112,36 @@ TEST(DiagnoseSeveral, NumbersThatNobodyMeasuredHideNoCause) {
       EXPECT_GE(named->probability, 0.8) << diagnosisSummary(found);
     }
   }
+}
+
+/// Recordings of a logger that was switched on in the middle of a motion, 50 ms after a step.
+TEST(DiagnoseSeveral, LeavesOutWhatTheMotionBeforeARecordingExplains) {
+  const std::vector<ActiveEffect> effects = {{"valve_lag", "muscle_0", {{"fill_time_constant_s", 0.06}, {"vent_time_constant_s", 0.09}}},
+                                             {"braid_hysteresis", "muscle_0", {{"relative_width", 0.1}, {"presliding_mm", 1.0}}}};
+  std::vector<Recording> recordings = underRandomSteps(effects, {}, 600);
+  constexpr std::ptrdiff_t before = 125;
+  for (Recording& recording : recordings) {
+    recording.info.initial_state.reset();
+    recording.info.extra_json = "{}";
+    recording.time_s.erase(recording.time_s.end() - before, recording.time_s.end());
+    for (Signal& signal : recording.signals) signal.values.erase(signal.values.begin(), signal.values.begin() + before);
+  }
+  DiagnosisOptions options = few({"valve_lag", "braid_hysteresis", "transport_delay", "contact", "slide_friction"});
+  const auto isSaid = [](const Diagnosis& diagnosis) {
+    return std::ranges::any_of(diagnosis.notes, [](const std::string& note) { return contains(note, "in another state than the model"); });
+  };
+  const Diagnosis found = diagnose(recordings, options);
+  EXPECT_TRUE(isSaid(found)) << diagnosisSummary(found);
+  EXPECT_LT(found.none_of_these, 0.1) << diagnosisSummary(found);
+  for (const ActiveEffect& effect : effects) {
+    const auto named = std::ranges::find(found.effects, effect.id, &FoundEffect::id);
+    ASSERT_NE(named, found.effects.end()) << diagnosisSummary(found);
+    EXPECT_GT(named->probability, 0.8) << diagnosisSummary(found);
+  }
+  options.skip_start_s = 0;
+  const Diagnosis with_all = diagnose(recordings, options);
+  EXPECT_FALSE(isSaid(with_all));
+  EXPECT_GT(with_all.none_of_these, 2 * found.none_of_these) << "readings that no effect explains";
 }
 
 /// One of three recordings was made with another load, of which its sidecar says nothing.

@@ -25,7 +25,7 @@ TEST(Sidecar, ReadsEveryMember) {
     "robot_parameters": {"load_kg": 2.0, "force_law": {"name": "sarosi", "a": {"b": 1}}}, "description": "free", "trial": "slow",
     "pressure_full_scale_kPa": 600, "command_full_scale_V": 10, "noise_std": {"length_0_cm": 0.005, "pressure_0_bar": 0.06},
     "repeat_of": "other", "active_effects": [{"id": "valve_lag", "parameters": {"fill_time_constant_s": 0.08, "limit": "inf"}},
-    {"id": "payload", "component": "hand"}], "seed": 18446744073709551615, "step_s": 0.0005, "program": "p", "complete": true})");
+    {"id": "payload", "component": "hand"}], "seed": 18446744073709551615, "step_s": 0.0005, "skip_start_s": 1.5, "program": "p", "complete": true})");
   EXPECT_EQ(info.robot, "rig");
   EXPECT_EQ(info.physics, "si");
   EXPECT_EQ(info.initial_state, "settled");
@@ -50,6 +50,7 @@ TEST(Sidecar, ReadsEveryMember) {
   EXPECT_EQ(info.active_effects[1].component, "hand");
   EXPECT_EQ(info.seed, std::numeric_limits<std::uint64_t>::max());
   EXPECT_EQ(info.step_s, 0.0005);
+  EXPECT_EQ(info.skip_start_s, 1.5);
   EXPECT_EQ(info.complete, true);
   EXPECT_EQ(info.extra_json, "{}");
 }
@@ -76,6 +77,7 @@ TEST(Sidecar, WrongTypesAndValuesAreRefusedAtTheirPlace) {
       {R"("pressure_full_scale_kPa": "600")", {"above 0 kPa"}},
       {R"("command_full_scale_V": -1)", {"above 0 V"}},
       {R"("step_s": 0)", {"above 0 s"}},
+      {R"("skip_start_s": -1)", {"skip_start_s = -1", "0 s or more"}},
       {R"("seed": -1)", {"whole number"}},
       {R"("seed": 1.5)", {"whole number"}},
       {R"("complete": "yes")", {"true or false"}},
@@ -138,6 +140,7 @@ TEST(Sidecar, TextReadsBackToTheSame) {
   info.active_effects = {{"stop", "elbow", {{"stiffness", std::numeric_limits<double>::infinity()}, {"gap_mm", 0.5}, {"axis", "y"}}}};
   info.seed = std::numeric_limits<std::uint64_t>::max();
   info.step_s = 0.01;
+  info.skip_start_s = 0;
   info.complete = true;
   info.extra_json = R"({"verdict": {"a": [1, 2]}})";
   const std::string text = sidecarText(info);
@@ -148,6 +151,7 @@ TEST(Sidecar, TextReadsBackToTheSame) {
   EXPECT_EQ(again.noise_std, info.noise_std);
   EXPECT_EQ(again.description, info.description);
   EXPECT_EQ(again.seed, info.seed);
+  EXPECT_EQ(again.skip_start_s, 0);
   EXPECT_EQ(again.active_effects[0].parameters, info.active_effects[0].parameters);
 }
 

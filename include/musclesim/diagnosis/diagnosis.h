@@ -42,6 +42,9 @@ struct DiagnosisOptions {
   std::vector<std::string> exclude;     ///< ids not to consider
   std::vector<std::string> tune;        ///< names of parameters of the model that nobody measured; they are fitted first
   bool trust_columns = false;           ///< take units, zeros, signs and order of the columns as they are: do not refuse doubtful ones
+  /// Readings of this many seconds at the beginning of every recording are left out; without it, as the sidecars say, and a second of
+  /// recordings that turn out to begin in the middle of a motion.
+  std::optional<double> skip_start_s;
   double smallest_gap_percent = 1;    ///< of a signal's motion: a gap that is smaller in all signals is none. 0: every gap beyond the noise
   int max_effects = 4;                ///< largest number of effects in an explanation, 1..most_effects
   std::vector<ActiveEffect> earlier;  ///< an earlier finding: a set that the search begins with, fitted anew and kept if it is believed

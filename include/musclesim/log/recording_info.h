@@ -27,7 +27,8 @@ struct RecordingInfo {
   std::vector<ActiveEffect> active_effects;  ///< effects that belong to the model: a replay includes them
   std::optional<std::uint64_t> seed;
   std::optional<double> step_s;
-  std::optional<bool> complete;  ///< false during a run and after a run that stopped early; absent: not known
+  std::optional<double> skip_start_s;  ///< the machine had been moving: a diagnosis leaves out the readings of this time; 0: it had not
+  std::optional<bool> complete;        ///< false during a run and after a run that stopped early; absent: not known
   /// All other members of the sidecar, as the JSON text of one object. They are kept when the recording is written again.
   std::string extra_json = "{}";
 };
