@@ -27,7 +27,7 @@ constexpr double beyond_length = 0.1;      ///< of the shortest and the longest 
 constexpr double beyond_full_scale = 0.3;  ///< of it: more than pressures overshoot
 constexpr double atmosphere_kPa = 101.3, about_atmosphere_kPa = 10;
 constexpr double hardly_open = 0.05, much_more = 10;  ///< of full scale, at which muscles pull next to nothing; motion over the model's
-constexpr double unlike = 3;              ///< motion over the model's where something other than a unit is wrong, such as friction
+constexpr double unlike = 3;              ///< times that another signal moves more or less than in its model: then no unit is wrong
 constexpr double follows_from = 0.8;      ///< correlation
 constexpr double of_a_wave = 0.97;        ///< correlation: a wave that is late by half a period seems reversed; nothing follows from it
 constexpr double clearly = 0.5;           ///< share of the unexplained variance at which one correlation exceeds another

@@ -246,14 +246,23 @@ class Run {
   UnknownStarts unknown_starts_;
 };
 
-/// Diagnoses once, or twice if some recordings turn out to begin in the middle of a motion: then without their first readings.
+/// Diagnoses once, or twice if some recordings turn out to begin in the middle of a motion: then without their first readings. If the
+/// second diagnosis is interrupted, the answer is the first one.
 Diagnosis run(std::vector<Recording> recordings, const DiagnosisOptions& options, const std::map<std::string, double>& given = {}) {
   Run first(recordings, options, given);
   Diagnosis diagnosis = first.diagnose();
   const UnknownStarts& starts = first.unknownStarts();
   if (starts.seconds.empty() || diagnosis.partial) return diagnosis;
   for (const auto& [recording, seconds] : starts.seconds) recordings[static_cast<std::size_t>(recording)].info.skip_start_s = seconds;
-  Diagnosis again = Run(std::move(recordings), options, given).diagnose();
+  DiagnosisOptions checked = options;
+  checked.trust_columns = true;
+  Diagnosis again = Run(std::move(recordings), checked, given).diagnose();
+  if (again.partial) {
+    diagnosis.partial = true;
+    return diagnosis;
+  }
+  for (const std::string& note : diagnosis.notes)
+    if (std::ranges::find(again.notes, note) == again.notes.end()) again.notes.push_back(note);
   again.notes.push_back(starts.sentence);
   again.simulation_count += diagnosis.simulation_count;
   again.simulated_s += diagnosis.simulated_s;

@@ -27,13 +27,14 @@ struct Part {
 };
 
 struct Start {
-  int seconds = 0;   ///< at the beginning, in which a signal is much farther off than in the second half of the recording; 0: in none
-  double times = 0;  ///< as far off in the first one
+  int seconds = 0;      ///< at the beginning, in which a signal is much farther off than in the second half of the recording; 0: in none
+  double times = 0;     ///< as far off in the first one
+  bool counts = false;  ///< the recording is too short to miss it, or the signal moves much more then than in the second half
 };
 
 Start startOf(const std::map<int, Part>& parts, double sigma) {
   const int last = parts.rbegin()->first;
-  if (last + 1 < fewest_parts) return {};
+  if (last + 1 < fewest_parts) return {.counts = true};
   double residual = 0, variance = 0, count = 0;
   for (const auto& [second, part] : parts) {
     if (2 * second < last + 1) continue;
@@ -42,6 +43,7 @@ Start startOf(const std::map<int, Part>& parts, double sigma) {
   const double noise = sigma * sigma, most = much_worse * much_worse;
   const double later = std::max(residual / count, noise), motion_later = variance / count + noise;
   Start start;
+  start.counts = parts.begin()->first == 0 && parts.begin()->second.variance() + noise > most * motion_later;
   for (const auto& [second, part] : parts) {
     const bool is_far_off = part.residual() > most * later && part.residual() * motion_later > most * later * (part.variance() + noise);
     if (second != start.seconds || part.count < fewest_compared_rows || !is_far_off) break;
@@ -75,11 +77,13 @@ UnknownStarts unknownStarts(const Search& search, const HeldOut& held_out, const
   add(held_out.comparison, after);
 
   UnknownStarts starts;
+  std::map<int, bool> others;  // by recording, whether its beginning counts
   double most = 0;
   int worst = 0;  // the signal that is farthest off
   for (const auto& [place, seconds] : parts) {
     const auto& [recording, signal] = place;
     const Start start = startOf(seconds, plant.signals()[static_cast<std::size_t>(signal)].sigma.value);
+    others[recording] = others[recording] || start.counts;
     if (start.seconds == 0) continue;
     starts.seconds[recording] = std::max(starts.seconds[recording], start.seconds * forgotten_after_s);
     if (start.times > most) most = start.times, worst = signal;
@@ -90,12 +94,12 @@ UnknownStarts unknownStarts(const Search& search, const HeldOut& held_out, const
   const std::vector<std::string> short_names = shortNames(files);
   for (const auto& [recording, seconds] : starts.seconds) names.push_back(short_names[static_cast<std::size_t>(recording)]);
   // One logger made them all.
-  for (int recording = 0; recording < static_cast<int>(plant.recordings().size()); ++recording)
-    if (plant.beginsUnknown(recording)) starts.seconds.emplace(recording, forgotten_after_s);
+  for (const auto& [recording, its_start_counts] : others)
+    if (!its_start_counts) starts.seconds.emplace(recording, forgotten_after_s);
   starts.sentence = fmt::format(
       "{} {} in another state than the model, which begins at rest and without a history: probably the machine had been moving before. "
       "With what had been found, {} was up to {:.0f} times as far off in the first {:g} s as in the second half. The readings at the "
-      "beginning of all recordings were left out, and all was fitted again (--skip-start 0 keeps them)",
+      "beginning were left out, and all was fitted again (--skip-start 0 keeps them)",
       fmt::join(names, ", "), names.size() > 1 ? "begin" : "begins", plant.signals()[static_cast<std::size_t>(worst)].name, most,
       forgotten_after_s);
   return starts;
