@@ -15,6 +15,7 @@ namespace musclesim {
 namespace {
 
 constexpr double much_worse = 3;  ///< times, and noise floors at least: laws that are a little off leave about as much everywhere
+constexpr double mostly = 10;     ///< times as much motion: nearly all of what such a recording tells
 constexpr int fewest_parts = 4;   ///< seconds that a recording lasts
 constexpr int largest_share = 3;  ///< at most one third of a recording is left out
 
@@ -43,7 +44,7 @@ Start startOf(const std::map<int, Part>& parts, double sigma) {
   const double noise = sigma * sigma, most = much_worse * much_worse;
   const double later = std::max(residual / count, noise), motion_later = variance / count + noise;
   Start start;
-  start.counts = parts.begin()->first == 0 && parts.begin()->second.variance() + noise > most * motion_later;
+  start.counts = parts.begin()->first == 0 && parts.begin()->second.variance() + noise > mostly * mostly * motion_later;
   for (const auto& [second, part] : parts) {
     const bool is_far_off = part.residual() > most * later && part.residual() * motion_later > most * later * (part.variance() + noise);
     if (second != start.seconds || part.count < fewest_compared_rows || !is_far_off) break;

@@ -100,9 +100,9 @@ void addJointMechanics(World& world, Joint& joint, const JointMechanics& m) {
   const PhysicsSettings& physics = world.physics();
   const bool slides = joint.kind() == Joint::Kind::slider;
   joint.addDryFriction(m.friction * physics.force_per_N * (slides ? 1 : mm_per_m));
-  if (m.damping > 0) joint.dampByMotor(1 / (m.damping * physics.force_per_N * trueSpeedRatio(physics) * (slides ? 1 / mm_per_m : mm_per_m)));
-  if (m.stiffness > 0 || m.damping > 0)
-    world.addForceElement(std::make_unique<JointSpring>(world, joint, m.damping, m.stiffness, m.rest));
+  if (m.damping > 0)
+    joint.dampByMotor(1 / (m.damping * physics.force_per_N * trueSpeedRatio(physics) * (slides ? 1 / mm_per_m : mm_per_m)));
+  if (m.stiffness > 0 || m.damping > 0) world.addForceElement(std::make_unique<JointSpring>(world, joint, m.damping, m.stiffness, m.rest));
 }
 
 PointSpring::PointSpring(World& world, const Attachment& from, const Attachment& to, const PointSpringSettings& settings)

@@ -16,8 +16,8 @@ struct JointMechanics {
 ///     tau = -F sign(dq/dt) - d dq/dt - k (q - q_0),   at rest -F .. F in place of the first term
 /// q coordinate, F dry friction, d damping, k stiffness, q_0 rest. Dry friction is a bounded constraint force of the solver, so a joint
 /// that rests does not creep; damping without friction is one, too, and so cannot make a step unstable. Damping beside friction (also
-/// friction that an effect adds) and the spring act with the speed and the position at the start of the internal step. Throws BadParameter for values that are negative or not
-/// finite.
+/// friction that an effect adds) and the spring act with the speed and the position at the start of the internal step. Throws BadParameter
+/// for values that are negative or not finite.
 void addJointMechanics(World& world, Joint& joint, const JointMechanics& mechanics);
 
 struct PointSpringSettings {

@@ -44,15 +44,15 @@ class Joint {
   /// Sets the stops of a slider: least and greatest position of the first body along the axis, 0 in the pose as built. Throws BadParameter
   /// for other joints, or unless the stops are finite, in order and contain 0.
   void setSliderStopsMm(double low_mm, double high_mm);
-  /// Adds dry friction to a slider, or to the (first) axis of a hinge or universal joint: a motor at rest with a largest force, which adds up
-  /// with earlier friction. `force` in the world's unit of force, for axes in that times mm; 0 changes nothing. Dry friction takes the motor
-  /// from damping (dampByMotor).
+  /// Adds dry friction to a slider, or to the (first) axis of a hinge or universal joint: a motor at rest with a largest force, which adds
+  /// up with earlier friction. `force` in the world's unit of force, for axes in that times mm; 0 changes nothing. Dry friction takes the
+  /// motor from damping (dampByMotor).
   void addDryFriction(double force);
   double dryFriction() const { return dry_friction_; }
   /// Damps the same axis by a motor at rest of any force: speed = softness * force, softness > 0. Stable however strong it is.
   void dampByMotor(double softness);
-  /// Switches a damping motor off while the joint is at a stop, where ODE would press into the stop with all its force. Call it before every
-  /// step.
+  /// Switches a damping motor off while the joint is at a stop, where ODE would press into the stop with all its force. Call it before
+  /// every step.
   void freeAtStops() const;
   /// Constraint error in mm: the distance between the anchor on one body and the anchor on the other; for sliders the part perpendicular to
   /// the axis.
