@@ -263,7 +263,7 @@ Diagnosis run(std::vector<Recording> recordings, const DiagnosisOptions& options
   }
   for (const std::string& note : diagnosis.notes)
     if (std::ranges::find(again.notes, note) == again.notes.end()) again.notes.push_back(note);
-  again.notes.push_back(starts.sentence);
+  again.unknown_start = starts.sentence;
   again.simulation_count += diagnosis.simulation_count;
   again.simulated_s += diagnosis.simulated_s;
   again.wall_s += diagnosis.wall_s;

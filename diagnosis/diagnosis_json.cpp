@@ -151,6 +151,7 @@ std::string diagnosisJson(const Diagnosis& d, const std::string& schedule_file) 
   if (!d.numbers.empty()) json["numbers"] = listOf(d.numbers);
   if (!d.tuned.empty()) json["tuned"] = listOf(d.tuned);
   if (!d.odd_recordings.empty()) json["odd_recordings"] = d.odd_recordings;
+  if (!d.unknown_start.empty()) json["unknown_start"] = d.unknown_start;
   if (!d.muscle_names.empty()) json["muscle_names"] = d.muscle_names;
   if (d.substeps > 0) json["substeps"] = d.substeps;
   json["unexplained_percent"] = d.unexplained_percent;
@@ -201,6 +202,7 @@ std::string diagnosisSummary(const Diagnosis& d) {
                         percentWords(d.reduction_percent), d.held_out, d.nominal_refit_percent, d.negative_control_percent,
                         elsewhereSentence({d.reduction_percent, d.reduction_low_percent, d.reduction_high_percent}));
   for (const std::string& odd : d.odd_recordings) text += fmt::format("but       {}\n", odd);
+  if (!d.unknown_start.empty()) text += fmt::format("start     {}\n", d.unknown_start);
   if (!d.next_experiment.commands.empty()) text += fmt::format("next      record next.csv, {}\n", d.next_experiment.why);
   return text;
 }

@@ -138,6 +138,7 @@ std::string howFar(const Diagnosis& d) {
                                    : fmt::format("All {} recordings were compared; the figures below are of {}.", d.recordings.size(),
                                                  shortNames(d.recordings).back())));
   for (const std::string& odd : d.odd_recordings) text += paragraph(odd);
+  if (!d.unknown_start.empty()) text += paragraph(d.unknown_start);
   if (hasAfter(d) && d.chosen.empty()) text += paragraph("No explanation was accepted: below, \"after\" means with the best rejected one.");
   if (hasAfter(d)) text += removalFigure(d) + controlsFigure(d);
   text += phaseFigure(d) + signalTable(d);

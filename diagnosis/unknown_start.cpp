@@ -100,7 +100,7 @@ UnknownStarts unknownStarts(const Search& search, const HeldOut& held_out, const
   starts.sentence = fmt::format(
       "{} {} in another state than the model, which begins at rest and without a history: probably the machine had been moving before. "
       "With what had been found, {} was up to {:.0f} times as far off in the first {:g} s as in the second half. The readings at the "
-      "beginning were left out, and all was fitted again (--skip-start 0 keeps them)",
+      "beginning were left out, and all was fitted again (--skip-start 0 keeps them).",
       fmt::join(names, ", "), names.size() > 1 ? "begin" : "begins", plant.signals()[static_cast<std::size_t>(worst)].name, most,
       forgotten_after_s);
   return starts;

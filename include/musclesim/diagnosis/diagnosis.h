@@ -250,6 +250,7 @@ struct Diagnosis {
       model_effects;                     ///< "id@component" of effects that the diagnosed model has already: the recordings' active_effects
   std::vector<std::string> not_excited;  ///< effects that these recordings could not have shown
   std::vector<std::string> odd_recordings;  ///< sentences on recordings that are explained far worse than all others
+  std::string unknown_start;                ///< a sentence on recordings that begin in the middle of a motion; empty if there are none
   std::vector<std::string> notes;           ///< remarks on the data and the answer for the user
   std::optional<SmallGap> small_gap;        ///< with `no_gap` only
   Unsteady unsteady;
