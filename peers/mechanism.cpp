@@ -29,7 +29,8 @@ class Reader {
         for (const dBodyID bead : link.bead) addBody(bead, actuator->name());
     for (const auto& joint : world_.joints()) addJoint(*joint);
     for (const Actuator* actuator : simulation.robot().actuators()) addMuscle(*actuator);
-    if (!world_.forceElements().empty()) throw BadParameter("springs and walls between bodies: the models of other engines have none");
+    if (!std::ranges::all_of(world_.forceElements(), [](const auto& element) { return element->onlyDampsAJoint(); }))
+      throw BadParameter("springs and walls between bodies: the models of other engines have none");
     if (const Primitive* hand = simulation.robot().hand()) {
       const dBodyID body = hand->body().id;
       const Vector offset_mm = simulation.robot().handMm() - positionOf(body);
@@ -59,18 +60,19 @@ class Reader {
 
   /// The axis with the coordinate `now`; `group` is ODE's group of parameters.
   template <class Get>
-  static JointAxis readAxis(const Vector& direction, double now, const AxisUnits& units, int group, const Get& get) {
+  static JointAxis readAxis(const Joint& joint, const Vector& direction, double now, const AxisUnits& units, int group, const Get& get) {
     JointAxis axis{.direction = direction.normalized()};
     const double low = get(dParamLoStop + group), high = get(dParamHiStop + group), most = get(dParamFMax + group);
     if (low <= high) {
       axis.low = (low - now) / units.coordinate;
       axis.high = (high - now) / units.coordinate;
     }
-    // A motor at rest with a largest force is dry friction; one without is viscous friction, softened to a speed per force.
-    if (std::isfinite(most))
-      axis.friction = most / units.force;
-    else if (const double softness = get(dParamCFM + group); softness > 0)
-      axis.damping = units.coordinate / (units.force * softness);
+    // A motor at rest with a largest force is dry friction; one without is viscous friction, softened to a speed per force. The damping of
+    // a joint's first axis is known even where dry friction or a stop takes the motor.
+    const bool is_damped = group == 0 && joint.dampingSoftness() > 0;
+    const double softness = is_damped ? joint.dampingSoftness() : std::isfinite(most) ? 0 : get(dParamCFM + group);
+    if (softness > 0) axis.damping = units.coordinate / (units.force * softness);
+    axis.friction = is_damped ? joint.dryFriction() / units.force : std::isfinite(most) ? most / units.force : 0;
     return axis;
   }
 
@@ -96,20 +98,20 @@ class Reader {
         dJointGetHingeAnchor(id, anchor);
         dJointGetHingeAxis(id, axis);
         result.coordinate_as_built = dJointGetHingeAngle(id);
-        result.axes.push_back(readAxis(fromOde(axis), dJointGetHingeAngle(id), turning, 0, hinge));
+        result.axes.push_back(readAxis(joint, fromOde(axis), dJointGetHingeAngle(id), turning, 0, hinge));
         break;
       case Joint::Kind::slider:
         dJointGetSliderAxis(id, axis);
         result.coordinate_as_built = dJointGetSliderPosition(id) / mm_per_m;
-        result.axes.push_back(readAxis(fromOde(axis), dJointGetSliderPosition(id), sliding, 0, slider));
+        result.axes.push_back(readAxis(joint, fromOde(axis), dJointGetSliderPosition(id), sliding, 0, slider));
         break;
       case Joint::Kind::universal:
         dJointGetUniversalAnchor(id, anchor);
         dJointGetUniversalAxis1(id, axis);
         result.coordinate_as_built = dJointGetUniversalAngle1(id);
-        result.axes.push_back(readAxis(fromOde(axis), dJointGetUniversalAngle1(id), turning, 0, universal));
+        result.axes.push_back(readAxis(joint, fromOde(axis), dJointGetUniversalAngle1(id), turning, 0, universal));
         dJointGetUniversalAxis2(id, axis);
-        result.axes.push_back(readAxis(fromOde(axis), dJointGetUniversalAngle2(id), turning, dParamGroup2, universal));
+        result.axes.push_back(readAxis(joint, fromOde(axis), dJointGetUniversalAngle2(id), turning, dParamGroup2, universal));
         break;
       case Joint::Kind::fixed:
         break;

@@ -98,7 +98,6 @@ double Joint::parameter(int which) const {
 void Joint::addDryFriction(double force) {
   if (force == 0) return;
   dry_friction_ += force;
-  has_damping_motor_ = false;
   setParameter(dParamVel, 0);
   setParameter(dParamFMax, dry_friction_);
   // CFM (softness) is a speed per force: under its full friction the joint creeps by a millionth of a rad or mm per second.
@@ -107,15 +106,15 @@ void Joint::addDryFriction(double force) {
 }
 
 void Joint::dampByMotor(double softness) {
+  damping_softness_ = softness;
   if (dry_friction_ > 0) return;
-  has_damping_motor_ = true;
   setParameter(dParamVel, 0);
   setParameter(dParamFMax, dInfinity);
   setParameter(dParamCFM, softness);
 }
 
 void Joint::freeAtStops() const {
-  if (!has_damping_motor_) return;
+  if (damping_softness_ == 0 || dry_friction_ > 0) return;
   const double position = kind_ == Kind::slider  ? dJointGetSliderPosition(id_)
                           : kind_ == Kind::hinge ? dJointGetHingeAngle(id_)
                                                  : dJointGetUniversalAngle1(id_);

@@ -63,6 +63,7 @@ class JointSpring final : public ForceElement {
     if (stiffness_ == 0 && damping == 0) return;
     joint_.kind() == Joint::Kind::slider ? loadSlider(damping, add) : loadHinge(damping, add);
   }
+  bool onlyDampsAJoint() const override { return stiffness_ == 0; }
 
  private:
   void loadHinge(double damping, const AddLoad& add) const {

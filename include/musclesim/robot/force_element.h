@@ -18,6 +18,8 @@ class ForceElement {
   /// Calls `add` for every body on which it acts, with force in N and torque about the centre of mass in N mm, world frame. `at_rest`: the
   /// loads that it would have in the present pose without motion.
   virtual void load(bool at_rest, const AddLoad& add) const = 0;
+  /// Whether it does nothing but damp a joint as Joint::dampingSoftness says.
+  virtual bool onlyDampsAJoint() const { return false; }
   /// Keeps points on a body where they are although its centre of mass has moved by `shift_mm`, in the body's frame.
   virtual void moveCenter(dBodyID body, const Vector& shift_mm) {
     static_cast<void>(body);

@@ -49,8 +49,11 @@ class Joint {
   /// motor from damping (dampByMotor).
   void addDryFriction(double force);
   double dryFriction() const { return dry_friction_; }
-  /// Damps the same axis by a motor at rest of any force: speed = softness * force, softness > 0. Stable however strong it is.
+  /// Damps the same axis by a motor at rest of any force: speed = softness * force, softness > 0. Stable however strong it is. Where there
+  /// is dry friction, someone else must damp (addJointMechanics).
   void dampByMotor(double softness);
+  /// 0: it is not damped.
+  double dampingSoftness() const { return damping_softness_; }
   /// Switches a damping motor off while the joint is at a stop, where ODE would press into the stop with all its force. Call it before
   /// every step.
   void freeAtStops() const;
@@ -76,7 +79,7 @@ class Joint {
   JointReference reference_pose_;
   double counted_deg_[2] = {};  ///< angle when the turns were counted last
   double dry_friction_ = 0;
-  bool has_damping_motor_ = false;
+  double damping_softness_ = 0;
   Vector reference_;  ///< sliders and fixed joints: position of the second body (or environment) relative to the first, in the first's
                       ///< frame, mm
 };
