@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
 #include <set>
 
+#include "../../robot/springs.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/units.h"
 #include "musclesim/robot/actuator.h"
@@ -42,6 +44,22 @@ TEST(Mechanism, TakesViscousFrictionAsDamping) {
   EXPECT_NEAR(slider.damping, 1 / 0.2, 1e-9);  // 1 N at 200 mm/s
   EXPECT_EQ(slider.friction, 0);
   EXPECT_NEAR(rig.mechanism.joints[static_cast<std::size_t>(muscle.hinges[0])].axes.at(0).damping, 0.008 / 8, 1e-12);
+}
+
+TEST(Mechanism, TakesTheDampingOfAJointAlsoBesideDryFriction) {
+  Sample elbow("elbow");
+  Joint& joint = *elbow.simulation.robot().angles().at(0).joint;
+  addJointMechanics(elbow.simulation.world(), joint, {.damping = 0.05});
+  const auto axis = [&] {
+    elbow.read();
+    const auto read = std::ranges::find(elbow.mechanism.joints, &joint, &BodyJoint::source);
+    return read == elbow.mechanism.joints.end() ? JointAxis{} : read->axes.at(0);
+  };
+  EXPECT_NEAR(axis().damping, 0.05, 1e-12);
+  EXPECT_EQ(axis().friction, 0);
+  joint.addDryFriction(0.3 * mm_per_m * elbow.simulation.physics().force_per_N);
+  EXPECT_NEAR(axis().damping, 0.05, 1e-12);
+  EXPECT_NEAR(axis().friction, 0.3, 1e-12);
 }
 
 TEST(Mechanism, CountsStopsFromThePresentPose) {
