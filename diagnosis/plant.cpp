@@ -178,6 +178,10 @@ void Plant::dropAfterDropouts() {
 void Plant::dropStarts() {
   for (Recording& recording : recordings_) {
     const double skipped_s = options_.skip_start_s.value_or(recording.info.skip_start_s.value_or(0));
+    const double duration_s = recording.time_s.back() - recording.time_s.front();
+    if (skipped_s > 0 && skipped_s >= duration_s)
+      throw BadFile(recording.file,
+                    fmt::format("skip_start_s = {:g} leaves out all its readings: it lasts {:.3g} s", skipped_s, duration_s));
     const auto end = std::ranges::lower_bound(recording.time_s, recording.time_s.front() + skipped_s);
     for (Signal& signal : recording.signals)
       if (!signal.name.starts_with("command_")) std::fill_n(signal.values.begin(), end - recording.time_s.begin(), nan);

@@ -97,8 +97,10 @@ double Joint::parameter(int which) const {
 
 void Joint::addDryFriction(double force) {
   if (force == 0) return;
-  dry_friction_ += force;
   setParameter(dParamVel, 0);
+  // A robot in C++ may have set a largest force itself.
+  if (const double set = parameter(dParamFMax); dry_friction_ == 0 && damping_softness_ == 0 && std::isfinite(set)) dry_friction_ = set;
+  dry_friction_ += force;
   setParameter(dParamFMax, dry_friction_);
   // CFM (softness) is a speed per force: under its full friction the joint creeps by a millionth of a rad or mm per second.
   constexpr double creep_per_s = 1e-6;

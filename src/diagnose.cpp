@@ -241,7 +241,7 @@ Action addDiagnose(CLI::App& command, ModelOptions& model) {
       .add_option("--skip-start", arguments->skip_start_s,
                   "Seconds at the beginning of every recording whose readings are left out, because the machine had been moving (default: "
                   "skip_start_s of the sidecars, and 1 s of recordings that turn out to begin in motion); 0: none")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0.0, 1e5));
   addModelOptions(command, model);
   command.remove_option(command.get_option("--json"));
   command.get_option("--effects")

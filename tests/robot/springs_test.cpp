@@ -94,6 +94,16 @@ TEST_P(JointMechanicsTest, DryFrictionThatComesLaterActsBesideTheDamping) {
   EXPECT_NEAR(bench.barRadPerS(), 0, 1e-5);
 }
 
+/// A robot in C++ may use ODE's motor itself.
+TEST_P(JointMechanicsTest, DryFrictionAddsToThatOfODEsMotor) {
+  const double largest = 0.01 * mm_per_m * bench.simulation.physics().force_per_N;
+  dJointSetHingeParam(bench.machine.hinge->id(), dParamFMax, largest);
+  bench.machine.hinge->addDryFriction(largest);
+  bench.turnBar(2);
+  bench.run(0.25);
+  EXPECT_NEAR(bench.barRadPerS(), 2 - 0.02 / Machine::bar_kgm2 * 0.25, 2e-3);
+}
+
 TEST_P(JointMechanicsTest, DampedJointReachesItsStopAndLeavesIt) {
   dJointSetHingeParam(bench.machine.hinge->id(), dParamLoStop, -1);
   dJointSetHingeParam(bench.machine.hinge->id(), dParamHiStop, 0.1);
