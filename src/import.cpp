@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "commands.h"
-#include "diagnosis/data_checks.h"
+#include "diagnosis/data/data_checks.h"
 #include "log/table_look.h"
 #include "musclesim/base/error.h"
 #include "musclesim/base/file.h"

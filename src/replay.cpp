@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
-#include "diagnosis/gap_figure.h"
+#include "diagnosis/report/gap_figure.h"
 #include "interrupt.h"
 #include "log/figure_file.h"
 #include "musclesim/base/error.h"

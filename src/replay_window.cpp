@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "diagnosis/replay_gap.h"
+#include "diagnosis/data/replay_gap.h"
 #include "interrupt.h"
 #include "musclesim/base/error.h"
 #include "progress.h"

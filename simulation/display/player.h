@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "diagnosis/replay_gap.h"
+#include "diagnosis/data/replay_gap.h"
 #include "simulation/snapshot.h"
 
 namespace musclesim {

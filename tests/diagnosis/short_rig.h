@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "diagnosis/comparison.h"
+#include "diagnosis/fit/comparison.h"
 #include "planted.h"
 
 namespace musclesim::planted {

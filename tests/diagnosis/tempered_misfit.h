@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "diagnosis/comparison.h"
+#include "diagnosis/fit/comparison.h"
 
 namespace musclesim {
 
