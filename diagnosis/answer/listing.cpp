@@ -29,7 +29,8 @@ std::string labelOf(const Search& search, std::size_t hypothesis) {
 
 constexpr double wide = 10;  ///< an interval, over the number or its usual size: nothing is known of its order of magnitude
 
-std::map<std::string, Estimate> estimates(const Hypothesis& hypothesis, const Explanation& fitted, Eigen::Index first) {
+/// Values and intervals of an effect's parameters; `first` is the index of its first coordinate.
+std::map<std::string, Estimate> estimatesOfFit(const Hypothesis& hypothesis, const Explanation& fitted, Eigen::Index first) {
   const Eigen::Index count = hypothesis.coordinateCount();
   const Eigen::VectorXd z = fitted.z.segment(first, count), half = fitted.half_width.segment(first, count);
   const auto at = hypothesis.valuesAt(z), one = hypothesis.valuesAt(hypothesis.clamped(z - half)),
@@ -44,6 +45,22 @@ std::map<std::string, Estimate> estimates(const Hypothesis& hypothesis, const Ex
     if (const auto found = result.find(parameter.name); found != result.end()) {
       Estimate& estimate = found->second;
       if (estimate.high - estimate.low > wide * std::max(usualScale(parameter), std::abs(estimate.value))) estimate.is_determined = false;
+    }
+  return result;
+}
+
+/// The same, with intervals that hold those with the further mechanisms which the laws of the explanation's effects leave out.
+std::map<std::string, Estimate> estimates(const Search& search, const Explanation& fitted, std::size_t member) {
+  const auto of = [&](const Explanation& one) {
+    return estimatesOfFit(search.hypotheses()[one.members[member]], one, search.causes().firstCoordinate(one, member));
+  };
+  std::map<std::string, Estimate> result = of(fitted);
+  if (!fitted.with_mechanisms) return result;
+  for (const auto& [name, other] : of(*fitted.with_mechanisms))
+    if (const auto own = result.find(name); own != result.end()) {
+      own->second.low = std::min(own->second.low, other.low);
+      own->second.high = std::max(own->second.high, other.high);
+      own->second.is_determined = own->second.is_determined && other.is_determined;
     }
   return result;
 }
@@ -193,7 +210,6 @@ void listEffects(const Search& search, const HeldOut& held_out, const DiagnosisO
   std::map<std::string, FoundEffect> found;
   for (const Explanation& fitted : search.explanations()) {
     ExplanationProbability entry{{}, known * fitted.probability};
-    Eigen::Index first = 0;
     for (std::size_t member = 0; member < fitted.members.size(); ++member) {
       const Hypothesis& hypothesis = search.hypotheses()[fitted.members[member]];
       entry.effects.push_back(hypothesis.label());
@@ -201,13 +217,12 @@ void listEffects(const Search& search, const HeldOut& held_out, const DiagnosisO
       if (effect.id.empty()) {
         effect.id = hypothesis.info().id;
         effect.component = hypothesis.component();
-        effect.parameters = estimates(hypothesis, fitted, first);
+        effect.parameters = estimates(search, fitted, member);
         if (entry.probability >= least_listed) widenWithinStep(search, fitted, member, effect.parameters);
         effect.choices = hypothesis.choices();
         if (const auto share = removed.find(hypothesis.label()); share != removed.end()) effect.removes_percent = share->second;
       }
       effect.probability += known * fitted.probability;
-      first += hypothesis.coordinateCount();
     }
     if (known * fitted.probability >= least_listed) diagnosis.explanations.push_back(std::move(entry));
   }

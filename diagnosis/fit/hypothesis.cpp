@@ -322,9 +322,11 @@ std::vector<Hypothesis> Hypothesis::smallAndLarge() const {
   return result;
 }
 
-int Hypothesis::furtherMechanisms() const {
-  return static_cast<int>(
-      std::ranges::count_if(coordinates_, [this](const Coordinate& c) { return info_.parameters[c.parameter].adds_mechanism; }));
+std::vector<int> Hypothesis::furtherMechanisms() const {
+  std::vector<int> result;
+  for (int i = 0; i < coordinateCount(); ++i)
+    if (info_.parameters[coordinates_[static_cast<std::size_t>(i)].parameter].adds_mechanism) result.push_back(i);
+  return result;
 }
 
 /// With and without shares that may be zero (of further lags, of a filter, of friction that depends on the pressure): the simpler law is

@@ -34,7 +34,7 @@ class Hypothesis {
   /// On how many components of the plant the effect could act alone: how often "one of them" was tried. 1 for "all".
   int placeCount() const { return place_count_; }
   /// Coordinates that are mechanisms beside the effect's own (EffectParameter::adds_mechanism).
-  int furtherMechanisms() const;
+  std::vector<int> furtherMechanisms() const;
   /// Indices of the coordinates that are strengths: at 0 the effect vanishes.
   const std::vector<int>& strengths() const { return strengths_; }
   /// Names of the parameters that are strengths, in order.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 
@@ -13,6 +14,7 @@
 #include "drawing.h"
 #include "musclesim/base/error.h"
 #include "musclesim/robot/force_law.h"
+#include "stop_contacts.h"
 
 namespace musclesim {
 
@@ -195,6 +197,7 @@ void Plant::compareSignals() {
   dropDeadSegments();
   dropAfterDropouts();
   dropStarts();
+  std::ranges::move(dropAfterStops(recordings_, reference_->robot()), std::back_inserter(notes_));
   const bool moves = commandsMove(recordings_);
   for (const std::string& name : reference_->robot().signalNames()) {
     if (name.starts_with("command_")) continue;

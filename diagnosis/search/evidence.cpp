@@ -49,8 +49,8 @@ Complexity Evidence::complexityOf(const Explanation& explanation) const {
     const double determined = is_fitted ? explanation.determined.segment(first, count).sum() : count;
     // An effect of which the data determine nothing is not for free.
     result.parameters += std::max({determined, static_cast<double>(hypothesis.countedParameters()), 1.0});
-    result.effects += (i > 0 ? 1 : 0) + hypothesis.furtherMechanisms();
-    result.same_place += (actsWhereOthersDo(explanation, i) ? 1 : 0) + hypothesis.furtherMechanisms();
+    result.effects += (i > 0 ? 1 : 0) + static_cast<double>(hypothesis.furtherMechanisms().size());
+    result.same_place += (actsWhereOthersDo(explanation, i) ? 1 : 0) + static_cast<double>(hypothesis.furtherMechanisms().size());
     result.excess += hypothesis.excess(explanation.z.segment(first, count));
     result.shared_sensor += hypothesis.info().stage == Stage::sensor && hypothesis.component() == "all" ? 1 : 0;
     result.places += std::log(hypothesis.placeCount());

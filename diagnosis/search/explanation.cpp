@@ -102,6 +102,38 @@ Explanation Causes::takingOver(const Explanation& explanation, const Explanation
   return result;
 }
 
+Explanation Causes::inVariants(const Explanation& explanation,
+                               const std::function<bool(const Hypothesis& own, const Hypothesis& other)>& isWanted) const {
+  const Model model = modelOf(explanation);
+  Explanation result;
+  std::vector<double> z;
+  for (std::size_t m = 0; m < explanation.members.size(); ++m) {
+    const Hypothesis& own = hypotheses[explanation.members[m]];
+    const auto wanted =
+        std::ranges::find_if(hypotheses, [&](const Hypothesis& other) { return other.label() == own.label() && isWanted(own, other); });
+    result.members.push_back(wanted == hypotheses.end() ? explanation.members[m] : static_cast<std::size_t>(wanted - hypotheses.begin()));
+    const Eigen::VectorXd part = hypotheses[result.members.back()].coordinatesOf(model.effects[m].parameters);
+    z.insert(z.end(), part.begin(), part.end());
+  }
+  result.z = Eigen::Map<const Eigen::VectorXd>(z.data(), static_cast<Eigen::Index>(z.size()));
+  result.numbers = explanation.numbers;
+  return result;
+}
+
+Explanation Causes::withFurtherMechanisms(const Explanation& explanation) const {
+  return inVariants(explanation, [](const Hypothesis& own, const Hypothesis& other) {
+    const auto more = static_cast<int>(other.furtherMechanisms().size());
+    return own.furtherMechanisms().empty() && more > 0 && other.coordinateCount() == own.coordinateCount() + more;
+  });
+}
+
+Explanation Causes::withoutFurtherMechanisms(const Explanation& explanation) const {
+  return inVariants(explanation, [](const Hypothesis& own, const Hypothesis& other) {
+    const auto more = static_cast<int>(own.furtherMechanisms().size());
+    return more > 0 && other.furtherMechanisms().empty() && other.coordinateCount() == own.coordinateCount() - more;
+  });
+}
+
 Eigen::VectorXd Causes::clamped(const std::vector<std::size_t>& members, const Eigen::VectorXd& z) const {
   Eigen::VectorXd result = z;
   Eigen::Index first = 0;
@@ -156,6 +188,18 @@ void Causes::refit(Explanation& explanation, const Comparison& comparison, int r
                                ? fitCorrected(comparison, problem, problemOf(explanation, comparison, Fidelity::fine).predicted, rounds)
                                : fit(comparison, problem, rounds);
   take(explanation, result, rounds > 0 || explanation.half_width.size() == 0);
+}
+
+void Causes::refitHolding(Explanation& explanation, Eigen::Index coordinate, const Comparison& comparison, int rounds) const {
+  FitProblem problem = problemOf(explanation, comparison, Fidelity::coarse);
+  problem.clamped = [free = problem.clamped, coordinate, held = explanation.z[coordinate]](const Eigen::VectorXd& z) {
+    Eigen::VectorXd result = free(z);
+    result[coordinate] = held;
+    return result;
+  };
+  problem.enough = roughly_enough;
+  problem.still_valid = roughly_valid;
+  take(explanation, fit(comparison, problem, rounds), true);
 }
 
 void Causes::finish(Explanation& explanation, const Comparison& comparison) const {

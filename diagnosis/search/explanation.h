@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -25,6 +27,8 @@ struct Explanation {
   double score = 0;                                ///< Evidence::score
   double probability = 0;
   bool is_inactive = false;  ///< one of its effects is inactive: the fit is as good at nearly zero strength
+  /// The same effects, fitted with the further mechanisms that their laws leave out here (a valve's second lag); null if there are none.
+  std::shared_ptr<const Explanation> with_mechanisms;
 };
 
 /// Takes over the certainty of a fit of z and numbers; an empty one makes it unknown.
@@ -57,6 +61,10 @@ class Causes {
   /// The explanation, not fitted yet, with what another one has: the numbers of the model, and the variants and coordinates of the effects
   /// that both have.
   Explanation takingOver(const Explanation& explanation, const Explanation& other) const;
+  /// The explanation, not fitted yet, with the variants of its effects that have, or lack, further mechanisms. Of those that it left out
+  /// there is nothing as yet.
+  Explanation withFurtherMechanisms(const Explanation& explanation) const;
+  Explanation withoutFurtherMechanisms(const Explanation& explanation) const;
   Eigen::VectorXd clamped(const std::vector<std::size_t>& members, const Eigen::VectorXd& z) const;
   /// The fit of all coordinates and numbers to a comparison. References must outlive the problem.
   FitProblem problemOf(const Explanation& explanation, const Comparison& comparison, Fidelity fidelity) const;
@@ -64,10 +72,16 @@ class Causes {
   void refit(Explanation& explanation, const Comparison& comparison, int rounds, Fidelity fidelity, Accuracy accuracy,
              std::vector<SharedVector> known = {}, Known known_from = Known::elsewhere,
              double largest_cost = std::numeric_limits<double>::infinity()) const;
+  /// Fits on in coarse steps, with one coordinate of the effects held where it is.
+  void refitHolding(Explanation& explanation, Eigen::Index coordinate, const Comparison& comparison, int rounds) const;
   /// Takes the last steps of a fit and the intervals there (musclesim::finish).
   void finish(Explanation& explanation, const Comparison& comparison) const;
 
  private:
+  /// The explanation at the values that it has, with other variants of its members.
+  Explanation inVariants(const Explanation& explanation,
+                         const std::function<bool(const Hypothesis& own, const Hypothesis& other)>& isWanted) const;
+
   const Plant& plant_;
   const OnSimulation& on_simulation_;
 };

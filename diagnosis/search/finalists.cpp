@@ -13,12 +13,9 @@ namespace {
 constexpr double far_behind = 8;  ///< nats behind the best on the screening segments: not fitted to all recordings
 constexpr std::size_t finalist_count = 10;
 constexpr std::size_t always_count = 2;     ///< of each size
-constexpr std::size_t varied_count = 5;     ///< explanations of which other variants are tried,
-constexpr double near_best = 4;             ///< if they are not so many nats behind the best
 constexpr std::size_t restarted_count = 4;  ///< explanations near the best that are fitted from other strengths,
 constexpr std::size_t start_count = 2;      ///< from so many starts each
 constexpr int variant_passes = 3;           ///< changes of one effect's variant each
-constexpr double worth_polishing = 2;       ///< nats that fine steps may give a variant
 constexpr double listed = 0.01;             ///< least probability of explanations that are fitted to the end and may be chosen
 constexpr int coarse_rounds = 6, fine_rounds = 4;
 
@@ -90,6 +87,7 @@ void Search::fitFinalists() {
   tryEarlier();
   tryOtherStrengths();
   tryVariants();
+  tryFurtherMechanisms();
   tryLikeTheBest();
   tryExchanged();
   tryWithoutOne();
@@ -117,6 +115,7 @@ void Search::polish() {
     explanation = std::move(finished);
     takeFromCounterparts(explanation);
     explanation.score = evidence().score(explanation);
+    explanation.with_mechanisms = withFurtherMechanisms(explanation);
   });
 }
 

@@ -188,35 +188,15 @@ void Search::fitOnScreening(std::vector<Proposal> proposals) {
   }
 }
 
-/// The same start by laws without further mechanisms; nothing if it has none. Further lags may have taken in a part of what an added dead
-/// time makes, so that a fit of both ends between the two.
-std::optional<Search::Proposal> Search::withoutFurtherMechanisms(const Proposal& proposal) const {
-  Explanation start = proposal.start;
-  const Model model = causes_.modelOf(start);
-  std::vector<double> z;
-  for (std::size_t m = 0; m < start.members.size(); ++m) {
-    const Hypothesis& own = causes_.hypotheses[start.members[m]];
-    const auto simple = std::ranges::find_if(causes_.hypotheses, [&](const Hypothesis& other) {
-      return other.label() == own.label() && other.furtherMechanisms() == 0 &&
-             other.coordinateCount() == own.coordinateCount() - own.furtherMechanisms();
-    });
-    if (own.furtherMechanisms() > 0 && simple != causes_.hypotheses.end())
-      start.members[m] = static_cast<std::size_t>(simple - causes_.hypotheses.begin());
-    const Eigen::VectorXd part = causes_.hypotheses[start.members[m]].coordinatesOf(model.effects[m].parameters);
-    z.insert(z.end(), part.begin(), part.end());
-  }
-  if (start.members == proposal.start.members) return std::nullopt;
-  start.z = Eigen::Map<const Eigen::VectorXd>(z.data(), static_cast<Eigen::Index>(z.size()));
-  return Proposal{std::move(start), proposal.cost};
-}
-
 void Search::expand(const Explanation& base) {
   if (!expanded_.insert(causes_.labelsOf(base.members)).second || plant_.interrupted()) return;
   const Explanation copy = base;  // the pool grows below
   const Surroundings around = surroundingsOf(copy, {neighbour_count, 1});
   std::vector<Proposal> proposals = nearestOfStages(additions(around), addition_count, 1, 1);
+  // Further lags may have taken in a part of what an added dead time makes, so that a fit of both ends between the two.
   for (std::size_t i = 0, count = proposals.size(); i < count; ++i)
-    if (std::optional<Proposal> simple = withoutFurtherMechanisms(proposals[i])) proposals.push_back(std::move(*simple));
+    if (Explanation simple = causes_.withoutFurtherMechanisms(proposals[i].start); simple.members != proposals[i].start.members)
+      proposals.push_back({std::move(simple), proposals[i].cost});
   std::ranges::move(nearest(drops(around), drop_count), std::back_inserter(proposals));
   fitOnScreening(std::move(proposals));
 }

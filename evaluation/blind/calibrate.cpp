@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../../diagnosis/evidence.h"
+#include "../../diagnosis/search/evidence.h"
 #include "judge_set.h"
 #include "musclesim/base/error.h"
 #include "seal.h"

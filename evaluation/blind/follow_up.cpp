@@ -4,7 +4,7 @@
 #include <mutex>
 
 #include "../../base/parallel.h"
-#include "../../diagnosis/schedule.h"
+#include "../../diagnosis/planning/schedule.h"
 #include "follow_up_files.h"
 #include "judge.h"
 #include "kind.h"

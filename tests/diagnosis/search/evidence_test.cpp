@@ -97,8 +97,8 @@ TEST_F(EvidenceOnARig, AFurtherMechanismOfALawCostsLikeAnotherEffectOfItsPlace) 
   Causes lags(plant_, on_simulation_);
   lags.hypotheses = Hypothesis(effectInfo("valve_lag"), "muscle_0", plant_).variants(plant_);
   ASSERT_EQ(lags.hypotheses.size(), 2u);
-  ASSERT_EQ(lags.hypotheses[0].furtherMechanisms(), 1) << "of the further lags";
-  ASSERT_EQ(lags.hypotheses[1].furtherMechanisms(), 0);
+  ASSERT_EQ(lags.hypotheses[0].furtherMechanisms().size(), 1) << "of the further lags";
+  ASSERT_EQ(lags.hypotheses[1].furtherMechanisms().size(), 0);
   const Evidence evidence(comparison_, nominal_, lags);
   const auto priceOf = [&](std::size_t variant) {
     Explanation explanation;
