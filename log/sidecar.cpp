@@ -48,7 +48,8 @@ constexpr std::size_t most_robot_parameters = 10'000;
 /// Further members that runs of this program write. The reader accepts them without a note.
 bool isOfARun(const std::string& member) {
   static const std::vector<std::string> names = {"controller",      "task",       "stepper", "substeps",  "substeps_automatic",
-                                                 "internal_step_s", "parameters", "verdict", "by_hand_s", "run"};
+                                                 "internal_step_s", "parameters", "verdict", "by_hand_s", "run",
+                                                 "pulls",           "repeats"};
   return std::find(names.begin(), names.end(), member) != names.end();
 }
 

@@ -90,6 +90,7 @@ void PythonSimulation::readAll() {
 }
 
 void PythonSimulation::begin(const std::string& initial_state) {
+  simulation_->parameters().requireAllKnown();
   was_started_ = true;
   left_within_step_ = true;  // until the start has succeeded
   simulation_->start(initial_state, command_);
@@ -105,7 +106,6 @@ py::array PythonSimulation::start(const py::object& command, const std::optional
   if (seed) model_.options.seed = *seed;
   if (was_started_ || seed) build();
   command_ = first;
-  simulation_->parameters().requireAllKnown();
   Heed heed(*this);
   try {
     const py::gil_scoped_release unlocked;

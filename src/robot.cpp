@@ -50,6 +50,14 @@ void printFriction(const Robot& robot) {
     fmt::print("friction within the muscles: {:.4g} N (muscle.slider_friction_N; in each link of a chain)\n", fmt::join(frictions_N, ", "));
 }
 
+/// How far numbers may be off. A diagnosis may take another number that is wrong for a cause.
+void printTolerances(const Robot& robot) {
+  std::vector<std::string> words;
+  for (const auto& [name, tolerance] : robot.parameterTolerances()) words.push_back(fmt::format("{} {:.3g} %", name, 100 * tolerance));
+  fmt::print("tolerances for a diagnosis: {}; every other number, levers and places too, counts as exact\n",
+             words.empty() ? "none" : fmt::format("{}", fmt::join(words, ", ")));
+}
+
 int check(const ModelOptions& model, const std::string& robot) {
   const auto simulation = built(model, robot);
   const Robot& made = simulation->robot();
@@ -60,6 +68,7 @@ int check(const ModelOptions& model, const std::string& robot) {
   if (isRobotFile(robot)) std::ranges::move(unstatedConstants(robot), std::back_inserter(found));
   if (made.initialState() == "settled") simulation->settle(musclesim::Action(static_cast<std::size_t>(made.actuatorCount()), 0.0));
   printFriction(made);
+  printTolerances(made);
   printOddities(found);
   if (found.empty()) fmt::print("nothing odd found\n");
   return done;

@@ -211,7 +211,17 @@ class Worker {
     for (const char* name : {"/stdout.txt", "/stderr.txt"})
       if (fs::file_size(out + name) == 0) fs::remove(out + name);
     moveInPlace(out, folder_ + "/outputs/" + rowName(row));
+    namePlace(fs::path(out).filename().string(), rowName(row), result);
     conclude(row, result);
+  }
+
+  /// Gives paths among the results the folder's final name.
+  static void namePlace(const std::string& before, const std::string& name, RowResult& result) {
+    for (auto& [key, value] : result.numbers.items()) {
+      if (!value.is_string()) continue;
+      std::string text = value.get<std::string>();
+      if (const std::size_t at = text.find(before); at != std::string::npos) value = text.replace(at, before.size(), name);
+    }
   }
 
   /// True if the plan names numbers to collect, or the command tells the run to print numbers.

@@ -65,17 +65,4 @@ std::vector<TunedParameter> tunedParameters(const Plant& plant, const Eigen::Vec
   return result;
 }
 
-std::string fittedNumbersToml(const Diagnosis& diagnosis) {
-  if (diagnosis.tuned.empty() && diagnosis.numbers.empty()) return "";
-  std::string text = fmt::format("# Numbers of the model that musclesim diagnose fitted to recordings, together with the effects in {}.\n",
-                                 diagnosis.attempt.effects.empty() ? "effects.json" : "attempt.json");
-  const auto add = [&](const auto& number, const Estimate& fitted) {
-    text += fmt::format("{} = {}  # {}; {:.4g} .. {:.4g}, from {:.4g}\n", number.name, fitted.value, number.unit, fitted.low, fitted.high,
-                        number.start);
-  };
-  for (const TunedParameter& number : diagnosis.tuned) add(number, number.with_effects);
-  for (const FittedNumber& number : diagnosis.numbers) add(number, number.fitted);
-  return text;
-}
-
 }  // namespace musclesim

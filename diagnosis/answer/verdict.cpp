@@ -90,6 +90,7 @@ void acceptNumbers(const Eigen::VectorXd& after, const HeldOut& held_out, bool a
   diagnosis.after = held_out.comparison.gap(after);
   diagnosis.reduction_percent = diagnosis.reduction_low_percent = diagnosis.reduction_high_percent = held_out.reductionPercent(after);
   if (!are_all) return;
+  diagnosis.nominal_refit_percent = diagnosis.reduction_percent;
   diagnosis.verdict = Verdict::no_gap;
   diagnosis.notes.push_back("the gap is no larger than the tolerances of the model's numbers explain");
 }
@@ -126,8 +127,8 @@ Offer judge(const Search& search, const HeldOut& held_out, const DiagnosisOption
   const double left_of_rms = std::sqrt(std::max(0.0, 1 - attempt.reduction_percent / 100));
   // An explanation that removes most of the RMS on unseen data is of use, whatever its causes really are.
   const bool is_of_use = std::min(left_of_rms, search.noneOfThese()) <= named;
-  const bool found = is_of_use && !numbers_do_as_well && attempt.reduction_percent > diagnosis.nominal_refit_percent &&
-                     clearlyBeats(attempt.reduction_percent, diagnosis.negative_control_percent);
+  const bool found = is_of_use && !numbers_do_as_well &&
+                     clearlyBeats(attempt.reduction_percent, std::max(diagnosis.nominal_refit_percent, diagnosis.negative_control_percent));
   if (found) {
     const double on_held_out = probabilityOfUnknown(shareOfMisfitLeft(held_out.comparison, held_out.before, after));
     diagnosis.none_of_these = stand_in_share * std::min(named, std::max(search.noneOfThese(), on_held_out));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "../words/fitted_numbers.h"
 #include "../words/sentences.h"
 #include "musclesim/diagnosis/diagnosis.h"
 
@@ -179,6 +180,12 @@ std::string diagnosisSummary(const Diagnosis& d) {
   if (d.partial) text = "Interrupted: these are only the results up to the interruption.\n" + text;
   if (!d.muscle_names.empty()) text += fmt::format("muscles   {}\n", muscleNameWords(d));
   if (!d.tuned.empty()) text += fmt::format("tuned     {} of the model first, see nominal.toml\n", counted(d.tuned.size(), "parameter"));
+  if (isExplainedByNumbers(d)) {
+    for (const FittedNumber& number : d.numbers)
+      text += fmt::format("{:<9} {} = {} {}, given as {:.4g}\n", &number == &d.numbers.front() ? "numbers" : "", number.name,
+                          estimateWords(number.fitted), number.unit, number.start);
+    return text + "          nominal.toml holds them, for --config\n";
+  }
   if (!d.where.empty()) text += fmt::format("where     {}\n", whereSentence(d));
   const auto listed = [&](const char* title, double probability, const std::string& words) {
     text += fmt::format("{:<9} {:>11}  {}\n", title, probabilityWords(probability), words);

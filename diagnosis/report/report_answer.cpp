@@ -7,6 +7,7 @@
 #include "../../log/svg.h"
 #include "../data/noise_sigma.h"
 #include "../words/effect_words.h"
+#include "../words/fitted_numbers.h"
 #include "../words/sentences.h"
 #include "musclesim/effect/catalogue.h"
 #include "report_page.h"
@@ -81,6 +82,7 @@ std::string headline(const Diagnosis& d) {
 /// Where the causes found act, then what the signals say without any cause in mind.
 std::string whereAnswer(const Diagnosis& d) {
   if (d.small_gap) return "<p>Not looked for.</p>";
+  if (isExplainedByNumbers(d)) return "<p>In numbers of the model; no effect is needed.</p>";
   if (d.verdict == Verdict::no_gap || d.verdict == Verdict::not_excited) return "<p>Nowhere: no signal stands out of its noise.</p>";
   const std::string seen = d.where.empty() ? "" : whereSentence(d) + ".";
   if (d.chosen.empty()) return seen.empty() ? "<p>Not known.</p>" : paragraph(seen);
@@ -101,7 +103,8 @@ std::string whereAnswer(const Diagnosis& d) {
 std::string largestResidual(const Diagnosis& d) {
   const auto most = std::ranges::max_element(d.before.per_signal, {}, [](const auto& entry) { return overNoise(entry.second); });
   if (most == d.before.per_signal.end()) return "";
-  return fmt::format(" The largest residual is {:.3g} times its noise floor ({}).", overNoise(most->second), signalTitle(most->first));
+  return fmt::format(" The largest residual{} is {:.3g} times its noise floor ({}).",
+                     isExplainedByNumbers(d) ? " of the model as it was given" : "", overNoise(most->second), signalTitle(most->first));
 }
 
 /// The explanations that are as good as the best one.
@@ -147,7 +150,10 @@ std::string sureAnswer(const Diagnosis& d, const Caveats& caveats) {
 
 std::string restAnswer(const Diagnosis& d, const Caveats& caveats) {
   if (d.small_gap) return paragraph(smallGapSentence(d));
-  if (d.verdict == Verdict::no_gap) return "<p>Nothing beyond the noise.</p>";
+  if (d.verdict == Verdict::no_gap)
+    return isExplainedByNumbers(d)
+               ? "<p>Nothing beyond the noise with the fitted numbers." + (" " + escapedXml(fittedNumbersSentence(d))) + "</p>"
+               : "<p>Nothing beyond the noise.</p>";
   if (d.verdict == Verdict::not_excited) return "<p>Nothing beyond the noise, but the recordings hardly move the machine.</p>";
   if (d.verdict == Verdict::effects_found) {
     const std::string noise =
@@ -189,7 +195,9 @@ std::string nextSteps(const Diagnosis& d, Belief belief) {
     steps = "<li>Run the diagnosis again and let it finish.</li>";
   else if (d.verdict == Verdict::no_gap)
     steps =
-        "<li>Use the model as it is.</li>" +
+        (isExplainedByNumbers(d)
+             ? fmt::format("<li>Use the model with the fitted numbers: {}.</li>", command("musclesim replay NEW.csv --config nominal.toml"))
+             : "<li>Use the model as it is.</li>") +
         std::string(d.not_excited.empty() ? ""
                                           : "<li>Before you rely on other motions, see the effects that these could not show, below.</li>");
   else if (d.verdict == Verdict::not_excited)

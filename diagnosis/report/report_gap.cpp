@@ -10,6 +10,7 @@
 #include "../../log/svg.h"
 #include "../data/loop_pairs.h"
 #include "../words/effect_words.h"
+#include "../words/fitted_numbers.h"
 #include "../words/sentences.h"
 #include "musclesim/effect/catalogue.h"
 #include "report_page.h"
@@ -131,6 +132,25 @@ Loop loopOf(const Trace& across, const Trace& up) {
 
 }  // namespace
 
+namespace {
+
+/// The numbers with which the model agrees with the recordings.
+std::string fittedNumbersTable(const Diagnosis& d) {
+  std::string rows;
+  for (const FittedNumber& number : d.numbers)
+    rows += fmt::format(
+        "<tr><td data-head=number>{}</td><td class=number data-head=given>{:.4g} {}</td><td class=number data-head=fitted>{}</td></tr>\n",
+        breakableCode(number.name), number.start, number.unit, estimateWords(number.fitted));
+  return paragraph(fmt::format("These are gaps of the model as it was given. With the numbers below, fitted within their tolerances "
+                               "(nominal.toml), {} of the gap on {} is removed.",
+                               percentWords(d.reduction_percent), d.held_out)) +
+         "<table class=wide><thead><tr><th>number</th><th class=number>given</th><th class=number>fitted (95 % "
+         "interval)</th></tr></thead><tbody>\n" +
+         rows + "</tbody></table>";
+}
+
+}  // namespace
+
 std::string howFar(const Diagnosis& d) {
   const bool searched = d.verdict == Verdict::effects_found || d.verdict == Verdict::unexplained;
   std::string text = heading(hasAfter(d) ? "How far" : "How close the model comes");
@@ -142,7 +162,9 @@ std::string howFar(const Diagnosis& d) {
   if (hasAfter(d) && d.chosen.empty()) text += paragraph("No explanation was accepted: below, \"after\" means with the best rejected one.");
   if (hasAfter(d)) text += removalFigure(d) + controlsFigure(d);
   text += phaseFigure(d) + signalTable(d);
-  if (!searched)
+  if (isExplainedByNumbers(d))
+    text += fittedNumbersTable(d);
+  else if (!searched)
     text +=
         paragraph("A smaller difference than these is not seen, nor is an effect that these commands do not excite: no effect was fitted.");
   return text;

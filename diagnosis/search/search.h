@@ -115,6 +115,8 @@ class Search {
   const Surroundings& aboutNothingNear(const Explanation& base) const;
   void addOwnColumns(Surroundings& around, std::vector<LinearModel::Column>& columns) const;
   void addOtherColumns(Surroundings& around, std::vector<LinearModel::Column>& columns) const;
+  std::vector<std::vector<std::size_t>> twins(const Surroundings& around) const;
+  std::vector<double> costsOfAddingWithTwin(const Surroundings& around) const;
   std::vector<double> costsOfAdding(const Surroundings& around) const;
   static std::vector<std::size_t> inOrderOf(const std::vector<double>& costs);
   std::vector<std::size_t> worthSimulatingBeside(const Surroundings& around, const std::vector<LinearModel::Column>& columns,

@@ -24,7 +24,7 @@ constexpr std::size_t pair_base_count = 8;     ///< effects that do best alone, 
 }  // namespace
 
 /// Two further effects: one often takes in what two make, so that neither lowers the cost alone. Pairs are formed of the effects that cost
-/// least if added alone (pair_base_count) with any other.
+/// least if added alone (pair_base_count) with any other, and of the same effect on two components.
 std::vector<Search::Proposal> Search::pairs(const Surroundings& around) const {
   const std::size_t count = around.base.members.size();
   if (static_cast<int>(count) + 2 > options_.max_effects) return {};
@@ -36,6 +36,7 @@ std::vector<Search::Proposal> Search::pairs(const Surroundings& around) const {
   for (std::size_t i = 0; i < std::min(pair_base_count, order.size()); ++i)
     for (std::size_t k = i + 1; k < order.size(); ++k)
       if (!causes_.clash(order[i], order[k])) pairs.push_back({order[i], order[k]});
+  std::ranges::move(twins(around), std::back_inserter(pairs));
   std::vector<Proposal> result(pairs.size());
   parallelFor(static_cast<int>(pairs.size()), options_.job_count, [&](int i) {
     const auto index = static_cast<std::size_t>(i);

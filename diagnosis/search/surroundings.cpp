@@ -133,6 +133,38 @@ const Search::Surroundings& Search::aboutNothingNear(const Explanation& base) co
                                    [&](const Surroundings& around) { return (around.base.numbers - base.numbers).squaredNorm(); });
 }
 
+/// All pairs of one effect on two components, in the same variant, that can be added together. Example: where both muscles of a joint
+/// creep, one of them alone explains little, because the joint then moves by their difference.
+std::vector<std::vector<std::size_t>> Search::twins(const Surroundings& around) const {
+  std::vector<std::vector<std::size_t>> result;
+  if (static_cast<int>(around.base.members.size()) + 2 > options_.max_effects) return result;
+  for (std::size_t i = 0; i < causes_.hypotheses.size(); ++i)
+    for (std::size_t k = i + 1; k < causes_.hypotheses.size(); ++k) {
+      const Hypothesis &one = causes_.hypotheses[i], &other = causes_.hypotheses[k];
+      if (one.info().id == other.info().id && one.strengthNames() == other.strengthNames() &&
+          one.coordinateCount() == other.coordinateCount() && !causes_.clash(i, k) && !around.of_hypothesis[i].empty() &&
+          !around.of_hypothesis[k].empty())
+        result.push_back({i, k});
+    }
+  return result;
+}
+
+/// What every hypothesis costs if it is added to the members of the base, alone or with its twin on another component, whichever is less;
+/// infinity if it cannot be added.
+std::vector<double> Search::costsOfAddingWithTwin(const Surroundings& around) const {
+  std::vector<double> costs = costsOfAdding(around);
+  const std::vector<std::size_t> all = allBut(around.base.members.size(), around.base.members.size());
+  const std::vector<std::vector<std::size_t>> pairs = twins(around);
+  std::vector<double> of_pairs(pairs.size());
+  parallelFor(static_cast<int>(pairs.size()), options_.job_count, [&](int i) {
+    const auto index = static_cast<std::size_t>(i);
+    of_pairs[index] = proposed(around, all, pairs[index]).cost;
+  });
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    for (const std::size_t one : pairs[i]) costs[one] = std::min(costs[one], of_pairs[i]);
+  return costs;
+}
+
 /// What every hypothesis costs if it is added to the members of the base; infinity if it cannot be added.
 std::vector<double> Search::costsOfAdding(const Surroundings& around) const {
   std::vector<double> costs(causes_.hypotheses.size(), std::numeric_limits<double>::infinity());
@@ -159,7 +191,7 @@ std::vector<std::size_t> Search::inOrderOf(const std::vector<double>& costs) {
 std::vector<std::size_t> Search::worthSimulatingBeside(const Surroundings& around, const std::vector<LinearModel::Column>& columns,
                                                        const Neighbours& neighbours) const {
   const auto costsWith = [&](const std::vector<Sensitivity>& sensitivities) {
-    return costsOfAdding(completed(around, columns, sensitivities));
+    return costsOfAddingWithTwin(completed(around, columns, sensitivities));
   };
   std::vector<double> costs = costsWith(aboutNothingNear(around.base).sensitivities);
   if (neighbours.beside_near)

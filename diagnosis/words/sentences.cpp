@@ -8,6 +8,7 @@
 
 #include "../data/noise_sigma.h"
 #include "../data/residual_shape.h"
+#include "fitted_numbers.h"
 #include "musclesim/effect/catalogue.h"
 
 namespace musclesim {
@@ -239,16 +240,6 @@ std::string remainder(const Diagnosis& d, const Gap& after) {
                      over_noise, where, d.remainder.shape.empty() ? "" : ", " + d.remainder.shape, together ? "one of these" : "this one");
 }
 
-/// The numbers of the model that are off by more than their tolerance lets expect.
-std::string numbersWords(const Diagnosis& d) {
-  constexpr double unusual = 2;  // standard deviations: one in twenty
-  std::vector<std::string> words;
-  for (const FittedNumber& number : d.numbers)
-    if (std::abs(number.in_tolerances) >= unusual)
-      words.push_back(fmt::format("{} of {} instead of {:.4g} {}", number.name, estimateWords(number.fitted), number.start, number.unit));
-  return words.empty() ? "" : fmt::format("The data speak for a {}.", fmt::join(words, " and a "));
-}
-
 /// "valve lag on muscle 1 together with payload on hand" of "valve_lag@muscle_1 + payload@hand".
 std::string explanationWords(const std::string& labels) {
   const std::string link = " + ";
@@ -302,11 +293,12 @@ std::string unsteadyWords(const Unsteady& unsteady) {
       unsteady.signal, unsteady.in_sigmas, 100 * unsteady.share_of_gap);
 }
 
-/// The probability that something else acts than the candidates, if it is worth saying.
+constexpr double worth_a_warning = 0.1;  ///< probability of what is not known
+
+/// The probability that something else acts than the candidates, where no cause is believed, if it is worth saying.
 std::string noneWords(const Diagnosis& d) {
-  constexpr double worth_saying = 0.1;
   const double something_else = std::max(d.none_of_these, d.remainder.probability);
-  if (something_else < worth_saying) return "";
+  if (something_else < worth_a_warning) return "";
   std::string words = fmt::format("With a probability of {}, something acts that is ", probabilityWords(something_else));
   if (d.candidates.empty()) return words + "none of the known effects, alone or beside them.";
   if (d.candidates.size() == 1)
@@ -314,6 +306,15 @@ std::string noneWords(const Diagnosis& d) {
   else
     words += fmt::format("none of {}, alone or beside them", fmt::join(d.candidates, ", "));
   return words + "; other effects were not considered.";
+}
+
+/// The probability that the effects found only stand in for something else, if it is worth saying.
+std::string standInWords(const Diagnosis& d) {
+  if (d.none_of_these < worth_a_warning) return "";
+  return fmt::format("With a probability of {}, {} in for a cause that is {}.", probabilityWords(d.none_of_these),
+                     d.chosen.size() > 1 ? "these effects only stand" : "this effect only stands",
+                     d.candidates.empty() ? "none of the known effects"
+                                          : fmt::format("not among {}; other effects were not considered", fmt::join(d.candidates, ", ")));
 }
 
 std::string mostProbable(const Diagnosis& d) {
@@ -350,17 +351,6 @@ std::string shape(const Diagnosis& d) {
   return words;
 }
 
-}  // namespace
-
-std::string fittedNumbersSentence(const Diagnosis& d) {
-  constexpr double worth_saying_percent = 5;
-  if (!d.attempt.effects.empty() || d.reduction_percent < worth_saying_percent || fittedNumbersToml(d).empty()) return "";
-  return fmt::format("The numbers of the model alone, fitted within their tolerances (nominal.toml), remove {} of it.",
-                     percentWords(d.reduction_percent));
-}
-
-namespace {
-
 std::vector<std::string> unexplainedSentences(const Diagnosis& d) {
   if (d.partial) return {"There is a gap; the search for its cause was interrupted."};
   const bool is_small = std::ranges::all_of(d.before.per_signal, [](const auto& entry) { return overNoise(entry.second) < out_of_noise; });
@@ -380,6 +370,7 @@ std::vector<std::string> unexplainedSentences(const Diagnosis& d) {
       fmt::format("The best rejected hypothesis, {}, removes {} of the gap on held-out data; attempt.json holds it as a starting point, "
                   "not as a finding.",
                   listWords(d.attempt.effects), percentWords(d.attempt.reduction_percent)));
+  sentences.push_back(retunedSentence(d));
   sentences.push_back(remainder(d, d.attempt.after));
   return sentences;
 }
@@ -392,7 +383,7 @@ std::vector<std::string> foundSentences(const Diagnosis& d) {
                       d.chosen.size() > 1 ? "them" : "it", percentWords(d.reduction_percent), intervalWords(d)),
           remainder(d, d.after),
           numbersWords(d),
-          noneWords(d),
+          standInWords(d),
           otherwise(d)};
 }
 
@@ -414,7 +405,7 @@ std::vector<std::string> answerSentences(const Diagnosis& d) {
       sentences = {d.numbers.empty()
                        ? "No gap that matters."
                        : "No gap that needs an effect: within the tolerances of its numbers the model agrees with the recordings.",
-                   numbersWords(d), smallGapSentence(d)};
+                   fittedNumbersSentence(d), numbersWords(d), smallGapSentence(d)};
       break;
     case Verdict::not_excited:
       return {"I cannot tell: the commands do not change, so the recordings do not show how the plant responds."};
@@ -442,7 +433,7 @@ std::string modelEffectsWords(const Diagnosis& d) {
 Caveats caveatsOf(const Diagnosis& d) {
   return {d.verdict == Verdict::effects_found ? remainder(d, d.after) : "",
           numbersWords(d),
-          noneWords(d),
+          d.verdict == Verdict::effects_found ? standInWords(d) : noneWords(d),
           otherwise(d),
           unsteadyWords(d.unsteady),
           modelEffectsWords(d)};

@@ -52,8 +52,6 @@ double overNoise(const SignalGap& gap);
 std::string muscleNameWords(const Diagnosis& diagnosis);
 /// "1 number", "2 numbers".
 std::string counted(std::size_t count, const std::string& one, const std::string& several = "");
-/// What the numbers of the model take in where no cause is believed; empty if that is not worth telling.
-std::string fittedNumbersSentence(const Diagnosis& diagnosis);
 /// That the model is off by a SmallGap, and by how much; empty if it is not.
 std::string smallGapSentence(const Diagnosis& diagnosis);
 /// "96.2 %"; "more than 99.9 %" instead of a rounded 100 %.

@@ -15,7 +15,7 @@ class Diagnosis:
     """The answer of diagnose(). str(diagnosis) is a summary.
 
     data: the contents of diagnosis.json (docs/reference/diagnosis_json.md).  report: a page in HTML.  effects: what was found, as
-    Simulation(effects=...), replay(effects=...) and effects files take it.
+    Simulation(effects=...), replay(effects=...) and effects files take it; `parameters` belongs to it.
     """
 
     def __init__(self, answer: dict[str, Any]) -> None:
@@ -40,6 +40,13 @@ class Diagnosis:
     def probabilities(self) -> dict[str, float]:
         """Probability of every effect that has at least 0.01, by "id@component"."""
         return {f"{e['id']}@{e['component']}": e["probability"] for e in self.data.get("effects", [])}
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """Numbers of the model that were fitted together with `effects`, by name; nominal.toml holds the same. They belong to the answer:
+        pass both to Simulation(effects=..., parameters=...) or replay(effects=..., parameters=...). Empty if no number has a tolerance."""
+        return {**{n["name"]: n["value_with_effects"] for n in self.data.get("tuned", [])},
+                **{n["name"]: n["value"] for n in self.data.get("numbers", [])}}
 
     def save(self, folder: str | os.PathLike[str]) -> None:
         """Writes the files of `musclesim diagnose` into a folder, which is made if it is missing.

@@ -123,6 +123,12 @@ TEST(Sidecar, FurtherMembersAreKeptWithANote) {
   EXPECT_EQ(again["operator"], "A");
 }
 
+TEST(Sidecar, WhatRunsOfThisProgramWriteNeedsNoNote) {
+  std::vector<std::string> notes;
+  parseSidecar(with(R"("stepper": "chain", "pulls": [], "repeats": {"file": "run.csv"})"), "run.json", {}, notes);
+  EXPECT_TRUE(notes.empty()) << notes.front();
+}
+
 TEST(Sidecar, NoiseOfIgnoredColumnsIsSkipped) {
   std::vector<std::string> notes;
   EXPECT_TRUE(parseSidecar(with(R"("noise_std": {"temperature": 1})"), "run.json", {"temperature"}, notes).noise_std.empty());

@@ -43,8 +43,11 @@ class Diagnoses(unittest.TestCase):
             with open(os.path.join(folder, "diagnosis.json"), encoding="utf-8") as file:
                 self.assertEqual(json.load(file)["format"], "musclesim-diagnosis-1")
             gone = musclesim.replay(measured(3), effects=os.path.join(folder, "effects.json")).errors["length_0_mm"]["rmse"]
+            both = musclesim.replay(measured(3), effects=answer.effects, parameters=answer.parameters).errors["length_0_mm"]["rmse"]
         before = musclesim.replay(measured(3)).errors["length_0_mm"]["rmse"]
         self.assertLess(gone, before / 5)
+        self.assertIn("rig.load_kg", answer.parameters)
+        self.assertLess(both, 0.06, "the noise and little more")
 
     def test_saves_the_proposed_commands(self):
         def plant(number):

@@ -90,6 +90,7 @@ class Refusals(unittest.TestCase):
         self.refused("elbow.forearm_kg", musclesim.Simulation, "elbow", parameters={"elbow.forearm_kg": -1})
         self.refused("elbow.forearm_kg.*not list", musclesim.Simulation, "elbow", parameters={"elbow.forearm_kg": [1]})
         self.refused("forearm_kgg", musclesim.Simulation("elbow", parameters={"elbow.forearm_kgg": 1}).start)
+        self.refused("forearm_kgg", musclesim.Simulation("elbow", parameters={"elbow.forearm_kgg": 1}).step)
         with self.assertRaises(musclesim.IoError):
             musclesim.Simulation("there_is_no.toml")
         with self.assertRaises(TypeError):

@@ -45,6 +45,7 @@ TEST_F(RobotCommand, NewWritesAFileThatRuns) {
   EXPECT_EQ(checked.status, 0) << checked.err;
   EXPECT_TRUE(contains(checked.out, "1 bodies, 1 joints with a reported angle, 2 muscles")) << checked.out;
   EXPECT_TRUE(contains(checked.out, "nothing odd found")) << checked.out;
+  EXPECT_TRUE(contains(checked.out, "tolerances for a diagnosis: ")) << checked.out;
   const auto ran = run({"run", "--simple", "--robot", "lever.toml", "--duration", "0.5", "--record", "data/lever.csv"});
   EXPECT_EQ(ran.status, 0) << ran.err;
   EXPECT_TRUE(contains(text("data/lever.json"), "\"robot\": \"../lever.toml\""));

@@ -240,6 +240,7 @@ TEST_F(Working, ProgramPlansWorksAndCollects) {
   EXPECT_EQ(collected.status, 6);
   EXPECT_TRUE(contains(collected.out, "failed   1: rows 2"));
   EXPECT_TRUE(contains(readResult(path("runs"), 2).message, "rig.load_kg = -5 kg"));
+  EXPECT_EQ(readResult(path("runs"), 1).numbers["log"], "outputs/000001/run.csv");
   EXPECT_TRUE(fs::exists(folder_ / "runs/outputs/000001/run.csv"));
   EXPECT_EQ(runProgram({"work", "nowhere"}, folder_).status, 5);
 }

@@ -96,6 +96,25 @@ TEST(DiagnoseSeveral, IntervalsOfDeadTimeAndLagHoldTheTruth) {
       }
 }
 
+/// A second lag is nearly a dead time: the law of one lag alone would be sure of a dead time that is too long.
+TEST(DiagnoseSeveral, TheIntervalOfADeadTimeHoldsTheTruthBesideAValveOfTwoLags) {
+  const std::map<std::string, double> truth = {{"delay_s", 0.037}, {"fill_time_constant_s", 0.06}, {"vent_time_constant_s", 0.067}};
+  std::map<std::string, Parameter::Value> lag = {{"next_lag_ratio", 0.25}};
+  for (const char* name : {"fill_time_constant_s", "vent_time_constant_s"}) lag[name] = truth.at(name);
+  const Diagnosis found =
+      diagnose(underRandomSteps({{"transport_delay", "muscle_0", {{"delay_s", truth.at("delay_s")}}}, {"valve_lag", "muscle_0", lag}}),
+               few({"valve_lag", "transport_delay"}));
+  ASSERT_EQ(std::set<std::string>(found.chosen.begin(), found.chosen.end()),
+            (std::set<std::string>{"transport_delay@muscle_0", "valve_lag@muscle_0"}))
+      << diagnosisSummary(found);
+  for (const FoundEffect& effect : found.effects)
+    for (const auto& [name, estimate] : effect.parameters)
+      if (const auto value = truth.find(name); effect.probability > 0.5 && value != truth.end()) {
+        EXPECT_LT(estimate.low, value->second) << diagnosisSummary(found);
+        EXPECT_GT(estimate.high, value->second) << diagnosisSummary(found);
+      }
+}
+
 /// A load 4 % too heavy, half as much friction again, and a force law 3 % too strong, none of which is tuned.
 TEST(DiagnoseSeveral, NumbersThatNobodyMeasuredHideNoCause) {
   const std::map<std::string, double> off = {{"rig.load_kg", 2.08}, {"muscle.slider_friction_N", 1.5}, {"force_law.c_kgf", 1.03 * 9.7996}};

@@ -294,6 +294,26 @@ TEST(VerdictSentence, AdmitsWhatItCannotTell) {
 }
 
 }  // namespace
+TEST(VerdictSentence, SaysThatEffectsFoundMayStandInForAnother) {
+  Diagnosis d = lagFound();
+  d.none_of_these = 0.12;
+  d.remainder.probability = 0.5;
+  EXPECT_TRUE(contains(verdictSentence(d), "With a probability of 12 %, this effect only stands in for a cause that is none of the known"))
+      << verdictSentence(d);
+}
+
+TEST(VerdictSentence, SaysWhatReTuningRemovesBesideARejectedExplanation) {
+  Diagnosis d;
+  d.verdict = Verdict::unexplained;
+  d.effects = lagFound().effects;
+  d.effects.front().probability = 0.2;
+  d.attempt.effects = {"valve_lag@muscle_1"};
+  d.attempt.reduction_percent = 97.7;
+  d.nominal_refit_percent = 97.6;
+  EXPECT_TRUE(contains(verdictSentence(d), "Re-tuning the numbers of the model, without any effect, removes 97.6 %."))
+      << verdictSentence(d);
+}
+
 TEST(VerdictSentence, BeginsWithTheEffectsThatTheModelHasAlready) {
   Diagnosis d = lagFound();
   d.model_effects = {"creep@all"};
