@@ -121,6 +121,14 @@ void bindRecording(py::module_& module) {
           "Writes NAME.csv and NAME.json; existing files are replaced. Every bit is kept.")
       .def("to_dict", &toDict, "All columns by name, time_s first: read-only arrays of shape (rows,), without copies.")
       .def("keys", &namesOf, "Names of all columns, time_s first.")
+      .def("__iter__", [](const Recording& r) { return py::iter(py::cast(namesOf(r))); })
+      .def(
+          "__reduce__",
+          [](const py::object& self) {
+            const py::object rebuilt = py::module_::import("musclesim.recording").attr("_rebuilt");
+            return py::make_tuple(rebuilt, py::make_tuple(self.attr("to_dict")(), self.attr("info")));
+          },
+          "For copies and other processes; the copy has no file.")
       .def("__getitem__", &columnOf, py::arg("name"), "A column: a read-only array of shape (rows,), in mm, deg, N or fractions.")
       .def("__contains__", [](const Recording& r, const std::string& name) { return name == "time_s" || r.find(name) != nullptr; })
       .def("__len__", [](const Recording& r) { return r.time_s.size(); })

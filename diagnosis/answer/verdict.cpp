@@ -127,8 +127,11 @@ Offer judge(const Search& search, const HeldOut& held_out, const DiagnosisOption
   const double left_of_rms = std::sqrt(std::max(0.0, 1 - attempt.reduction_percent / 100));
   // An explanation that removes most of the RMS on unseen data is of use, whatever its causes really are.
   const bool is_of_use = std::min(left_of_rms, search.noneOfThese()) <= named;
-  const bool found = is_of_use && !numbers_do_as_well &&
-                     clearlyBeats(attempt.reduction_percent, std::max(diagnosis.nominal_refit_percent, diagnosis.negative_control_percent));
+  // Numbers that are off may make most of a gap. What an unlikely explanation removes beside them must be more than theirs alone.
+  const bool beats_numbers = likeliest > named ? attempt.reduction_percent > diagnosis.nominal_refit_percent
+                                               : clearlyBeats(attempt.reduction_percent, diagnosis.nominal_refit_percent);
+  const bool found =
+      is_of_use && !numbers_do_as_well && beats_numbers && clearlyBeats(attempt.reduction_percent, diagnosis.negative_control_percent);
   if (found) {
     const double on_held_out = probabilityOfUnknown(shareOfMisfitLeft(held_out.comparison, held_out.before, after));
     diagnosis.none_of_these = stand_in_share * std::min(named, std::max(search.noneOfThese(), on_held_out));

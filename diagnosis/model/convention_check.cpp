@@ -119,7 +119,7 @@ class ConventionCheck {
         if (!(with_model.follows() || with_model.isReversed()) || !(size > radian_low && size < radian_high)) continue;
         const std::vector<double> others = ratiosOfOtherMotions(signal, which, recording);
         const bool moves_so = std::ranges::any_of(others, [](double ratio) { return ratio < 1 / unlike || ratio > unlike; });
-        if (moves_so || (others.empty() && which == Of::one && !hasOtherNoise(signal, recording))) continue;
+        if ((moves_so && !areAllInRadians(others)) || (others.empty() && which == Of::one && !hasOtherNoise(signal, recording))) continue;
         refuse(recording,
                fmt::format("{} moves {:.0f} times {} than in the model: it must be in degrees, not in rad (1 rad is 57.3 degrees)",
                            nameOf(signal), size, with_model.ratio < 1 ? "less" : "more"));
@@ -300,6 +300,17 @@ class ConventionCheck {
       result.lowest = std::min(result.lowest, r);
     }
     return result;
+  }
+
+  /// Whether only angles were recorded, and the others, too, move as much less or more as radians make it. Friction would not hold all
+  /// joints by one factor.
+  bool areAllInRadians(const std::vector<double>& others) const {
+    for (int signal = 0; signal < signalCount(); ++signal)
+      if (isMotion(nameOf(signal)) && !nameOf(signal).starts_with("angle_")) return false;
+    return std::ranges::all_of(others, [](double ratio) {
+      const double size = std::max(ratio, 1 / ratio);
+      return size > radian_low && size < radian_high;
+    });
   }
 
   /// How much the other lengths, angles and coordinates of the hand that the model moves were moved, measured over predicted.

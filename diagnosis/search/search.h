@@ -121,6 +121,7 @@ class Search {
   static std::vector<std::size_t> inOrderOf(const std::vector<double>& costs);
   std::vector<std::size_t> worthSimulatingBeside(const Surroundings& around, const std::vector<LinearModel::Column>& columns,
                                                  const Neighbours& neighbours) const;
+  std::vector<std::size_t> unscreenedBeside(const Explanation& base, const std::string& place) const;
   std::vector<Sensitivity> changesBeside(const Explanation& base, const std::vector<std::size_t>& indices) const;
   Proposal proposed(const Surroundings& around, const std::vector<std::size_t>& kept, const std::vector<std::size_t>& added) const;
 

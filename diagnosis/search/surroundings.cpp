@@ -185,6 +185,21 @@ std::vector<std::size_t> Search::inOrderOf(const std::vector<double>& costs) {
   return order;
 }
 
+/// Hypotheses that were not screened (there are too many components), but may act beside the base: in `place`, or as the effect of a member
+/// on another component.
+std::vector<std::size_t> Search::unscreenedBeside(const Explanation& base, const std::string& place) const {
+  std::vector<std::size_t> result;
+  for (std::size_t i = 0; i < causes_.hypotheses.size(); ++i) {
+    const Hypothesis& hypothesis = causes_.hypotheses[i];
+    const auto is_unknown = [](const SharedVector& change) { return !change; };
+    if (std::ranges::none_of(catalogue_.sensitivities[i].per_strength, is_unknown) || !fitsBeside(i, base.members)) continue;
+    const bool is_effect_of_member =
+        std::ranges::any_of(base.members, [&](std::size_t member) { return causes_.hypotheses[member].info().id == hypothesis.info().id; });
+    if (hypothesis.place() == place || is_effect_of_member) result.push_back(i);
+  }
+  return result;
+}
+
 /// Chooses the hypotheses that are simulated beside the base: the ones that cost least if they are added, and some of each stage. `around`
 /// and `columns` hold the base's own columns; what each hypothesis changes is taken from simulations without effects, and from the known
 /// ones beside an explanation that is near, whichever promises more.
@@ -212,6 +227,8 @@ std::vector<std::size_t> Search::worthSimulatingBeside(const Surroundings& aroun
     ++chosen;
     result.push_back(index);
   }
+  for (const std::size_t index : unscreenedBeside(around.base, neighbours.place))
+    if (variants_of_label[causes_.hypotheses[index].label()]++ < neighbours.variants) result.push_back(index);
   return result;
 }
 

@@ -18,6 +18,11 @@ def replay(recording: Recording | str | os.PathLike[str], **model: Any) -> Repla
     return _musclesim._replay(_as_recording(recording), _checked(model))
 
 
+def _rebuilt(columns: dict[str, Any], info: dict[str, Any]) -> Recording:
+    """Of a copy or a pickle."""
+    return Recording.from_dict(columns, **info)
+
+
 def _as_recording(recording: Recording | str | os.PathLike[str]) -> Recording:
     return recording if isinstance(recording, Recording) else Recording.read(recording)
 

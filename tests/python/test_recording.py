@@ -1,6 +1,8 @@
 """Recordings to and from dicts of arrays."""
+import copy
 import os
 import pathlib
+import pickle
 import tempfile
 import unittest
 
@@ -25,6 +27,13 @@ class Recordings(unittest.TestCase):
         for name in recording.keys():
             np.testing.assert_array_equal(recording[name], again[name])
         self.assertEqual((recording.robot, len(recording), "command_0" in recording, "command_1" in recording), ("rig", 5, True, False))
+
+    def test_can_be_copied_and_sent_to_another_process(self):
+        recording = musclesim.Recording.from_dict(small(), robot="rig", noise_std={"length_0_mm": 0.05})
+        for again in (copy.deepcopy(recording), pickle.loads(pickle.dumps(recording))):
+            self.assertEqual((list(again), again.info), (list(recording), recording.info))
+            for name in recording:
+                np.testing.assert_array_equal(recording[name], again[name])
 
     def test_arrays_are_views_that_outlive_the_recording(self):
         recording = musclesim.Recording.from_dict(small(), robot="rig")

@@ -255,6 +255,16 @@ TEST(Conventions, ExchangedJointsAreRefused) {
   EXPECT_TRUE(says(refusal, "follows the model's angle_") && says(refusal, "are the two columns exchanged?")) << refusal;
 }
 
+TEST(Conventions, AllAnglesInRadiansAreRefused) {
+  Recording recording = armUnderRandomLevels();
+  for (const char* others : {"length_", "hand_"}) leaveOut(recording, others);
+  for (const char* name : {"angle_shoulder_deg", "angle_elbow_deg"}) {
+    for (double& v : valuesOf(recording, name)) v *= std::numbers::pi / 180;
+  }
+  const std::string refusal = refusalOf(recording);
+  EXPECT_TRUE(says(refusal, "not in rad")) << refusal;
+}
+
 TEST(Conventions, OtherUnitsAndZerosAreRefused) {
   const auto changed = [](const std::string& name, double factor, double offset) {
     return refusalAfter([&](Recording& r) {
