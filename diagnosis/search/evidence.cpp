@@ -28,15 +28,18 @@ Part partOf(const Hypothesis& hypothesis) {
 
 }  // namespace
 
-/// Whether a member shares its place with an earlier one: the same muscle, the same signal, or both the body.
+/// Whether a member shares its place with an earlier one: the same muscle, the same signal, or both the body. Effects on all components come
+/// first, so that the price does not depend on the order in which a search found them.
 bool Evidence::actsWhereOthersDo(const Explanation& explanation, std::size_t member) const {
   const Hypothesis& one = causes_.hypotheses[explanation.members[member]];
-  return std::any_of(explanation.members.begin(), explanation.members.begin() + static_cast<std::ptrdiff_t>(member),
-                     [&](std::size_t index) {
-                       const Hypothesis& other = causes_.hypotheses[index];
-                       const Part part = partOf(one);
-                       return part == partOf(other) && (part == Part::body || overlap(one.component(), other.component()));
-                     });
+  const auto rank = [](const Hypothesis& hypothesis, std::size_t position) { return std::pair{hypothesis.component() != "all", position}; };
+  for (std::size_t i = 0; i < explanation.members.size(); ++i) {
+    const Hypothesis& other = causes_.hypotheses[explanation.members[i]];
+    const Part part = partOf(one);
+    if (rank(other, i) < rank(one, member) && part == partOf(other) && (part == Part::body || overlap(one.component(), other.component())))
+      return true;
+  }
+  return false;
 }
 
 Complexity Evidence::complexityOf(const Explanation& explanation) const {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
 
 #include "../planted.h"
 #include "../tempered_misfit.h"
@@ -91,6 +92,40 @@ TEST_F(EvidenceOnARig, AFurtherEffectThatGainsNothingCosts) {
 TEST_F(EvidenceOnARig, AFurtherEffectInTheSamePlaceCostsMore) {
   EXPECT_NEAR(priceOf({gain, threshold}) - priceOf({gain, bias}), prices.same_place + prices.parameters, 1e-9);
   EXPECT_EQ(priceOf({gain, threshold}), priceOf({threshold, gain}));
+}
+
+TEST_F(EvidenceOnARig, ThePriceOfASetDoesNotDependOnItsOrder) {
+  Recording plan;
+  plan.file = "plan.csv";
+  plan.info.robot = "elbow";
+  plan.info.robot_parameters["muscle.model"] = std::string("line");
+  plan.signals = {{"command_0", {}}, {"command_1", {}}};
+  for (int row = 0; row < 60; ++row) {
+    plan.time_s.push_back(0.01 * row);
+    for (Signal& command : plan.signals) command.values.push_back(0.3 + 0.002 * row);
+  }
+  Recording recording = replayRecording(plan, {}).simulated;
+  recording.file = plan.file;
+  const DiagnosisOptions options;
+  const Plant elbow({recording}, options);
+  const Comparison comparison(elbow, elbow.split().fit);
+  Causes causes(elbow, on_simulation_);
+  for (const auto& [id, component] : {std::pair{"valve_lag", "all"}, {"creep", "muscle_0"}, {"creep", "muscle_1"}})
+    causes.hypotheses.emplace_back(effectInfo(id), component, elbow);
+  const Eigen::VectorXd residual = Eigen::VectorXd::Zero(comparison.size());
+  const Evidence evidence(comparison, residual, causes);
+  std::set<double> prices_of_orders;
+  std::vector<std::size_t> members = {0, 1, 2};
+  do {
+    Explanation explanation;
+    explanation.members = members;
+    std::vector<double> z;
+    for (const std::size_t member : members)
+      for (const double one : causes.hypotheses[member].typical()) z.push_back(one);
+    explanation.z = Eigen::Map<const Eigen::VectorXd>(z.data(), static_cast<Eigen::Index>(z.size()));
+    prices_of_orders.insert(std::round(1e9 * evidence.price(explanation)));
+  } while (std::ranges::next_permutation(members).found);
+  EXPECT_EQ(prices_of_orders.size(), 1u);
 }
 
 TEST_F(EvidenceOnARig, AFurtherMechanismOfALawCostsLikeAnotherEffectOfItsPlace) {
