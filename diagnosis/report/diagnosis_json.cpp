@@ -173,19 +173,21 @@ std::string diagnosisJson(const Diagnosis& d, const std::string& schedule_file) 
   return json.dump(1) + "\n";
 }
 
-std::string diagnosisSummary(const Diagnosis& d) {
+namespace {
+
+std::string numberLines(const Diagnosis& d) {
+  std::string text;
+  for (const FittedNumber& number : d.numbers)
+    text += fmt::format("{:<9} {} = {} {}, given as {:.4g}\n", &number == &d.numbers.front() ? "numbers" : "", number.name,
+                        estimateWords(number.fitted), number.unit, number.start);
+  return text + "          nominal.toml holds them, for --config\n";
+}
+
+/// Where, which effects, and which sets of them.
+std::string causeLines(const Diagnosis& d) {
   constexpr double worth_listing = 0.1;   ///< probability of an effect that is not in the chosen set
   constexpr std::size_t most_listed = 6;  ///< lines of effects, and of sets
-  std::string text = verdictSentence(d) + "\n";
-  if (d.partial) text = "Interrupted: these are only the results up to the interruption.\n" + text;
-  if (!d.muscle_names.empty()) text += fmt::format("muscles   {}\n", muscleNameWords(d));
-  if (!d.tuned.empty()) text += fmt::format("tuned     {} of the model first, see nominal.toml\n", counted(d.tuned.size(), "parameter"));
-  if (isExplainedByNumbers(d)) {
-    for (const FittedNumber& number : d.numbers)
-      text += fmt::format("{:<9} {} = {} {}, given as {:.4g}\n", &number == &d.numbers.front() ? "numbers" : "", number.name,
-                          estimateWords(number.fitted), number.unit, number.start);
-    return text + "          nominal.toml holds them, for --config\n";
-  }
+  std::string text;
   if (!d.where.empty()) text += fmt::format("where     {}\n", whereSentence(d));
   const auto listed = [&](const char* title, double probability, const std::string& words) {
     text += fmt::format("{:<9} {:>11}  {}\n", title, probabilityWords(probability), words);
@@ -204,6 +206,17 @@ std::string diagnosisSummary(const Diagnosis& d) {
       listed(i == 0 ? "sets" : "", set == d.explanations.end() ? 0 : set->probability,
              fmt::format("{}", fmt::join(d.ambiguity_sets[i], " + ")));
     }
+  return text;
+}
+
+}  // namespace
+
+std::string diagnosisSummary(const Diagnosis& d) {
+  std::string text = verdictSentence(d) + "\n";
+  if (d.partial) text = "Interrupted: these are only the results up to the interruption.\n" + text;
+  if (!d.muscle_names.empty()) text += fmt::format("muscles   {}\n", muscleNameWords(d));
+  if (!d.tuned.empty()) text += fmt::format("tuned     {} of the model first, see nominal.toml\n", counted(d.tuned.size(), "parameter"));
+  text += isExplainedByNumbers(d) ? numberLines(d) : causeLines(d);
   if (!d.chosen.empty())
     text += fmt::format("how far   {} of the gap on {}; nominal refit {:.1f} %, negative control {:.1f} %\n          {}\n",
                         percentWords(d.reduction_percent), d.held_out, d.nominal_refit_percent, d.negative_control_percent,

@@ -23,7 +23,7 @@ def stub_names():
 
 
 def own_names(thing):
-    return {name for name in vars(thing) if not name.startswith("__") or name in ("__getitem__", "__contains__", "__len__", "__enter__",
+    return {name for name in vars(thing) if not name.startswith("__") or name in ("__getitem__", "__contains__", "__iter__", "__len__", "__enter__",
                                                                                   "__exit__", "__init__")} - {"_pybind11_conduit_v1_"}
 
 

@@ -244,12 +244,12 @@ TEST(Report, WhereFittedNumbersExplainTheGapTheModelIsToBeUsedWithThem) {
   d.numbers = {{"elbow.forearm_kg", "kg", 0.6, {0.61, 0.6, 0.62, true}, 1}};
   const std::string page = diagnosisReport(d);
   EXPECT_TRUE(contains(page, "--config nominal.toml"));
-  EXPECT_TRUE(contains(page, "0.61 (0.60 to 0.62)"));
+  EXPECT_TRUE(contains(page, "0.610 (0.600 to 0.620)"));
   EXPECT_FALSE(contains(page, "Use the model as it is"));
   EXPECT_FALSE(contains(page, "no signal stands out of its noise"));
   EXPECT_FALSE(contains(page, "no effect was fitted"));
   const std::string summary = diagnosisSummary(d);
-  EXPECT_TRUE(contains(summary, "elbow.forearm_kg = 0.61 (0.60 to 0.62) kg, given as 0.6")) << summary;
+  EXPECT_TRUE(contains(summary, "elbow.forearm_kg = 0.610 (0.600 to 0.620) kg, given as 0.6")) << summary;
   EXPECT_FALSE(contains(summary, "where ")) << summary;
 }
 

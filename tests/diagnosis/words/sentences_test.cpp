@@ -235,8 +235,21 @@ TEST(DiagnosisSummary, ListsAllChosenEffectsAndTheSetsBesideThem) {
   EXPECT_FALSE(contains(text, "force_gain"));
 }
 
-TEST(VerdictSentence, SaysHowLikelyNoneOfTheKnownEffectsIs) {
+TEST(VerdictSentence, SaysHowLikelyEffectsOnlyStandInForAnother) {
   Diagnosis d = lagFound();
+  d.remainder.probability = 0.5;
+  d.none_of_these = 0.09;
+  EXPECT_FALSE(contains(verdictSentence(d), "stands in"));
+  d.none_of_these = 0.48;
+  EXPECT_TRUE(contains(verdictSentence(d),
+                       "With a probability of 48 %, this effect only stands in for a cause that is none of the known effects."));
+  d.candidates = {"creep", "valve_lag"};
+  EXPECT_TRUE(contains(verdictSentence(d), "for a cause that is not among creep, valve_lag; other effects were not considered."));
+}
+
+TEST(VerdictSentence, SaysHowLikelyNoneOfTheKnownEffectsIs) {
+  Diagnosis d;
+  d.verdict = Verdict::unexplained;
   d.none_of_these = 0.09;
   EXPECT_FALSE(contains(verdictSentence(d), "none of the known effects"));
   d.none_of_these = 0.48;
@@ -294,14 +307,6 @@ TEST(VerdictSentence, AdmitsWhatItCannotTell) {
 }
 
 }  // namespace
-TEST(VerdictSentence, SaysThatEffectsFoundMayStandInForAnother) {
-  Diagnosis d = lagFound();
-  d.none_of_these = 0.12;
-  d.remainder.probability = 0.5;
-  EXPECT_TRUE(contains(verdictSentence(d), "With a probability of 12 %, this effect only stands in for a cause that is none of the known"))
-      << verdictSentence(d);
-}
-
 TEST(VerdictSentence, SaysWhatReTuningRemovesBesideARejectedExplanation) {
   Diagnosis d;
   d.verdict = Verdict::unexplained;
