@@ -28,8 +28,8 @@ Part partOf(const Hypothesis& hypothesis) {
 
 }  // namespace
 
-/// Whether a member shares its place with an earlier one: the same muscle, the same signal, or both the body. Effects on all components come
-/// first, so that the price does not depend on the order in which a search found them.
+/// Whether a member shares its place with an earlier one: the same muscle, the same signal, or both the body. Effects on all components
+/// come first, so that the price does not depend on the order in which a search found them.
 bool Evidence::actsWhereOthersDo(const Explanation& explanation, std::size_t member) const {
   const Hypothesis& one = causes_.hypotheses[explanation.members[member]];
   const auto rank = [](const Hypothesis& hypothesis, std::size_t position) { return std::pair{hypothesis.component() != "all", position}; };

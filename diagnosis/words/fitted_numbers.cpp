@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "sentences.h"
+#include "number_words.h"
 
 namespace musclesim {
 

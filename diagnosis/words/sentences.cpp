@@ -15,8 +15,7 @@ namespace musclesim {
 
 namespace {
 
-constexpr double stands_out = 2;      ///< RMS over sigma
-constexpr double nearly_all = 99.95;  ///< percent; larger values must not read as 100.0
+constexpr double stands_out = 2;  ///< RMS over sigma
 
 /// "a = 1.0 (0.9 to 1.1), b = 2 (1 to 3)", without parameters that the data left out.
 std::string parameterWords(const FoundEffect& effect) {
@@ -29,31 +28,6 @@ std::string parameterWords(const FoundEffect& effect) {
 
 }  // namespace
 
-bool isLeftOut(const Estimate& estimate) {
-  return estimate.value == 0 && (!estimate.is_determined || (estimate.low == 0 && estimate.high == 0));
-}
-
-std::string roundedWords(double value, int decimals) {
-  std::string words = fmt::format("{:.{}f}", value, decimals);
-  const bool is_zero = words.find_first_of("123456789") == std::string::npos;
-  return is_zero && words.front() == '-' ? words.substr(1) : words;
-}
-
-std::string estimateWords(const Estimate& estimate) {
-  constexpr int most_decimals = 8;
-  if (!estimate.is_determined) return fmt::format("{:.3g} (these recordings do not determine it)", estimate.value);
-  const double half = (estimate.high - estimate.low) / 2;
-  if (!(half > 0)) return fmt::format("{:.4g}", estimate.value);
-  const int power = static_cast<int>(std::floor(std::log10(half)));
-  const bool begins_with_one = half < 2 * std::pow(10, power);
-  const int decimals = (begins_with_one ? 1 : 0) - power;
-  auto words = [&](double value) {
-    if (value == 0) return std::string("0");
-    return decimals > most_decimals ? fmt::format("{:.4g}", value) : roundedWords(value, std::max(0, decimals));
-  };
-  return fmt::format("{} ({} to {})", words(estimate.value), words(estimate.low), words(estimate.high));
-}
-
 std::string effectSentence(const FoundEffect& effect) {
   const std::string parameters = parameterWords(effect);
   return effect.label() + (parameters.empty() ? "" : ": " + parameters);
@@ -63,24 +37,6 @@ std::string muscleNameWords(const Diagnosis& d) {
   std::vector<std::string> words;
   for (const std::string& name : d.muscle_names) words.push_back(fmt::format("{} {}", words.size(), name));
   return fmt::format("{}", fmt::join(words, ", "));
-}
-
-std::string counted(std::size_t count, const std::string& one, const std::string& several) {
-  return count == 1 ? "1 " + one : fmt::format("{} {}", count, several.empty() ? one + "s" : several);
-}
-
-std::string percentWords(double percent) {
-  return percent > nearly_all ? "more than 99.9 %" : fmt::format("{:.1f} %", percent);
-}
-
-std::string leftWords(double percent) {
-  return percent < 0.1 ? "less than 0.1 %" : fmt::format("{:.3g} %", percent);
-}
-
-std::string probabilityWords(double probability) {
-  constexpr double nearly_certain = 0.995;
-  if (probability > nearly_certain) return "over 99 %";
-  return probability < 1 - nearly_certain ? "under 1 %" : fmt::format("{:.0f} %", 100 * probability);
 }
 
 std::string elsewhereSentence(const Estimate& reduction_percent) {

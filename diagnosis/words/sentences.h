@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "musclesim/diagnosis/diagnosis.h"
+#include "number_words.h"
 
 namespace musclesim {
 
@@ -36,13 +37,6 @@ std::string componentWords(const std::string& component);
 /// "valve_lag@muscle_1: vent_time_constant_s = 0.081 (0.077 to 0.085)".
 std::string effectSentence(const FoundEffect& effect);
 
-/// With so many decimals; what rounds to zero has no sign.
-std::string roundedWords(double value, int decimals);
-/// "0.081 (0.077 to 0.085)": as many decimals as the interval justifies. "8" without an interval; a remark if the recordings do not
-/// determine the value.
-std::string estimateWords(const Estimate& estimate);
-/// Whether a parameter was not fitted because nothing in the data depends on it.
-bool isLeftOut(const Estimate& estimate);
 /// "mostly a ripple of 4.6 Hz": the shape of a signal's residual on the held-out data, if it stands out; empty otherwise.
 std::string shapeOfRest(const Diagnosis& diagnosis, const std::string& signal);
 /// RMS residual over sigma; 0 if sigma is 0.
@@ -50,17 +44,9 @@ double overNoise(const SignalGap& gap);
 
 /// "0 right, 1 left": Diagnosis::muscle_names.
 std::string muscleNameWords(const Diagnosis& diagnosis);
-/// "1 number", "2 numbers".
-std::string counted(std::size_t count, const std::string& one, const std::string& several = "");
 /// That the model is off by a SmallGap, and by how much; empty if it is not.
 std::string smallGapSentence(const Diagnosis& diagnosis);
-/// "96.2 %"; "more than 99.9 %" instead of a rounded 100 %.
-std::string percentWords(double percent);
 /// "On another recording of this plant, 94.0 to 97.5 % is expected to be removed (95 % interval)."
 std::string elsewhereSentence(const Estimate& reduction_percent);
-/// "3.8 %"; "less than 0.1 %" instead of a rounded 0.
-std::string leftWords(double percent);
-/// "93 %"; "over 99 %": nothing is certain.
-std::string probabilityWords(double probability);
 
 }  // namespace musclesim
