@@ -1,7 +1,5 @@
 #include "tune.h"
 
-#include <fmt/format.h>
-
 #include <limits>
 #include <mutex>
 

@@ -148,12 +148,19 @@ void Search::tryOtherStrengths() {
       if (other.residual.size() == fit_.size()) other.score = evidence().score(other);
     });
     if (others.size() > start_count) others.resize(start_count);
-    const double least_score = one.score - worth_polishing;
-    fitAll(others, [&](Explanation& other) { fitRoughly(other, least_score); });
-    std::erase_if(others, [&](const Explanation& other) { return other.score < least_score; });
-    fitAll(others, [this](Explanation& other) { fitFinely(other); });
-    if (!others.empty() && others.front().score > one.score) one = std::move(others.front());
+    improveBy(one, std::move(others));
   }
+}
+
+/// Fits others from their starts and puts the best of them in the place of `one` if it is better. Returns whether it is.
+bool Search::improveBy(Explanation& one, std::vector<Explanation> others) const {
+  const double least_score = one.score - worth_polishing;
+  fitAll(others, [&](Explanation& other) { fitRoughly(other, least_score); });
+  std::erase_if(others, [&](const Explanation& other) { return other.score < least_score; });
+  fitAll(others, [this](Explanation& other) { fitFinely(other); });
+  if (others.empty() || others.front().score <= one.score) return false;
+  one = std::move(others.front());
+  return true;
 }
 
 /// Replaces the best explanations by other variants of themselves that are better, one effect's variant after the other.
@@ -161,15 +168,8 @@ void Search::tryVariants() {
   const double least = explanations_.empty() ? 0 : explanations_.front().score - near_best;
   for (std::size_t rank = 0; rank < std::min(explanations_.size(), varied_count); ++rank) {
     Explanation& one = explanations_[rank];
-    for (int pass = 0; pass < variant_passes && one.score >= least && !plant_.interrupted(); ++pass) {
-      std::vector<Explanation> others = otherVariants(one);
-      const double least_score = one.score - worth_polishing;
-      fitAll(others, [&](Explanation& other) { fitRoughly(other, least_score); });
-      std::erase_if(others, [&](const Explanation& other) { return other.score < least_score; });
-      fitAll(others, [this](Explanation& other) { fitFinely(other); });
-      if (others.empty() || others.front().score <= one.score) break;
-      one = std::move(others.front());
-    }
+    for (int pass = 0; pass < variant_passes && one.score >= least && !plant_.interrupted(); ++pass)
+      if (!improveBy(one, otherVariants(one))) break;
   }
 }
 

@@ -66,11 +66,7 @@ void Search::tryFurtherMechanisms() {
       if (place.residual.size() == fit_.size()) place.score = evidence().score(place);
     });
     if (places.size() > freed_count) places.resize(freed_count);
-    const double least_score = one.score - worth_polishing;
-    fitAll(places, [&](Explanation& place) { fitRoughly(place, least_score); });
-    std::erase_if(places, [&](const Explanation& place) { return place.score < least_score; });
-    fitAll(places, [this](Explanation& place) { fitFinely(place); });
-    if (!places.empty() && places.front().score > one.score) one = std::move(places.front());
+    improveBy(one, std::move(places));
   }
 }
 

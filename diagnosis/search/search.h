@@ -176,6 +176,7 @@ class Search {
   void dropHopeless();
   void fitRoughly(Explanation& explanation, double least_score = -std::numeric_limits<double>::infinity()) const;
   void fitFinely(Explanation& explanation) const;
+  bool improveBy(Explanation& one, std::vector<Explanation> others) const;
   void goOn(Explanation& explanation, Accuracy accuracy) const;
   void takeFromCounterparts(Explanation& explanation) const;
   bool hasInactiveEffect(const Explanation& explanation) const;
