@@ -49,7 +49,7 @@ std::map<std::string, Estimate> estimatesOfFit(const Hypothesis& hypothesis, con
   return result;
 }
 
-/// The same, with intervals that hold those with the further mechanisms which the laws of the explanation's effects leave out.
+/// The same for a member of an explanation. If it was also fitted with further mechanisms, the intervals hold those of that fit, too.
 std::map<std::string, Estimate> estimates(const Search& search, const Explanation& fitted, std::size_t member) {
   const auto of = [&](const Explanation& one) {
     return estimatesOfFit(search.hypotheses()[one.members[member]], one, search.causes().firstCoordinate(one, member));

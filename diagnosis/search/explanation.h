@@ -61,8 +61,8 @@ class Causes {
   /// The explanation, not fitted yet, with what another one has: the numbers of the model, and the variants and coordinates of the effects
   /// that both have.
   Explanation takingOver(const Explanation& explanation, const Explanation& other) const;
-  /// The explanation, not fitted yet, with the variants of its effects that have, or lack, further mechanisms. Of those that it left out
-  /// there is nothing as yet.
+  /// The explanation with other variants of its effects, not fitted yet: laws with further mechanisms, or laws without them. A mechanism
+  /// that the explanation did not have begins with a share of zero.
   Explanation withFurtherMechanisms(const Explanation& explanation) const;
   Explanation withoutFurtherMechanisms(const Explanation& explanation) const;
   Eigen::VectorXd clamped(const std::vector<std::size_t>& members, const Eigen::VectorXd& z) const;

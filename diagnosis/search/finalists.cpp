@@ -293,7 +293,7 @@ void Search::takeFromCounterparts(Explanation& explanation) const {
 /// True if an effect's strength can go to nearly zero at no noticeable loss: its shape parameters explain the data, not the effect. For
 /// example a leak without a leak is the lag of its regulator.
 bool Search::hasInactiveEffect(const Explanation& explanation) const {
-  constexpr double next_to_nothing = 1e-3, noticeable = 0.45;  // typical strengths; nats
+  constexpr double next_to_nothing = 1e-3;  // typical strengths
   const Eigen::VectorXd as_it_is = fit_.predicted(causes_.modelOf(explanation));
   Eigen::Index first = 0;
   for (const std::size_t index : explanation.members) {
@@ -306,7 +306,7 @@ bool Search::hasInactiveEffect(const Explanation& explanation) const {
       const Eigen::VectorXd predicted = fit_.predicted(causes_.modelOf(weak));
       on_simulation_();
       if (predicted.size() == fit_.size() && predicted.allFinite() &&
-          fit_.misfit(explanation.residual + as_it_is - predicted) < fit_.misfit(explanation.residual) + noticeable)
+          fit_.misfit(explanation.residual + as_it_is - predicted) < fit_.misfit(explanation.residual) + noticeable_loss)
         return true;
     }
     first += hypothesis.coordinateCount();

@@ -16,7 +16,6 @@ namespace {
 constexpr std::array shares = {0.0, 0.25, 0.5, 1.0};  ///< of the range of a further mechanism
 constexpr int held_rounds = 4;
 constexpr std::size_t freed_count = 2;      ///< of the places reached, fitted on with nothing held
-constexpr double noticeable_loss = 0.45;    ///< nats
 constexpr double beyond_every_range = 1e3;  ///< a coordinate
 
 }  // namespace

@@ -66,11 +66,12 @@ class Search {
   /// fits ended above the best set, or less than 4 nats behind it; all had been promised an end that was not lower than that by more than
   /// this.
   static constexpr double promise_error = 6;
-  static constexpr std::size_t varied_count = 5;  ///< explanations of which other variants are tried,
-  static constexpr double near_best = 4;          ///< if they are not so many nats behind the best
-  static constexpr double worth_polishing = 2;    ///< nats that fine steps may give a variant
-  static constexpr double hopeless = 4;           ///< nats behind the best: such sets are not extended, nor their members replaced
-  static constexpr std::size_t wide_count = 4;    ///< sets of one size of which widened forms are fitted, and so many forms of each
+  static constexpr std::size_t varied_count = 5;   ///< explanations of which other variants are tried,
+  static constexpr double near_best = 4;           ///< if they are not so many nats behind the best
+  static constexpr double worth_polishing = 2;     ///< nats that fine steps may give a variant
+  static constexpr double noticeable_loss = 0.45;  ///< nats: with less, another fit does as well
+  static constexpr double hopeless = 4;            ///< nats behind the best: such sets are not extended, nor their members replaced
+  static constexpr std::size_t wide_count = 4;     ///< sets of one size of which widened forms are fitted, and so many forms of each
 
   /// A set whose fit has not begun, and the linear estimate of what it will cost.
   struct Proposal {

@@ -42,8 +42,10 @@ std::string retunedSentence(const Diagnosis& d) {
 
 std::string fittedNumbersToml(const Diagnosis& diagnosis) {
   if (diagnosis.tuned.empty() && diagnosis.numbers.empty()) return "";
-  std::string text = fmt::format("# Numbers of the model that musclesim diagnose fitted to recordings, together with the effects in {}.\n",
-                                 diagnosis.attempt.effects.empty() ? "effects.json" : "attempt.json");
+  std::string text = fmt::format("# Numbers of the model that musclesim diagnose fitted to recordings, {}.\n",
+                                 !diagnosis.chosen.empty()           ? "together with the effects in effects.json"
+                                 : diagnosis.attempt.effects.empty() ? "without any effect"
+                                                                     : "together with the effects in attempt.json");
   const auto add = [&](const auto& number, const Estimate& fitted) {
     text += fmt::format("{} = {}  # {}; {:.4g} .. {:.4g}, from {:.4g}\n", number.name, fitted.value, number.unit, fitted.low, fitted.high,
                         number.start);

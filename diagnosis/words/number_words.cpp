@@ -41,7 +41,8 @@ std::string percentWords(double percent) {
 }
 
 std::string leftWords(double percent) {
-  return percent < 0.1 ? "less than 0.1 %" : fmt::format("{:.3g} %", percent);
+  constexpr double least_told_percent = 0.1;
+  return percent < least_told_percent ? "less than 0.1 %" : fmt::format("{:.3g} %", percent);
 }
 
 std::string probabilityWords(double probability) {

@@ -249,7 +249,7 @@ std::string unsteadyWords(const Unsteady& unsteady) {
       unsteady.signal, unsteady.in_sigmas, 100 * unsteady.share_of_gap);
 }
 
-constexpr double worth_a_warning = 0.1;  ///< probability of what is not known
+constexpr double worth_a_warning = 0.1;  ///< an unknown cause that is less likely is not mentioned
 
 /// The probability that something else acts than the candidates, where no cause is believed, if it is worth saying.
 std::string noneWords(const Diagnosis& d) {
