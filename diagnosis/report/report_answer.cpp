@@ -48,7 +48,9 @@ SignWords signWords(const Diagnosis& d, Belief belief) {
     case Belief::cannot_tell:
       return {"cannot_tell", "Cannot tell", "Believe none of the causes yet."};
     case Belief::no_gap:
-      return {"no_gap", "No gap", "You can believe the model for motions like these."};
+      return {"no_gap", "No gap",
+              isExplainedByNumbers(d) ? "You can believe the model with the fitted numbers for motions like these."
+                                      : "You can believe the model for motions like these."};
   }
   return {};
 }
