@@ -17,7 +17,7 @@ namespace musclesim {
 namespace {
 
 /// The part of a name between the quantity and the unit.
-enum class Component { none, muscle, joint, axis };
+enum class Component { none, muscle, joint, axis, own_name };
 
 struct Unit {
   std::string_view name;
@@ -51,6 +51,7 @@ const std::vector<Quantity>& quantities() {
       {"target", Component::axis, lengths},
       {"activity", Component::none, {{""}}},
       {"target", Component::joint, {{"deg"}, {"rad", deg_per_rad}}},
+      {"controller", Component::own_name, {{""}}},
       // Velocities and accelerations of what has these names.
       {"length", Component::muscle, {{"mm_per_s"}}},
       {"length", Component::muscle, {{"mm_per_s2"}}},
@@ -70,6 +71,8 @@ std::string placeholder(Component component) {
       return "_<joint>";
     case Component::axis:
       return "_x|y|z";
+    case Component::own_name:
+      return "_<name>";
     default:
       return "";
   }
@@ -126,7 +129,7 @@ std::optional<int> muscleIndex(std::string_view text) {
   return index;
 }
 
-bool isJointName(std::string_view text) {
+bool isName(std::string_view text) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_'; };
   return !text.empty() && text.front() != '_' && text.back() != '_' && std::all_of(text.begin(), text.end(), is_letter);
 }
@@ -136,7 +139,8 @@ bool isComponent(Component kind, std::string_view text) {
     case Component::muscle:
       return muscleIndex(text).has_value();
     case Component::joint:
-      return isJointName(text);
+    case Component::own_name:
+      return isName(text);
     case Component::axis:
       return text == "x" || text == "y" || text == "z";
     default:

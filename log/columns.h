@@ -14,7 +14,7 @@ enum class FullScale { none, pressure_kPa, command_V };
 /// A parsed column name. canonical value = written value * factor, divided by the full scale if one is needed.
 struct Column {
   std::string name;            ///< canonical, for example "length_0_mm"
-  std::string quantity;        ///< "time", "command", "pressure", "force", "length", "angle", "hand", "target" or "activity"
+  std::string quantity;        ///< "time", "command", "pressure", "force", "length", "angle", "hand", "target", "activity" or "controller"
   int muscle = -1;             ///< index, for command, pressure, force and length; -1 otherwise
   std::string unit;            ///< as written in the header; empty for fractions and pure numbers
   std::string canonical_unit;  ///< empty for fractions and pure numbers

@@ -98,9 +98,10 @@ std::vector<const Signal*> signalsNamed(const Recording& recording, const std::v
 
 namespace {
 
-/// "angle (deg)": the title of the axis, by which signals share a panel.
+/// "angle (deg)": the title of the axis, by which signals share a panel. Only its controller knows the unit of a controller's own signal.
 std::string axisTitle(const std::string& signal) {
   const Column column = parseColumnName(signal);
+  if (column.quantity == "controller") return signal;
   const bool is_height = column.quantity == "target" && column.canonical_unit == "mm";
   const std::string quantity = column.quantity != "target" ? column.quantity : is_height ? "hand" : "angle";
   const bool is_fraction = quantity == "command" || quantity == "pressure";

@@ -34,9 +34,11 @@ void requireReplaceable(const std::string& csv) {
   if (!fs::exists(csv) && !fs::exists(sidecar)) return;
   std::ifstream text(sidecar);
   const auto json = nlohmann::json::parse(text, nullptr, false);
-  const bool is_recording = json.is_object() && json.contains("format");
+  const bool is_recording = json.is_object() && json.value("format", nlohmann::json()).dump().starts_with("\"musclesim-recording");
   const auto program = is_recording ? json.find("program") : json.end();
   if (program != json.end() && program->is_string() && program->get<std::string>().starts_with("musclesim ")) return;
+  if (!fs::exists(csv) && !is_recording)
+    throw BadParameter(fmt::format("{} would be written over with the sidecar of {}: choose another name", sidecar, csv));
   throw BadParameter(fmt::format("{} exists and {}: choose another name, or remove it", fs::exists(csv) ? csv : sidecar,
                                  is_recording ? "belongs to a recording that musclesim did not simulate" : "belongs to no recording"));
 }

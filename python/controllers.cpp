@@ -181,7 +181,7 @@ void bindControllers(py::module_& module) {
             for (const auto& [name, value] : controller.signals()) signals[py::str(name)] = value;
             return signals;
           },
-          "Further columns of the recording: {name: number}, the same names at all times, such as target_<joint>_deg.")
+          "Further columns of the recording: {name: number}, the same names at all times, target_<joint>_deg or controller_<name>.")
       .def("target_is_height", &Controller::targetIsHeight, "Whether only the target's height (y) counts.");
 }
 

@@ -71,9 +71,9 @@ void requireRegistered(const std::string& robot, const std::string& source) {
     throw BadFile(source, fmt::format("there is no robot \"{}\"; registered: {}", robot, fmt::join(names, ", ")));
 }
 
-/// Whether a signal comes from the run's task and not from its robot.
+/// Whether a signal comes from the run's task or controller and not from its robot.
 bool isOfTask(const std::string& signal) {
-  return signal == "activity" || signal.starts_with("target_");
+  return signal == "activity" || signal.starts_with("target_") || signal.starts_with("controller_");
 }
 
 /// Signals of a recording that lose samples to an effect.

@@ -46,6 +46,7 @@ TEST(Columns, EveryAllowedNameAndItsConversion) {
       {"hand_y_mm_per_s2", "hand_y_mm_per_s2", 1, FullScale::none},
       {"target_z_mm", "target_z_mm", 1, FullScale::none},
       {"activity", "activity", 1, FullScale::none},
+      {"controller_integral_kPa", "controller_integral_kPa", 1, FullScale::none},
   };
   for (const auto& expected : cases) {
     const Column column = parseColumnName(expected.written);

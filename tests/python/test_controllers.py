@@ -123,9 +123,12 @@ class Controllers(unittest.TestCase):
     def test_further_signals(self):
         class Following(Swing):
             def signals(self):
-                return {"target_elbow_deg": 7.0}
+                return {"target_elbow_deg": 7.0, "controller_integral_kPa": 0.5}
 
-        self.assertEqual(set(musclesim.run("elbow", Following(), 0.1, parameters=line)["target_elbow_deg"]), {7.0})
+        run = musclesim.run("elbow", Following(), 0.1, parameters=line, record=self.file)
+        self.assertEqual((set(run["target_elbow_deg"]), set(run["controller_integral_kPa"])), ({7.0}, {0.5}))
+        self.assertEqual(set(musclesim.Recording.read(self.file)["controller_integral_kPa"]), {0.5})
+        self.assertNotIn("controller_integral_kPa", musclesim.replay(self.file).errors, "no robot has it")
 
         class Wrong(Swing):
             def signals(self):

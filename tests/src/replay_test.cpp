@@ -95,7 +95,7 @@ TEST_F(ReplayCommand, WritesOverNothingThatWasNotSimulated) {
   write("machine.json", effects);
   const ProgramResult sidecar = runProgram({"replay", "run.csv", "--out", "machine.csv"}, folder_);
   EXPECT_EQ(sidecar.status, 2);
-  EXPECT_NE(sidecar.err.find("machine.json exists"), std::string::npos) << sidecar.err;
+  EXPECT_NE(sidecar.err.find("machine.json would be written over with the sidecar of machine.csv"), std::string::npos) << sidecar.err;
 }
 
 /// Other muscles need another number of internal steps, but a number that the user set stays.

@@ -50,7 +50,8 @@ class Controller {
   virtual bool targetIsHeight() const { return false; }
   /// Moves the target from the next output() on; of a height only y counts. Without effect where there is no target.
   virtual void moveTarget(const Vector& target_mm) { static_cast<void>(target_mm); }
-  /// Further columns of the log, with their values at the last output(); names and order never change.
+  /// Further columns of the log, target_<joint>_deg or controller_<name>, with their values at the last output(); names and order never
+  /// change.
   virtual std::vector<std::pair<std::string, double>> signals() const { return {}; }
   /// Time at which the commands end, s: the default duration of a run; none if there is no such time.
   virtual std::optional<double> endS() const { return std::nullopt; }
