@@ -86,7 +86,8 @@ void widenWithinStep(const Search& search, const Explanation& fitted, std::size_
   constexpr int parts = 4;                  // of an internal step
   const Comparison& comparison = search.fitComparison();
   if (fitted.residual.size() != comparison.size()) return;  // interrupted before it was fitted to all recordings
-  const double part_s = search.causes().plant().model().internalStepS() / parts;
+  const Plant& plant = search.causes().plant();
+  const double step_s = plant.model().internalStepS() * plant.model().substeps() / plant.substeps(), part_s = step_s / parts;
   const auto isNoticeable = [&](const std::string& parameter, double value) {
     Model model = search.modelOf(fitted);
     model.effects[member].parameters[parameter] = value;

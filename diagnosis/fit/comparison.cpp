@@ -182,12 +182,18 @@ void Comparison::average(Eigen::VectorXd& values) const {
   }
 }
 
+constexpr double few_sigmas = 5;  ///< noise sigmas, from which on another motion is a different one
+
 void Comparison::goCoarse(const Eigen::VectorXd& nominal, Purpose purpose) {
-  constexpr double few_sigmas = 5, share_of_gap = 0.1;
+  constexpr double share_of_gap = 0.1;
   if (nominal.size() != size_) return;
   nominal_ = nominal;
   const bool screening = purpose == Purpose::screening;
   const Eigen::VectorXd residual = measured_ - nominal;
+  if (plant_.possible(Fidelity::coarse) == Fidelity::fine) {
+    const Eigen::VectorXd stronger = predicted(slightlyStronger(), Fidelity::fine);
+    if (stronger.size() == size_ && isSensitive(stronger - nominal)) countAsNoise(stronger - nominal, residual, Unsteady::Change::forces);
+  }
   for (const Fidelity fidelity : {Fidelity::coarsest, Fidelity::coarse, Fidelity::medium}) {
     if (fidelity == Fidelity::coarsest && !screening) continue;
     const Eigen::VectorXd coarse = predicted(Model{}, fidelity);
@@ -199,9 +205,8 @@ void Comparison::goCoarse(const Eigen::VectorXd& nominal, Purpose purpose) {
     });
     if (!follows) {
       if (fidelity != Fidelity::medium) continue;
-      unsteady_ = unsteadiness(correction, residual);
       // Of a method of first order, twice the step makes twice the error: the change is the error of the steps in use.
-      for (Block& block : blocks_) block.sigma = std::hypot(block.sigma, std::sqrt(meanSquare(block, correction)));
+      countAsNoise(correction, residual, Unsteady::Change::steps);
     }
     correction_ = correction;
     fidelity_ = fidelity;
@@ -209,7 +214,24 @@ void Comparison::goCoarse(const Eigen::VectorXd& nominal, Purpose purpose) {
   }
 }
 
-/// The row-by-row signal that the other time step changes most.
+/// Whether what slightly stronger muscles change stands out of the noise of a signal, and is out of proportion to its motion.
+bool Comparison::isSensitive(const Eigen::VectorXd& change) const {
+  constexpr double ten_times = 0.01;  // of the motion, for muscles stronger by 0.001
+  const auto spread = [](const auto& values) { return std::sqrt((values.array() - values.mean()).square().mean()); };
+  return std::ranges::any_of(blocks_, [&](const Block& block) {
+    const auto changed = change.segment(block.first, block.count()), moved = nominal_.segment(block.first, block.count());
+    return block.isReading() && spread(changed) > std::max(few_sigmas * block.sigma, ten_times * spread(moved));
+  });
+}
+
+/// Adds the change to the noise of every block: the model is not known any better.
+void Comparison::countAsNoise(const Eigen::VectorXd& change, const Eigen::VectorXd& residual, Unsteady::Change by) {
+  unsteady_ = unsteadiness(change, residual);
+  unsteady_.by = by;
+  for (Block& block : blocks_) block.sigma = std::hypot(block.sigma, std::sqrt(meanSquare(block, change)));
+}
+
+/// What the change does to the row-by-row signals, most of all to the one that it changes most.
 Unsteady Comparison::unsteadiness(const Eigen::VectorXd& change, const Eigen::VectorXd& residual) const {
   Unsteady worst;
   for (const Block& block : blocks_) {

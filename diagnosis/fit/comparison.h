@@ -73,11 +73,12 @@ class Comparison {
   /// steps are used if coarse ones change a signal by more than a few noise sigmas, because the motion is then another one. Screening
   /// begins with the coarsest steps and tolerates a tenth of a signal's gap where that is more than those sigmas. Where even medium steps
   /// change the motion, the change that they make is added to the noise of every block (as squares): the model is not known any better, so
-  /// that medium steps serve there too. Call once. A model that diverges in coarse steps is simulated in fine ones. `nominal` is the fine
-  /// prediction of the model without effects.
+  /// that medium steps serve there too. A robot of few internal steps is always simulated in fine ones. There the change that muscles a
+  /// thousandth stronger make is added to the noise, if it is more than a few sigmas of a signal and a hundredth of its motion. Call once.
+  /// A model that diverges in coarse steps is simulated in fine ones. `nominal` is the fine prediction of the model without effects.
   void goCoarse(const Eigen::VectorXd& nominal, Purpose purpose = Purpose::fitting);
   Fidelity fidelity() const { return fidelity_; }
-  /// The change that medium steps cause, if the motion is another one even with them; empty otherwise, and before goCoarse.
+  /// The change that counts as noise, of medium steps or stronger muscles; empty if none does, and before goCoarse.
   const Unsteady& unsteady() const { return unsteady_; }
 
   /// Prediction of a model at the compared rows; empty if it diverges on one of the segments.
@@ -124,6 +125,8 @@ class Comparison {
   bool counts(const Block& block) const;
   bool isTempered() const { return !plant_.leavesOut(MethodPart::tempering); }
   void average(Eigen::VectorXd& values) const;
+  bool isSensitive(const Eigen::VectorXd& change) const;
+  void countAsNoise(const Eigen::VectorXd& change, const Eigen::VectorXd& residual, Unsteady::Change by);
   Unsteady unsteadiness(const Eigen::VectorXd& change, const Eigen::VectorXd& residual) const;
   Eigen::VectorXd withNominal(Eigen::VectorXd prediction) const;
   Eigen::VectorXd gathered(const std::vector<Prediction>& per_segment) const;
@@ -141,7 +144,7 @@ class Comparison {
 };
 
 /// Whether no signal stands out of its noise: RMS below out_of_noise sigmas, or out_of_estimated_noise where sigma is estimated; and in
-/// each single segment of 200 rows or more below 1.3 or 1.5 sigmas.
+/// each single segment of 200 rows, or averages of rows, or more below 1.3 or 1.5 sigmas.
 bool isWithinNoise(const Comparison& comparison, const Eigen::VectorXd& residual);
 
 /// The signal that stands out of its noise by most beside its motion; 0 percent if none does.

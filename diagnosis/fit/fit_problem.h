@@ -11,8 +11,6 @@
 
 namespace musclesim {
 
-/// A derivative that many fits begin with; null: not known.
-
 /// The prediction at the compared rows for given coordinates; empty if the model diverges.
 using Predicted = std::function<Eigen::VectorXd(const Eigen::VectorXd&)>;
 

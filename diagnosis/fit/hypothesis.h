@@ -15,7 +15,7 @@ namespace musclesim {
 /// Coordinates z, one per parameter that a fit changes:
 ///   neutral value finite      value = neutral + z * (typical - neutral)
 ///   neutral value infinite    value = typical / z
-///   shape parameters          value = typical * exp(z), or typical + z * half the usual range if that has both signs
+///   shape parameters          value = typical * exp(z), or typical + z * half the usual range if that does not lie above 0
 /// z = 0 is neutral for the first two and usual for the third; z = 1 is a typical strength, or the one that rescale() set. Values are
 /// clamped to their range.
 class Hypothesis {

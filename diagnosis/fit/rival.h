@@ -1,4 +1,4 @@
-/// A fitted hypothesis as the planner of experiments needs it.
+/// An explanation as the planner of experiments needs it.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,7 +9,7 @@
 
 namespace musclesim {
 
-/// A fitted hypothesis with its probability and its Jacobian.
+/// The model of an explanation, its probability, and the models with one of its coordinates moved.
 struct Rival {
   std::string label;
   Model model;

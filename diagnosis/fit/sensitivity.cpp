@@ -344,10 +344,6 @@ std::vector<Probe> lateProbes(const std::vector<Hypothesis>& hypotheses, const s
   return result;
 }
 
-}  // namespace
-
-namespace {
-
 /// Probes the hypotheses and adds what they show to their sensitivities, per unit of `strength`.
 void probeInto(std::vector<Sensitivity>& sensitivities, const Comparison& comparison, const std::vector<Probe>& probes, double strength,
                const Eigen::VectorXd& nominal, const Model& base, int job_count, const OnSimulation& on_simulation) {

@@ -19,19 +19,21 @@ struct Sensitivity {
   std::vector<SharedVector> per_strength;
   Eigen::VectorXd amount;       ///< multiple of each strength that removes most
   bool from_threshold = false;  ///< z = 1 was set at the threshold of the effect, below which it may do nothing
-  double misfit = 0;            ///< log misfit of the remaining residual
-  /// Largest RMS over sigma, in any residual block, of the change at typical strengths; empty if not all of them could be simulated.
+  double misfit = 0;            ///< of the residual that is left, in nats (Comparison::misfit)
+  /// Largest RMS over sigma of the change at typical strengths in any block of readings; empty if not all of them could be simulated.
   std::optional<double> excitation_ratio;
 };
 
-/// Called after each simulation, from any thread; must be thread-safe.
+/// Called once for every prediction that is asked for, from any thread; must be thread-safe.
 using OnSimulation = std::function<void()>;
 
 /// Simulates every hypothesis once or a few times on the comparison's segments; sensor effects of one id on different signals share a
 /// simulation. `nominal` is the prediction of `base`, the model to which the hypotheses are added. It also
 /// - drops strengths with a negligible influence compared with another one of the hypothesis (a force across the plane in which an elbow
-/// moves),
-/// - weakens strengths that change a signal by much more than the residual, because their response need not be proportional,
+///   moves), and those that act like another one,
+/// - weakens strengths that change a signal by much more than the residual, because their response need not be proportional, and those with
+///   which the model diverges,
+/// - simulates times, and sole strengths that seem useless, at three times their typical value, too,
 /// - strengthens a sole strength that shows no response (a dead band below all commands),
 /// - linearises a sole strength again if its optimum lies at the limit of the linear range.
 std::vector<Sensitivity> sensitivitiesOf(const Comparison& comparison, std::vector<Hypothesis>& hypotheses, const Eigen::VectorXd& nominal,
@@ -41,11 +43,11 @@ std::vector<Sensitivity> sensitivitiesOf(const Comparison& comparison, std::vect
 std::vector<Sensitivity> changesOf(const Comparison& comparison, const std::vector<Hypothesis>& hypotheses, const Eigen::VectorXd& nominal,
                                    const Model& base, int job_count, const OnSimulation& on_simulation);
 
-/// Largest RMS over sigma of a change in any residual block.
+/// Largest RMS over sigma of a change in any block of readings (no averages, no parity).
 double excitationRatio(const Comparison& comparison, const Eigen::VectorXd& change);
 
-/// Fits the amounts of a sensitivity to a residual by least squares, reweighted three times; amounts of unsigned strengths stay positive.
-/// Sets amount and misfit.
+/// Fits the amounts of a sensitivity to a residual by least squares, reweighted three times; amounts of unsigned strengths are not
+/// negative. Sets amount and misfit.
 void fitLinearly(const Comparison& comparison, const Hypothesis& hypothesis, const Eigen::VectorXd& residual, Sensitivity& sensitivity);
 
 /// Where a fit begins: at these amounts of the strengths, at the threshold if that is what the sensitivity was taken at; a vanishing

@@ -15,7 +15,8 @@ struct FaultIsolation {
   std::string method;         ///< the evidence, in words
 };
 
-/// Distinguishes stages by substitution if the signals are measured:
+/// Distinguishes stages by signals of motion against each other (the sensor of the one that contradicts the others), and by substitution if
+/// the signals are measured:
 ///   measured pressures as commands of the model: the part of the gap that vanishes arose in the command or pressure stage
 ///   measured pressure and length into the force law, compared with the measured tension: force stage
 /// on all fitted data (`whole`). For the stages that substitution leaves open, compares the residual on the screening segments with the

@@ -41,13 +41,14 @@ constexpr double much_clearer = 0.25;     ///< share of the unexplained variance
 constexpr int fewest_turns = 8;           ///< about the mean: the few motions of a step or a ramp resemble their like at other times
 constexpr double shortest_overlap = 0.4;  ///< of a recording
 
+/// Whether a correlation speaks clearly for a signal: it is large, and leaves far less unexplained than the other one does.
 bool exceeds(double one, double other) {
   return one >= follows_from && other <= of_a_wave && 1 - one * one <= clearly * (1 - other * other);
 }
 
 /// Correlations of a measured signal with a predicted one, over lags of the measured one.
 struct Correlation {
-  double highest = 0, lowest = 0;  ///< never of the other sign
+  double highest = 0, lowest = 0;  ///< highest >= 0, lowest <= 0
   double ratio = 0;                ///< of the standard deviations, measured over predicted
   bool follows() const { return exceeds(highest, -lowest); }
   bool isReversed() const { return exceeds(-lowest, highest); }
@@ -280,7 +281,7 @@ class ConventionCheck {
 
   enum class Of { all, one, others };  ///< recordings: all, a given one, or all but that
 
-  /// Zero if either signal does not move visibly.
+  /// Zero if the model does not move its signal visibly, or the measured one never changes.
   Correlation correlation(int measured, int predicted, Of which = Of::all, int given = 0) const {
     Correlation result;
     for (int lag = 0; lag * lag_step_s <= longest_lag_s; ++lag) {

@@ -21,10 +21,10 @@ namespace musclesim {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-/// Parameters of the nominal refit: friction within the muscles and the curvature of Eq. 1.
+/// Parameters of the nominal refit: friction within the muscles and the exponent of Eq. 1.
 constexpr const char* hinge_friction = "muscle.hinge_friction_Nm";
-constexpr const char* braun_curvature = "force_law.b";
-constexpr const char* nominal_names[] = {"muscle.slider_friction_N", hinge_friction, braun_curvature};
+constexpr const char* braun_exponent = "force_law.b";
+constexpr const char* nominal_names[] = {"muscle.slider_friction_N", hinge_friction, braun_exponent};
 
 /// Whether an entry of "varies" means this member of robot_parameters: the robot's name before it is optional.
 bool means(const std::string& listed, const std::string& parameter) {
@@ -119,9 +119,9 @@ void Plant::findNominalParameters() {
   const bool has_hinges = any([](const auto& actuator) { return !actuator->hinges().empty(); });
   const bool obeys_eq_1 = any([](const auto& actuator) { return dynamic_cast<const BraunForceLaw*>(&actuator->forceLaw()) != nullptr; });
   const auto acts = [&](const std::string& name) {
-    return name == hinge_friction    ? has_hinges
-           : name == braun_curvature ? obeys_eq_1
-                                     : std::ranges::find(nominal_names, name) != std::end(nominal_names);
+    return name == hinge_friction   ? has_hinges
+           : name == braun_exponent ? obeys_eq_1
+                                    : std::ranges::find(nominal_names, name) != std::end(nominal_names);
   };
   for (const Parameter& parameter : reference_->parameters().declared())
     if (acts(parameter.name) || std::ranges::find(options_.tune, parameter.name) != options_.tune.end())
@@ -193,7 +193,7 @@ void Plant::dropStarts() {
 
 void Plant::compareSignals() {
   measured_.resize(recordings_.size());
-  notes_ = dataNotes(recordings_);
+  std::ranges::move(dataNotes(recordings_), std::back_inserter(notes_));
   dropDeadSegments();
   dropAfterDropouts();
   dropStarts();

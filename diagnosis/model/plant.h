@@ -55,6 +55,9 @@ struct Model {
   std::vector<std::pair<std::string, double>> parameters;
 };
 
+/// Muscles that all pull a thousandth harder: no model is known better than that.
+Model slightlyStronger();
+
 /// A number of the model whose true value differs from the one the user gave by a factor exp(tolerance * eta), eta standard normal.
 struct UncertainNumber {
   Parameter parameter;  ///< with the value that the user gave
@@ -140,7 +143,10 @@ class Plant {
   /// Where the model without effects has the hand in the rows of a recording, mm. No rows if nothing is the hand, or if the model diverges.
   Eigen::MatrixX3d nominalHandMm(int recording) const;
 
-  /// Number of distinct simulations of the robot, and the seconds simulated; those of pressures alone do not count.
+  /// Number of distinct simulations under recorded or changed commands and of all under proposed schedules, and the seconds simulated;
+  /// those of pressures alone do not count.
+  /// The fidelity itself if coarser steps save time on this robot, otherwise fine.
+  Fidelity possible(Fidelity fidelity) const;
   long simulationCount() const { return simulation_count_; }
   double simulatedS() const { return static_cast<double>(simulated_ms_) / ms_per_s; }
   /// Threads to use; 0: one per core.
@@ -160,7 +166,6 @@ class Plant {
   void findNominalParameters();
   void chooseSubsteps();
   double largestChangeInSigmas(const std::vector<Prediction>& one, const std::vector<Prediction>& other) const;
-  Fidelity possible(Fidelity fidelity) const;
   int substepsOf(Fidelity fidelity) const;
   std::string simulationKey(int recording, std::size_t rows, Fidelity fidelity) const;
   void count(double simulated_s) const;

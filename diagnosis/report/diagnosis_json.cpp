@@ -165,8 +165,10 @@ std::string diagnosisJson(const Diagnosis& d, const std::string& schedule_file) 
   if (!d.model_effects.empty()) json["model_effects"] = d.model_effects;
   json["notes"] = d.notes;
   if (!d.unsteady.signal.empty())
-    json["unsteady"] = {
-        {"signal", d.unsteady.signal}, {"in_noise_floors", d.unsteady.in_sigmas}, {"share_of_gap", d.unsteady.share_of_gap}};
+    json["unsteady"] = {{"signal", d.unsteady.signal},
+                        {"in_noise_floors", d.unsteady.in_sigmas},
+                        {"share_of_gap", d.unsteady.share_of_gap},
+                        {"by", d.unsteady.by == Unsteady::Change::steps ? "longer_steps" : "stronger_muscles"}};
   json["where_method"] = d.where_method;
   json["partial"] = d.partial;
   json["cost"] = {{"simulated_s", d.simulated_s}, {"wall_s", d.wall_s}, {"simulations", d.simulation_count}};

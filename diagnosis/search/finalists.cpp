@@ -226,7 +226,8 @@ void Search::tryEarlier() {
   if (!options_.earlier.empty()) keepIfBetter({earlierFinding()});
 }
 
-/// Fits on the explanations that are better, as they are, than the same sets' where they stand, and puts them in the place of those.
+/// Evaluates each start. Where it is better than the same set among the explanations, or that set is new, fits it in fine steps and takes
+/// it over.
 void Search::keepIfBetter(std::vector<Explanation> ones) {
   fitAll(ones, [this](Explanation& one) {
     causes_.refit(one, fit_, 0, Fidelity::fine, Accuracy::ranking);
@@ -236,7 +237,7 @@ void Search::keepIfBetter(std::vector<Explanation> ones) {
     const auto same = sameAmong(explanations_, one);
     if (same != explanations_.end() && same->score >= one.score) continue;
     fitFinely(one);
-    if (one.residual.size() != fit_.size()) continue;
+    if (one.residual.size() != fit_.size() || (same != explanations_.end() && same->score >= one.score)) continue;
     if (same == explanations_.end())
       explanations_.push_back(std::move(one));
     else

@@ -19,7 +19,7 @@ constexpr int draw_count = 1000;
 constexpr double block_s = 1;
 constexpr int round_count = 4;
 
-/// Sums of squares of one bootstrap block, before and after, per signal.
+/// Sums of squares of one bootstrap block, before and after, means over signals.
 struct BootstrapBlock {
   std::map<int, std::array<double, 3>> sums;  ///< before, after, rows
 };
@@ -43,7 +43,7 @@ std::vector<BootstrapBlock> blocksOf(const BeforeAndAfter& both) {
   return result;
 }
 
-/// Normalised gaps before and after, per signal.
+/// Normalised gaps (means over signals) before and after.
 std::pair<double, double> gapsOf(const Comparison& comparison, const std::vector<const BootstrapBlock*>& blocks) {
   std::map<int, std::array<double, 3>> sums;
   for (const BootstrapBlock* block : blocks)

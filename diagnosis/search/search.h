@@ -30,11 +30,12 @@ struct ScreenedCatalogue {
 /// 0, 1, ... count - 1 without one of them; all of them if left_out is count.
 std::vector<std::size_t> allBut(std::size_t left_out, std::size_t count);
 
+/// Screens all hypotheses, searches sets of them, and weighs the sets that are fitted to all recordings. Call screen(), then decide().
 class Search {
  public:
   Search(const Plant& plant, const DiagnosisOptions& options, OnSimulation on_simulation);
 
-  /// The sensitivity of the residual to every effect of the catalogue.
+  /// The sensitivity of the prediction to every effect of the catalogue.
   void screen();
   /// Searches, fits what is likely to all recordings, and computes the probabilities.
   void decide();
@@ -50,7 +51,7 @@ class Search {
   const std::vector<Explanation>& explanations() const { return explanations_; }
   /// The most probable one; there must be one.
   const Explanation& likeliest() const { return *std::ranges::max_element(explanations_, {}, &Explanation::probability); }
-  /// Probability that something else acts, judged by what the best explanation leaves.
+  /// Probability that something acts beside what the explanations hold (Evidence::ofSomethingElse).
   double noneOfThese() const { return none_of_these_; }
   /// Single effects as fitted to the screening segments.
   std::vector<Explanation> singles() const;
@@ -62,16 +63,15 @@ class Search {
   Rival rival(const Explanation& explanation, const std::string& label) const;
 
  private:
-  /// Nats that linear models about two places that a fit has reached, one after the other, may both promise too little. On two plants 51
-  /// fits ended above the best set, or less than 4 nats behind it; all had been promised an end that was not lower than that by more than
-  /// this.
+  /// Error of promises in nats: the largest amount by which two successive promises of a fit were both too pessimistic, among 51 fits on
+  /// two plants that ended above the best set or less than 4 nats behind it.
   static constexpr double promise_error = 6;
   static constexpr std::size_t varied_count = 5;   ///< explanations of which other variants are tried,
   static constexpr double near_best = 4;           ///< if they are not so many nats behind the best
   static constexpr double worth_polishing = 2;     ///< nats that fine steps may give a variant
   static constexpr double noticeable_loss = 0.45;  ///< nats: with less, another fit does as well
   static constexpr double hopeless = 4;            ///< nats behind the best: such sets are not extended, nor their members replaced
-  static constexpr std::size_t wide_count = 4;     ///< sets of one size of which widened forms are fitted, and so many forms of each
+  static constexpr std::size_t wide_count = 4;  ///< sets of one size of which widened and exchanged forms are fitted, and so many of each
 
   /// A set whose fit has not begun, and the linear estimate of what it will cost.
   struct Proposal {

@@ -81,8 +81,8 @@ std::string signalTitle(const std::string& signal) {
   if (second == std::string::npos) return signal;
   const std::string quantity = signal.substr(0, second);
   std::string which = signal.substr(second + 1);
+  if (quantity == "angle") return "angle of the " + spaced(which.substr(0, which.rfind("_deg"))) + " joint";
   which = which.substr(0, which.find('_'));
-  if (quantity == "angle") return "angle of the " + which + " joint";
   if (quantity == "hand") return which + " of the hand";
   if (quantity == "command" || quantity == "pressure" || quantity == "length" || quantity == "force")
     return (quantity == "force" ? "tension" : quantity) + " of muscle " + which;

@@ -11,14 +11,14 @@ namespace musclesim {
 
 /// "dead time" of "transport_delay"; the id with spaces for an effect that has no words here.
 std::string effectTitle(const std::string& id);
-/// "dead time on muscle 1" of "transport_delay@muscle_1".
+/// "dead time (muscle 1)" of "transport_delay@muscle_1".
 std::string effectTitleOn(const std::string& label);
 /// What the effect is, in one or two sentences for a reader who does not know the machine.
 std::string effectExplanation(const std::string& id);
 
 /// "muscle 1", "every muscle", "the elbow joint", "the length of muscle 0": what an effect of this id acts on.
 std::string ownerWords(const std::string& id, const std::string& component);
-/// "length of muscle 0" of "length_0_mm".
+/// "length of muscle 0" of "length_0_mm", "angle of the shoulder 2 joint" of "angle_shoulder_2_deg".
 std::string signalTitle(const std::string& signal);
 /// "mm" of "length_0_mm", "of full scale" of "pressure_0".
 std::string signalUnitWords(const std::string& signal);

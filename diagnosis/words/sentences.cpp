@@ -187,10 +187,9 @@ std::string remainder(const Diagnosis& d, const Gap& after) {
   const std::string where =
       most == after.per_signal.end() ? "" : fmt::format(" ({:.1f} times in {})", overNoise(most->second), most->first);
   if (d.remainder.is_within_steps)
-    return fmt::format(
-        "The residual is {:.1f} times the noise{}, but no more than internal steps twice as long change: it does not speak "
-        "for another effect.",
-        over_noise, where);
+    return fmt::format("The residual is {:.1f} times the noise{}, but no more than {} change: it does not speak for another effect.",
+                       over_noise, where,
+                       d.unsteady.by == Unsteady::Change::steps ? "internal steps twice as long" : "muscles that pull 0.1 % harder");
   const bool together = d.chosen.size() > 1 || d.attempt.effects.size() > 1;
   return fmt::format("The residual is still {:.1f} times the noise{}{}: another effect acts as well, or {} follows another law.",
                      over_noise, where, d.remainder.shape.empty() ? "" : ", " + d.remainder.shape, together ? "one of these" : "this one");
@@ -239,14 +238,16 @@ std::string otherwise(const Diagnosis& d) {
                      more > 0 ? fmt::format("{}or {}", pairs ? "; " : ", ", counted(more, "other explanation")) : "", experiment);
 }
 
-/// A warning if the motion is so sensitive that the time step changes it by a noticeable share of the gap.
+/// A warning if the motion is so sensitive that the step size, or slightly stronger muscles, change it by a noticeable share of the gap.
 std::string unsteadyWords(const Unsteady& unsteady) {
   constexpr double worth_saying = 0.1;
   if (unsteady.share_of_gap < worth_saying) return "";
   return fmt::format(
-      "Under these commands the simulated motion depends on the step size: internal steps twice as long move {} by {:.0f} times the noise, "
-      "{:.0f} % of the gap, as happens after impacts on stops. Such motions hardly distinguish causes; record gentler ones.",
-      unsteady.signal, unsteady.in_sigmas, 100 * unsteady.share_of_gap);
+      "Under these commands the simulated motion is sensitive: {} {} by {:.0f} times the noise, {:.0f} % of the gap, as happens after "
+      "impacts "
+      "on stops. Such motions hardly distinguish causes; record gentler ones.",
+      unsteady.by == Unsteady::Change::steps ? "internal steps twice as long move" : "muscles that pull 0.1 % harder move", unsteady.signal,
+      unsteady.in_sigmas, 100 * unsteady.share_of_gap);
 }
 
 constexpr double worth_a_warning = 0.1;  ///< an unknown cause that is less likely is not mentioned
@@ -290,10 +291,6 @@ std::string notConfirmed(const Diagnosis& d) {
     text += fmt::format("; re-tuning the model without any effect removes {}", percentWords(d.nominal_refit_percent));
   return text;
 }
-
-}  // namespace
-
-namespace {
 
 /// The shape of the signal with the largest gap that has a simple one, for a reader who looks for a cause outside the catalogue.
 std::string shape(const Diagnosis& d) {

@@ -108,12 +108,15 @@ struct Gap {
   std::map<std::string, SignalGap> per_signal;
 };
 
-/// A simulated motion that depends on the step size, as after an impact on a stop: internal steps twice as long change it.
+/// A simulated motion that is sensitive, as after an impact on a stop: internal steps twice as long change it noticeably; or, where the
+/// robot has so few of them that they cannot be longer, muscles that all pull a thousandth harder do.
 struct Unsteady {
+  enum class Change { steps, forces };
   std::string signal;                      ///< the signal that changes most; empty if none does noticeably
   double in_sigmas = 0, share_of_gap = 0;  ///< RMS of the change over sigma, and over the RMS of the gap
   /// Of every signal the largest RMS of the change over sigma in any segment.
   std::map<std::string, double> all_in_sigmas = {};
+  Change by = Change::steps;
 };
 
 struct Experiment {

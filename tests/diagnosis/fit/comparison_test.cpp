@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <functional>
 
 #include "../short_rig.h"
 #include "../tempered_misfit.h"
@@ -176,6 +178,47 @@ TEST_F(Rig, WhatTheStepChangesCountsAsNoiseWhereTheModelIsUnsteady) {
   const double change = std::sqrt(both.meanSquare(both.blocks().front(), other_motion - both.predicted(Model{}, Fidelity::medium)));
   EXPECT_NEAR(change, 100 * planted::noise_mm, planted::noise_mm);
   EXPECT_NEAR(both.blocks().front().sigma, std::hypot(sigma, change), 1e-12);
+}
+
+/// An undamped elbow of massless muscles for 6 s; commands of both muscles from the number of the row.
+Recording ofLightElbow(const std::function<std::array<double, 2>(int row)>& commands) {
+  Recording plan;
+  plan.info.robot = "elbow";
+  plan.info.robot_parameters = {{"muscle.model", std::string("line")}};
+  plan.signals = {{"command_0", {}}, {"command_1", {}}};
+  for (int row = 0; row < 600; ++row) {
+    plan.time_s.push_back(0.01 * row);
+    const auto [one, other] = commands(row);
+    plan.signals[0].values.push_back(one);
+    plan.signals[1].values.push_back(other);
+  }
+  Recording recording = replayRecording(plan, {}).simulated;
+  recording.info.noise_std = {{"angle_elbow_deg", 0.05}};
+  std::erase_if(recording.signals, [](const Signal& s) { return !s.name.starts_with("command_") && s.name != "angle_elbow_deg"; });
+  return recording;
+}
+
+TEST(SensitiveMotion, CountsAsNoiseWhatSlightlyStrongerMusclesChange) {
+  std::vector<std::array<double, 2>> drawn;
+  RandomStream random(3, "commands");
+  for (int k = 0; k < 15; ++k) drawn.push_back({random.uniform(), random.uniform()});
+  const auto jumping = [&](int row) { return drawn[static_cast<std::size_t>(row / 40)]; };
+  const auto gentle = [](int row) {
+    const double wave = 0.1 * std::sin(0.01 * row);
+    return std::array{0.6 + wave, 0.2 - wave};
+  };
+  for (const bool jumps : {true, false}) {
+    const auto commands = [&](int row) { return jumps ? jumping(row) : gentle(row); };
+    const DiagnosisOptions options;
+    const Plant plant({ofLightElbow(commands), ofLightElbow([&](int row) { return commands(row / 2); })}, options);
+    Comparison all(plant, {{0, 0, 600}});
+    const double sigma = all.blocks().front().sigma;
+    all.goCoarse(all.predicted(Model{}));
+    EXPECT_EQ(all.unsteady().signal, jumps ? "angle_elbow_deg" : "");
+    EXPECT_EQ(all.blocks().front().sigma > 5 * sigma, jumps);
+    if (!jumps) EXPECT_EQ(all.blocks().front().sigma, sigma);
+    if (jumps) EXPECT_EQ(all.unsteady().by, Unsteady::Change::forces);
+  }
 }
 
 TEST_F(Rig, NumbersThatNeedFarMoreStepsAreRefused) {

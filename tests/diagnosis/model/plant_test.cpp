@@ -71,6 +71,15 @@ TEST(DeadSensor, InOneRecordingIsLeftOutThere) {
   EXPECT_TRUE(contains(plant.notes().front(), "b.csv: length_0_mm has the same value in every row"));
 }
 
+TEST(Plant, SaysThatTheRobotsDescriptionIsAnotherOne) {
+  std::vector<Recording> recordings = planted::plant({});
+  EXPECT_TRUE(Plant(recordings, {}).notes().empty());
+  for (Recording& recording : recordings) recording.info.robot_hash = "another";
+  const Plant plant(recordings, {});
+  ASSERT_FALSE(plant.notes().empty());
+  EXPECT_TRUE(contains(plant.notes().front(), "is not the one with which the recording was made"));
+}
+
 /// The muscles of this arm end one millimetre outside their drums: an end that is off by three lies within, and no such robot can be built.
 TEST(Plant, LeavesOutWhatDependsOnCommandsInADropout) {
   Recording recording = planted::recorded({}, 0.1, 1);  // other commands every half second

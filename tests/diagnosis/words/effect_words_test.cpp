@@ -87,6 +87,7 @@ TEST(EffectWords, NamesSignalsAsAReaderWould) {
   EXPECT_EQ(signalTitle("length_0_mm"), "length of muscle 0");
   EXPECT_EQ(signalTitle("force_11_N"), "tension of muscle 11");
   EXPECT_EQ(signalTitle("angle_elbow_deg"), "angle of the elbow joint");
+  EXPECT_EQ(signalTitle("angle_upper_arm_2_deg"), "angle of the upper arm 2 joint");
   EXPECT_EQ(signalTitle("hand_x_mm"), "x of the hand");
   EXPECT_EQ(signalUnitWords("pressure_0"), "of full scale");
   EXPECT_EQ(signalUnitWords("angle_elbow_deg"), "deg");

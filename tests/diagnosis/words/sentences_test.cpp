@@ -147,14 +147,17 @@ TEST(VerdictSentence, SaysWhetherTheExperimentTellsAllApart) {
       contains(verdictSentence(d), "to tell them apart, although even then the two most similar differ by only 0.7 times the noise."));
 }
 
-TEST(VerdictSentence, SaysWhereTheMotionDependsOnTheStepSize) {
+TEST(VerdictSentence, SaysWhereTheMotionIsSensitive) {
   Diagnosis d = lagFound();
   d.unsteady = {"angle_elbow_deg", 6, 0.05};
-  EXPECT_FALSE(contains(verdictSentence(d), "step size"));
+  EXPECT_FALSE(contains(verdictSentence(d), "sensitive"));
   d.unsteady = {"angle_elbow_deg", 50.4, 0.3};
-  EXPECT_TRUE(contains(verdictSentence(d),
-                       "the simulated motion depends on the step size: internal steps twice as long move angle_elbow_deg by 50 times the "
-                       "noise, 30 % of the gap"));
+  EXPECT_TRUE(
+      contains(verdictSentence(d),
+               "the simulated motion is sensitive: internal steps twice as long move angle_elbow_deg by 50 times the noise, 30 % of "
+               "the gap"));
+  d.unsteady.by = Unsteady::Change::forces;
+  EXPECT_TRUE(contains(verdictSentence(d), "sensitive: muscles that pull 0.1 % harder move angle_elbow_deg"));
 }
 
 /// A residual that is no larger than what the step size changes does not speak for another effect.
