@@ -5,9 +5,10 @@
 # `blind make` copies the files. Prints the paths, separated by commas.
 # Usage: scripts/make_line_robots.sh FOLDER
 set -euo pipefail
-cd "$(dirname "${BASH_SOURCE[0]}")/.."
 folder="${1:?usage: scripts/make_line_robots.sh FOLDER}"
 mkdir -p "$folder"
+folder=$(readlink -f "$folder")
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
 line() { # ROBOT, line with the damping of its joint
   sed -e "s/^name = \"$1\"\$/name = \"$1_line\"/" -e "s/^\[\[muscle\]\].*/&\nmodel = \"line\"/" \
     -e "/^\[\[joint\]\]/,/^\$/s/^axis = .*/&\n$2/" "robots/$1.toml" >"$folder/$1_line.toml"
