@@ -221,6 +221,16 @@ std::vector<MomentArms> slideArms(World& world, const Robot& robot) {
   return all;
 }
 
+/// Muscles whose force is not that of a muscle, as when a length was given in metres.
+void findForces(const Robot& robot, std::vector<std::string>& found) {
+  constexpr double largest_N = 2e4;  // a muscle of 40 mm diameter pulls with 6 kN at most (Festo DMSP-40)
+  for (const Actuator* actuator : robot.actuators())
+    if (const double pull_N = actuator->calculateForce(1, actuator->lengthMm()); pull_N > largest_N)
+      found.push_back(
+          fmt::format("{} pulls with {:.3g} N at full pressure as built: are its lengths in mm, the numbers of its force law right?",
+                      actuator->name(), pull_N));
+}
+
 /// Muscles that the motion of a joint takes out of their range, and joints that no muscle moves.
 void findMotions(const std::vector<MomentArms>& arms, const Robot& robot, std::vector<std::string>& found) {
   constexpr double still_mm = 0.01, still_share = 0.02;  // what is below this moves nothing
@@ -287,6 +297,7 @@ std::vector<std::string> oddities(World& world, const Robot& robot) {
   findLooseEnds(robot, found);
   findOverlaps(world, found);
   findInertias(world, found);
+  findForces(robot, found);
   try {
     if (robot.actuators().empty()) return found;
     findMotions(momentArms(world, robot), robot, found);

@@ -165,7 +165,8 @@ class Run {
     const Eigen::VectorXd residual = all.measured() - predicted;
     const SmallGap largest = largestBesideMotion(all, residual);
     const bool is_noise = isWithinNoise(all, residual), small = is_noise || largest.percent_of_motion < options_.smallest_gap_percent;
-    if (!small && isWithinNoise(held_out_, before_residual_))
+    diagnosis_.held_out_is_noise = isWithinNoise(held_out_, before_residual_);
+    if (!small && diagnosis_.held_out_is_noise)
       diagnosis_.notes.push_back(
           fmt::format("there is no gap in {}: no cause can be confirmed there; put a recording that shows the gap last",
                       plant_.recordings().size() > 1 ? plant_.recordings().back().file : diagnosis_.held_out));

@@ -216,8 +216,14 @@ void Plant::compareSignals() {
       measured_[i].push_back(found ? found->values : std::vector<double>{});
     }
   }
-  for (const Recording& recording : recordings_)
-    for (std::string& note : unknownSignalNotes(recording, reference_->robot())) notes_.push_back(std::move(note));
+  for (const Recording& recording : recordings_) {
+    std::vector<std::string> unknown = unknownSignalNotes(recording, reference_->robot());
+    // A misspelt column would leave pressures alone, which agree where the motion may not.
+    if (!unknown.empty() && std::ranges::none_of(signals_, [](const ComparedSignal& signal) { return isMotion(signal.name); }))
+      throw BadFile(recording.file, unknown.front().substr(recording.file.size() + 2) +
+                                        "; no other column is of a motion. Correct its name, or leave it out with --ignore-columns");
+    std::ranges::move(unknown, std::back_inserter(notes_));
+  }
   if (signals_.empty())
     throw BadFile(recordings_.front().file,
                   "it has no signal that can be compared: one that changes and that the model also has, for example length_0_mm");

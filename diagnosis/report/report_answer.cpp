@@ -57,8 +57,7 @@ SignWords signWords(const Diagnosis& d, Belief belief) {
 
 /// The answer where no cause is believed.
 std::string headlineWithoutCause(const Diagnosis& d) {
-  const bool is_small = std::ranges::all_of(d.before.per_signal, [](const auto& entry) { return overNoise(entry.second) < out_of_noise; });
-  if (d.verdict != Verdict::unexplained || d.partial || is_small) {
+  if (d.verdict != Verdict::unexplained || d.partial || d.held_out_is_noise) {
     const std::vector<std::string> answer = answerSentences(d);
     return answer.empty() ? "" : answer.front();
   }
@@ -159,7 +158,10 @@ std::string restAnswer(const Diagnosis& d, const Caveats& caveats) {
   if (d.verdict == Verdict::not_excited) return "<p>Nothing beyond the noise, but the recordings hardly move the machine.</p>";
   if (d.verdict == Verdict::effects_found) {
     const std::string noise =
-        fmt::format("The {} is {:.1f} times the {}: noise, or nearly so.", term("residual"), overNoiseInAll(d.after), term("floor"));
+        fmt::format("The {} is {:.1f} times the {}: {}.", term("residual"), overNoiseInAll(d.after), term("floor"),
+                    d.remainder.is_significant ? fmt::format("little, but more than noise ({:.1f} times it in {})", d.remainder.in_sigmas,
+                                                             escapedXml(signalTitle(d.remainder.signal)))
+                                               : "noise, or nearly so");
     return fmt::format("<p>{} of the gap. {}</p>", capitalised(leftWords(d.unexplained_percent)),
                        caveats.rest.empty() ? noise : escapedXml(caveats.rest)) +
            paragraph(elsewhereSentence({d.reduction_percent, d.reduction_low_percent, d.reduction_high_percent}));

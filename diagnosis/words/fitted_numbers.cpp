@@ -13,7 +13,7 @@ namespace musclesim {
 namespace {
 
 constexpr double worth_saying_percent = 5;  ///< of the gap
-constexpr double unusual_tolerances = 2;    ///< standard deviations: one number in twenty
+constexpr double unusual_tolerances = 1;    ///< standard deviations, if the data exclude the given value: two numbers in three are nearer
 
 }  // namespace
 
@@ -24,9 +24,11 @@ bool isExplainedByNumbers(const Diagnosis& d) {
 std::string numbersWords(const Diagnosis& d) {
   std::vector<std::string> words;
   for (const FittedNumber& number : d.numbers)
-    if (std::abs(number.in_tolerances) >= unusual_tolerances)
+    if (std::abs(number.in_tolerances) >= unusual_tolerances && (number.fitted.low > number.start || number.fitted.high < number.start))
       words.push_back(fmt::format("{} of {} instead of {:.4g} {}", number.name, estimateWords(number.fitted), number.start, number.unit));
-  return words.empty() ? "" : fmt::format("The data speak for a {}.", fmt::join(words, " and a "));
+  if (words.empty()) return "";
+  return fmt::format("The data speak for a {}.{}", fmt::join(words, " and a "),
+                     d.chosen.empty() ? "" : " The effects need these numbers: use effects.json with nominal.toml.");
 }
 
 std::string fittedNumbersSentence(const Diagnosis& d) {

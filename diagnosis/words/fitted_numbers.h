@@ -9,11 +9,11 @@ namespace musclesim {
 
 /// Whether the verdict is `no_gap` because numbers of the model were fitted: the model as it was given does have a gap.
 bool isExplainedByNumbers(const Diagnosis& diagnosis);
-/// The numbers that are off by more than their tolerances let expect; empty if there are none.
+/// Sentences on numbers that differ from what was given by a tolerance or more, if their intervals exclude that; empty if none does.
 std::string numbersWords(const Diagnosis& diagnosis);
-/// What the numbers of the model take in where no cause is believed; empty if that is not worth telling.
+/// Sentence on the share of the gap that fitted numbers alone remove, where no cause is believed; empty below 5 %.
 std::string fittedNumbersSentence(const Diagnosis& diagnosis);
-/// What re-tuning the model without any effect removes, beside a rejected explanation; empty if that is not worth telling.
+/// Sentence on the share that re-tuning without any effect removes, beside a rejected explanation; empty below 5 %.
 std::string retunedSentence(const Diagnosis& diagnosis);
 
 }  // namespace musclesim

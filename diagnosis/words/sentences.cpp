@@ -306,8 +306,7 @@ std::string shape(const Diagnosis& d) {
 
 std::vector<std::string> unexplainedSentences(const Diagnosis& d) {
   if (d.partial) return {"There is a gap; the search for its cause was interrupted."};
-  const bool is_small = std::ranges::all_of(d.before.per_signal, [](const auto& entry) { return overNoise(entry.second) < out_of_noise; });
-  if (is_small && !d.before.per_signal.empty()) {
+  if (d.held_out_is_noise) {
     std::vector<std::string> sentences = {
         "I cannot tell: the fitted recordings show a gap, but the held-out data does not, so no cause can be confirmed; put a recording "
         "that shows the gap last."};

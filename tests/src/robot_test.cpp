@@ -89,6 +89,15 @@ fixed = true
   EXPECT_TRUE(contains(checked.out, "odd: bar and block overlap by 5 mm")) << checked.out;
 }
 
+TEST_F(RobotCommand, CheckNamesAMuscleThatPullsTooHard) {
+  ASSERT_EQ(run({"robot", "new", "lever"}).status, 0);
+  change("lever.toml", "name = \"left\"", R"(force_law = { name = "chou-hannaford", braid_N = 418000, bore_N = 164000 }
+name = "left")");
+  const std::string out = run({"robot", "check", "lever.toml"}).out;
+  EXPECT_TRUE(contains(out, "odd: left pulls with ")) << out;
+  EXPECT_FALSE(contains(out, "odd: right pulls with ")) << out;
+}
+
 TEST_F(RobotCommand, CheckLooksAtSlides) {
   ASSERT_EQ(run({"robot", "export", "rig", "-o", "rig.toml"}).status, 0);
   const auto as_shipped = run({"robot", "check", "rig.toml"});

@@ -256,6 +256,7 @@ struct Diagnosis {
   std::string unknown_start;                ///< a sentence on recordings that begin in the middle of a motion; empty if there are none
   std::vector<std::string> notes;           ///< remarks on the data and the answer for the user
   std::optional<SmallGap> small_gap;        ///< with `no_gap` only
+  bool held_out_is_noise = false;           ///< the model without effects leaves only noise there, so that nothing can be confirmed
   Unsteady unsteady;
   Experiment next_experiment;
   std::vector<Screening> screenings;  ///< best first

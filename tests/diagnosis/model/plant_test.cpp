@@ -71,6 +71,21 @@ TEST(DeadSensor, InOneRecordingIsLeftOutThere) {
   EXPECT_TRUE(contains(plant.notes().front(), "b.csv: length_0_mm has the same value in every row"));
 }
 
+/// Left out with a note it would leave the pressure alone, which agrees whatever the motion does.
+TEST(Plant, RefusesAMisspeltColumnThatIsTheOnlyMotion) {
+  std::vector<Recording> recordings = planted::plant({}, planted::Pressure::measured);
+  for (Recording& recording : recordings)
+    for (Signal& signal : recording.signals)
+      if (signal.name == "length_0_mm") signal.name = "angle_load_deg";
+  try {
+    const Plant plant(recordings, {});
+    FAIL() << "the motion is not compared";
+  } catch (const BadFile& refused) {
+    EXPECT_TRUE(contains(refused.what(), "rig has no angle_load_deg")) << refused.what();
+    EXPECT_TRUE(contains(refused.what(), "--ignore-columns")) << refused.what();
+  }
+}
+
 TEST(Plant, SaysThatTheRobotsDescriptionIsAnotherOne) {
   std::vector<Recording> recordings = planted::plant({});
   EXPECT_TRUE(Plant(recordings, {}).notes().empty());

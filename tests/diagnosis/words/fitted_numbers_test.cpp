@@ -27,8 +27,12 @@ TEST(FittedNumbers, MayExplainAGap) {
 TEST(FittedNumbers, AreToldWhereTheyAreFarOff) {
   Diagnosis d = withLoad(Verdict::no_gap);
   EXPECT_EQ(numbersWords(d), "The data speak for a rig.load_kg of 2.20 (2.10 to 2.30) instead of 2 kg.");
-  d.numbers.front().in_tolerances = 1.9;
+  d.chosen = {"valve_lag@all"};
+  EXPECT_TRUE(contains(numbersWords(d), "use effects.json with nominal.toml"));
+  d.numbers.front().in_tolerances = 0.9;
   EXPECT_EQ(numbersWords(d), "");
+  d.numbers.front() = {"rig.load_kg", "kg", 2, {2.2, 1.9, 2.5, true}, 2.4};
+  EXPECT_EQ(numbersWords(d), "") << "the given value is possible";
 }
 
 TEST(FittedNumbers, SayWhatTheyRemove) {
