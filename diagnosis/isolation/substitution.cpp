@@ -41,6 +41,13 @@ class BlockRatio {
   int count_ = 0, block_count_ = 0;
 };
 
+/// Index of a compared signal; -1 if it is not compared.
+int signalIndex(const Plant& plant, const std::string& name) {
+  for (std::size_t i = 0; i < plant.signals().size(); ++i)
+    if (plant.signals()[i].name == name) return static_cast<int>(i);
+  return -1;
+}
+
 /// The measured pressures of a muscle, or the commanded ones.
 struct Pressures {
   int signal = -1;  ///< -1: commanded
@@ -214,12 +221,6 @@ Eigen::VectorXd predictedUnderMeasuredPressures(const Comparison& comparison, Ra
 }
 
 }  // namespace
-
-int signalIndex(const Plant& plant, const std::string& name) {
-  for (std::size_t i = 0; i < plant.signals().size(); ++i)
-    if (plant.signals()[i].name == name) return static_cast<int>(i);
-  return -1;
-}
 
 std::optional<double> ratioOf(const Comparison& comparison, const Eigen::VectorXd& residual, const std::string& beginning) {
   double sum = 0;

@@ -13,9 +13,6 @@ namespace musclesim {
 inline constexpr double agrees = 1.2;     ///< RMS over sigma below which a signal counts as predicted
 inline constexpr double disagrees = 1.5;  ///< RMS over sigma above which it counts as not predicted
 
-/// Index of a compared signal; -1 if it is not compared.
-int signalIndex(const Plant& plant, const std::string& name);
-
 /// RMS over sigma of all residual blocks of signals whose name begins with a word; empty if there are none.
 std::optional<double> ratioOf(const Comparison& comparison, const Eigen::VectorXd& residual, const std::string& beginning);
 /// Largest RMS over sigma of a residual block, averaged or not, of signals of motion (angles, lengths, positions).

@@ -12,6 +12,7 @@
 
 #include "../../base/parallel.h"
 #include "../fit/comparison.h"
+#include "../model/parity.h"
 #include "musclesim/robot/actuator.h"
 #include "musclesim/robot/robot.h"
 #include "musclesim/simulation/simulation.h"
@@ -34,10 +35,6 @@ struct Span {
   bool holds(double value) const { return value >= low && value <= high; }
 };
 using Spans = std::map<std::string, Span>;
-
-bool isPosition(const std::string& signal) {
-  return signal.starts_with("length_") || signal.starts_with("angle_") || signal.starts_with("hand_");
-}
 
 /// The range of an angle or a length between its stops, and its value as built.
 struct Travel {
@@ -66,7 +63,7 @@ Spans roomsOf(const Plant& plant) {
   Spans been, rooms;
   for (std::size_t s = 0; s < plant.signals().size(); ++s) {
     const ComparedSignal& signal = plant.signals()[s];
-    if (!isPosition(signal.name)) continue;
+    if (!isMotion(signal.name)) continue;
     Span& span = been[signal.name];
     for (std::size_t i = 0; i < plant.recordings().size(); ++i)
       for (const double y : plant.measured(static_cast<int>(i), static_cast<int>(s)))

@@ -9,6 +9,7 @@
 
 #include "../../log/svg.h"
 #include "../words/effect_words.h"
+#include "../words/sentences.h"
 #include "musclesim/effect/catalogue.h"
 
 namespace musclesim::report {

@@ -9,8 +9,7 @@
 
 namespace musclesim::report {
 
-constexpr double stands_out_of_noise = 2;  ///< RMS over the noise floor
-constexpr double rather_none = 0.5;        ///< probability of something else from which on an explanation is believed in part only
+constexpr double rather_none = 0.5;  ///< probability of something else from which on an explanation is believed in part only
 
 std::string heading(const std::string& words);
 /// A label with a possible line break after each of its words.

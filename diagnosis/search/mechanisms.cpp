@@ -5,7 +5,6 @@
 // after the other, and everything else is fitted beside it, each time from where the last fit ended.
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "search.h"
 

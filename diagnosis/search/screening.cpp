@@ -1,5 +1,4 @@
 // Screening: one or a few simulations of every hypothesis decide which ones are fitted.
-#include <Eigen/Dense>
 #include <algorithm>
 #include <limits>
 #include <map>

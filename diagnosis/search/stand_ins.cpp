@@ -1,7 +1,6 @@
 // Stand-ins: every member of the likely sets is replaced by what could act in its place.
 #include <algorithm>
 #include <iterator>
-#include <map>
 
 #include "../../base/parallel.h"
 #include "search.h"

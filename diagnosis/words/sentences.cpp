@@ -15,8 +15,6 @@ namespace musclesim {
 
 namespace {
 
-constexpr double stands_out = 2;  ///< RMS over sigma
-
 /// "a = 1.0 (0.9 to 1.1), b = 2 (1 to 3)", without parameters that the data left out.
 std::string parameterWords(const FoundEffect& effect) {
   std::vector<std::string> words;
@@ -62,16 +60,17 @@ std::string shapeOfRest(const Diagnosis& d, const std::string& signal) {
   const Gap& rest = d.attempt.effects.empty() ? d.after : d.attempt.after;
   const auto gap = rest.per_signal.find(signal);
   const auto trace = std::ranges::find(d.traces, signal, &Trace::signal);
-  if (gap == rest.per_signal.end() || trace == d.traces.end() || overNoise(gap->second) < stands_out) return "";
+  if (gap == rest.per_signal.end() || trace == d.traces.end() || overNoise(gap->second) < stands_out_of_noise) return "";
   return wordsFor(describeResidual(trace->time_s, trace->measured, trace->after.empty() ? trace->before : trace->after));
 }
 
+namespace {
+
+/// Whether the first place is more probable than all others together.
 bool isTold(const std::vector<Place>& where) {
   constexpr double told_share = 0.5;
   return !where.empty() && where.front().share >= told_share;
 }
-
-namespace {
 
 /// The stages after the first that the signals do not contradict.
 std::vector<std::string> othersPossible(const std::vector<Place>& where) {
@@ -182,7 +181,7 @@ std::string chosenWords(const Diagnosis& d) {
 /// A sentence about a residual that stands far out of the noise, which no explanation should hide. RMS / sigma = sqrt(1 + normalised gap).
 std::string remainder(const Diagnosis& d, const Gap& after) {
   const double over_noise = std::sqrt(1 + after.normalised);
-  if (over_noise < stands_out) return "";
+  if (over_noise < stands_out_of_noise) return "";
   const auto most = std::ranges::max_element(after.per_signal, {}, [](const auto& entry) { return overNoise(entry.second); });
   const std::string where =
       most == after.per_signal.end() ? "" : fmt::format(" ({:.1f} times in {})", overNoise(most->second), most->first);
@@ -391,15 +390,11 @@ Caveats caveatsOf(const Diagnosis& d) {
           modelEffectsWords(d)};
 }
 
-std::vector<std::string> verdictSentences(const Diagnosis& d) {
+std::string verdictSentence(const Diagnosis& d) {
   std::vector<std::string> sentences = answerSentences(d);
   sentences.insert(sentences.begin(), modelEffectsWords(d));
   std::erase(sentences, "");
-  return sentences;
-}
-
-std::string verdictSentence(const Diagnosis& d) {
-  return fmt::format("{}", fmt::join(verdictSentences(d), " "));
+  return fmt::format("{}", fmt::join(sentences, " "));
 }
 
 }  // namespace musclesim

@@ -9,9 +9,9 @@
 
 namespace musclesim {
 
+inline constexpr double stands_out_of_noise = 2;  ///< RMS of a residual over the noise floor, from which on a reader is told of it
+
 /// The answer in a few sentences: stage, effects, gap reduction, remaining gap and alternatives.
-std::vector<std::string> verdictSentences(const Diagnosis& diagnosis);
-/// All of them, joined.
 std::string verdictSentence(const Diagnosis& diagnosis);
 /// The answer in the sense of Diagnosis::verdict, the most important sentence first; some may be empty.
 std::vector<std::string> answerSentences(const Diagnosis& diagnosis);
@@ -21,13 +21,12 @@ struct Caveats {
   std::string numbers;   ///< numbers of the model that are off
   std::string none;      ///< probability that no known effect is the cause
   std::string others;    ///< explanations that are as good
-  std::string unsteady;  ///< the motion depends on the step size
+  std::string unsteady;  ///< the motion is sensitive
   std::string model;     ///< effects that the model has already
 };
 Caveats caveatsOf(const Diagnosis& diagnosis);
-/// Whether the first place is more probable than all others together.
-bool isTold(const std::vector<Place>& where);
-/// Whether, besides, the signals rule out all other places; command and pressure count as one place.
+/// Whether the first place is more probable than all others together and the signals rule out all others; command and pressure count as
+/// one.
 bool isLocated(const std::vector<Place>& where);
 /// Whether the gap is located and this stage is, or may be, the place.
 bool mayBeAt(const std::vector<Place>& where, const std::string& stage);
