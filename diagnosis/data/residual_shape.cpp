@@ -67,10 +67,13 @@ double usualStep(const std::vector<double>& times) {
   return *middle;
 }
 
-/// Rows at whole multiples of a step from the first, NaN where there is none. Empty if rows lie between the multiples.
+/// Rows at whole multiples of a step from the first, NaN where there is none. Empty if rows lie between the multiples, or if pauses take
+/// far more time than the rows.
 std::vector<double> onGrid(const std::vector<double>& times, const std::vector<double>& values, double step_s) {
   constexpr double beside = 0.1;  // steps
+  constexpr double most_steps_per_row = 10;
   std::vector<double> grid;
+  if (times.back() - times.front() > most_steps_per_row * step_s * static_cast<double>(times.size())) return {};
   for (std::size_t i = 0; i < times.size(); ++i) {
     const double steps = (times[i] - times.front()) / step_s;
     if (std::abs(steps - std::round(steps)) > beside) return {};

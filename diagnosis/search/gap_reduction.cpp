@@ -19,7 +19,7 @@ constexpr int draw_count = 1000;
 constexpr double block_s = 1;
 constexpr int round_count = 4;
 
-/// Sums of squares of one bootstrap block, before and after, means over signals.
+/// Sums of squares of one bootstrap block, before and after, per signal.
 struct BootstrapBlock {
   std::map<int, std::array<double, 3>> sums;  ///< before, after, rows
 };

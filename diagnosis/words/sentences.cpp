@@ -243,8 +243,7 @@ std::string unsteadyWords(const Unsteady& unsteady) {
   if (unsteady.share_of_gap < worth_saying) return "";
   return fmt::format(
       "Under these commands the simulated motion is sensitive: {} {} by {:.0f} times the noise, {:.0f} % of the gap, as happens after "
-      "impacts "
-      "on stops. Such motions hardly distinguish causes; record gentler ones.",
+      "impacts on stops. Such motions hardly distinguish causes; record gentler ones.",
       unsteady.by == Unsteady::Change::steps ? "internal steps twice as long move" : "muscles that pull 0.1 % harder move", unsteady.signal,
       unsteady.in_sigmas, 100 * unsteady.share_of_gap);
 }
