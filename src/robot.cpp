@@ -45,9 +45,14 @@ void printOddities(const std::vector<std::string>& found) {
 /// Muscles rub although no robot file says so.
 void printFriction(const Robot& robot) {
   std::set<double> frictions_N;
-  for (const Actuator* muscle : robot.actuators()) frictions_N.insert(muscle->settings().slider_friction_N);
+  bool has_chain = false;
+  for (const Actuator* muscle : robot.actuators()) {
+    frictions_N.insert(muscle->settings().slider_friction_N);
+    has_chain = has_chain || !muscle->line();
+  }
   if (!frictions_N.empty())
-    fmt::print("friction within the muscles: {:.4g} N (muscle.slider_friction_N; in each link of a chain)\n", fmt::join(frictions_N, ", "));
+    fmt::print("friction within the muscles: {:.4g} N (muscle.slider_friction_N{})\n", fmt::join(frictions_N, ", "),
+               has_chain ? "; in each link of a chain" : "");
 }
 
 /// How far numbers may be off. A diagnosis may take another number that is wrong for a cause.
