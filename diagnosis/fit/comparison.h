@@ -74,7 +74,7 @@ class Comparison {
   /// begins with the coarsest steps and tolerates a tenth of a signal's gap where that is more than those sigmas. Where even medium steps
   /// change the motion, the change that they make is added to the noise of every block (as squares): the model is not known any better, so
   /// that medium steps serve there too. A robot of few internal steps is always simulated in fine ones. There the change that muscles a
-  /// thousandth stronger make is added to the noise, if it is more than a few sigmas of a signal and a hundredth of its motion. Call once.
+  /// thousandth stronger make is added to the noise, if it is more than a few sigmas of a signal and a tenth of its motion. Call once.
   /// A model that diverges in coarse steps is simulated in fine ones. `nominal` is the fine prediction of the model without effects.
   void goCoarse(const Eigen::VectorXd& nominal, Purpose purpose = Purpose::fitting);
   Fidelity fidelity() const { return fidelity_; }

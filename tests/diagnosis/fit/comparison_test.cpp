@@ -180,13 +180,13 @@ TEST_F(Rig, WhatTheStepChangesCountsAsNoiseWhereTheModelIsUnsteady) {
   EXPECT_NEAR(both.blocks().front().sigma, std::hypot(sigma, change), 1e-12);
 }
 
-/// An undamped elbow of massless muscles for 6 s; commands of both muscles from the number of the row.
+/// An undamped elbow of massless muscles for 12 s; commands of both muscles from the number of the row.
 Recording ofLightElbow(const std::function<std::array<double, 2>(int row)>& commands) {
   Recording plan;
   plan.info.robot = "elbow";
   plan.info.robot_parameters = {{"muscle.model", std::string("line")}};
   plan.signals = {{"command_0", {}}, {"command_1", {}}};
-  for (int row = 0; row < 600; ++row) {
+  for (int row = 0; row < 1200; ++row) {
     plan.time_s.push_back(0.01 * row);
     const auto [one, other] = commands(row);
     plan.signals[0].values.push_back(one);
@@ -200,8 +200,8 @@ Recording ofLightElbow(const std::function<std::array<double, 2>(int row)>& comm
 
 TEST(SensitiveMotion, CountsAsNoiseWhatSlightlyStrongerMusclesChange) {
   std::vector<std::array<double, 2>> drawn;
-  RandomStream random(3, "commands");
-  for (int k = 0; k < 15; ++k) drawn.push_back({random.uniform(), random.uniform()});
+  RandomStream random(5, "commands");
+  for (int k = 0; k < 30; ++k) drawn.push_back({random.uniform(), random.uniform()});
   const auto jumping = [&](int row) { return drawn[static_cast<std::size_t>(row / 40)]; };
   const auto gentle = [](int row) {
     const double wave = 0.1 * std::sin(0.01 * row);
@@ -211,7 +211,7 @@ TEST(SensitiveMotion, CountsAsNoiseWhatSlightlyStrongerMusclesChange) {
     const auto commands = [&](int row) { return jumps ? jumping(row) : gentle(row); };
     const DiagnosisOptions options;
     const Plant plant({ofLightElbow(commands), ofLightElbow([&](int row) { return commands(row / 2); })}, options);
-    Comparison all(plant, {{0, 0, 600}});
+    Comparison all(plant, {{0, 0, 1200}});
     const double sigma = all.blocks().front().sigma;
     all.goCoarse(all.predicted(Model{}));
     EXPECT_EQ(all.unsteady().signal, jumps ? "angle_elbow_deg" : "");

@@ -135,12 +135,13 @@ TEST(Search, GivesTheSameBitsWithOneAndTwoThreads) {
   EXPECT_EQ(one.search.noneOfThese(), two.search.noneOfThese());
 }
 
-/// Recordings of the length of one muscle of an arm of ten lines, 0.6 s each. The arm knows no tolerances.
-std::vector<Recording> armRecordings(const std::vector<std::string>& files, const std::vector<ActiveEffect>& effects, double length_gain) {
+/// Recordings of the length of one muscle of a robot of lines, 0.6 s each.
+std::vector<Recording> lineRecordings(const std::string& robot, int muscle_count, const std::vector<std::string>& files,
+                                      const std::vector<ActiveEffect>& effects, double length_gain) {
   Recording plan;
-  plan.info.robot = "arm";
+  plan.info.robot = robot;
   plan.info.robot_parameters = {{"muscle.model", std::string("line")}};
-  for (int muscle = 0; muscle < 10; ++muscle) {
+  for (int muscle = 0; muscle < muscle_count; ++muscle) {
     Signal& command = plan.signals.emplace_back(Signal{"command_" + std::to_string(muscle), {}});
     for (int row = 0; row < 60; ++row) command.values.push_back(row < 20 ? 0.3 : 0.3 + 0.03 * muscle);
   }
@@ -161,24 +162,26 @@ std::vector<Recording> armRecordings(const std::vector<std::string>& files, cons
   return recordings;
 }
 
+/// The arm knows no tolerances.
 TEST(Search, NeedsNoNumbersWithATolerance) {
-  const Diagnosis found = diagnose(armRecordings({"first.csv", "second.csv"}, {}, 1.02), planted::few({"sensor_gain", "force_gain"}));
+  const Diagnosis found =
+      diagnose(lineRecordings("arm", 10, {"first.csv", "second.csv"}, {}, 1.02), planted::few({"sensor_gain", "force_gain"}));
   EXPECT_EQ(found.chosen, std::vector<std::string>{"sensor_gain@signal_length_3"}) << diagnosisSummary(found);
   EXPECT_TRUE(found.numbers.empty());
 }
 
 /// Of many hypotheses only some are screened on all segments; a set may have a member that was not.
 TEST(Search, GoesOnFromAnEffectThatWasNotScreened) {
-  const ActiveEffect slow{"valve_lag", "muscle_3", {{"fill_time_constant_s", 0.05}, {"vent_time_constant_s", 0.05}}};
-  DiagnosisOptions options = planted::few({"valve_lag"});
-  options.earlier = {{"valve_lag", "muscle_9", {{"fill_time_constant_s", 0.02}, {"vent_time_constant_s", 0.02}}}};
-  const Plant plant(armRecordings({"first.csv", "second.csv", "third.csv"}, {slow}, 1), options);
+  const ActiveEffect slow{"flow_limit", "muscle_3", {{"fill_rate_per_s", 0.4}, {"vent_rate_per_s", 0.4}}};
+  DiagnosisOptions options = planted::few({"flow_limit"});
+  options.earlier = {{"flow_limit", "muscle_0", {{"fill_rate_per_s", 1.0}, {"vent_rate_per_s", 1.0}}}};
+  const Plant plant(lineRecordings("pulley_arm", 6, {"first.csv", "second.csv", "third.csv"}, {slow}, 1), options);
   Search search(plant, options, [] {});
   search.screen();
-  const auto earlier = std::ranges::find(search.hypotheses(), "valve_lag@muscle_9", &Hypothesis::label) - search.hypotheses().begin();
+  const auto earlier = std::ranges::find(search.hypotheses(), "flow_limit@muscle_0", &Hypothesis::label) - search.hypotheses().begin();
   ASSERT_EQ(search.catalogue().sensitivities.at(static_cast<std::size_t>(earlier)).per_strength.front(), nullptr);
   search.decide();
-  EXPECT_EQ(search.causes().labelsOf(search.explanations().front().members), Labels{"valve_lag@muscle_3"});
+  EXPECT_EQ(search.causes().labelsOf(search.explanations().front().members), Labels{"flow_limit@muscle_3"});
 }
 
 }  // namespace
