@@ -216,12 +216,13 @@ void Comparison::goCoarse(const Eigen::VectorXd& nominal, Purpose purpose) {
 
 /// Whether what slightly stronger muscles change stands out of the noise of a signal, and is out of proportion to its motion.
 bool Comparison::isSensitive(const Eigen::VectorXd& change) const {
-  // Of the motion, for muscles stronger by a thousandth: an error of a percent, as real models have, moves the signal as far as it moves.
-  constexpr double hundredfold = 0.1;
+  // The forces change by a thousandth. If the signal then changes by a tenth of its motion, an error of a percent in the forces, which a
+  // real model may have, changes it by as much as its whole motion: the recording tells nothing there.
+  constexpr double share_of_motion = 0.1;
   const auto spread = [](const auto& values) { return std::sqrt((values.array() - values.mean()).square().mean()); };
   return std::ranges::any_of(blocks_, [&](const Block& block) {
     const auto changed = change.segment(block.first, block.count()), moved = nominal_.segment(block.first, block.count());
-    return block.isReading() && spread(changed) > std::max(few_sigmas * block.sigma, hundredfold * spread(moved));
+    return block.isReading() && spread(changed) > std::max(few_sigmas * block.sigma, share_of_motion * spread(moved));
   });
 }
 

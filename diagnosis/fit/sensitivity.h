@@ -30,7 +30,7 @@ using OnSimulation = std::function<void()>;
 /// Simulates every hypothesis once or a few times on the comparison's segments; sensor effects of one id on different signals share a
 /// simulation. `nominal` is the prediction of `base`, the model to which the hypotheses are added. It also
 /// - drops strengths with a negligible influence compared with another one of the hypothesis (a force across the plane in which an elbow
-///   moves), and those that act like another one,
+///   moves), and strengths that act like another one of the hypothesis,
 /// - weakens strengths that change a signal by much more than the residual, because their response need not be proportional, and those with
 ///   which the model diverges,
 /// - simulates times, and sole strengths that seem useless, at three times their typical value, too,

@@ -220,8 +220,10 @@ void Plant::compareSignals() {
     std::vector<std::string> unknown = unknownSignalNotes(recording, reference_->robot());
     // A misspelt column would leave pressures alone, which agree where the motion may not.
     if (!unknown.empty() && std::ranges::none_of(signals_, [](const ComparedSignal& signal) { return isMotion(signal.name); }))
-      throw BadFile(recording.file, unknown.front().substr(recording.file.size() + 2) +
-                                        "; no other column is of a motion. Correct its name, or leave it out with --ignore-columns");
+      throw BadFile(recording.file,
+                    fmt::format("{}{} No other column is of a motion: correct the name, or leave the column out with "
+                                "--ignore-columns",
+                                unknown.front().substr(recording.file.size() + 2), unknown.front().ends_with('?') ? "" : "."));
     std::ranges::move(unknown, std::back_inserter(notes_));
   }
   if (signals_.empty())

@@ -23,9 +23,12 @@ struct SignWords {
   std::string sentence;
 };
 
-/// Where something else is left, and no other cause would do as well.
+/// Where the motion is sensitive or something else is left, and no other cause would do as well.
 std::string sentenceOfPart(const Diagnosis& d) {
   const bool are_several = d.chosen.size() > 1;
+  if (isNoticeable(d.unsteady))
+    return fmt::format("The motion is sensitive: believe the {} only as far as the percentages below say, and record gentler motions.",
+                       are_several ? "causes" : "cause");
   const char *causes = are_several ? "causes" : "cause", *their = are_several ? "their" : "its";
   const std::vector<FoundEffect> shown = shownEffects(d);
   if (std::ranges::all_of(shown, [](const FoundEffect& effect) { return effect.probability >= nearly_sure; }))

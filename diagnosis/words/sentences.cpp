@@ -86,6 +86,11 @@ bool isBeforeTheForce(const std::string& stage) {
 
 }  // namespace
 
+bool isNoticeable(const Unsteady& unsteady) {
+  constexpr double share_of_gap = 0.1;
+  return unsteady.share_of_gap >= share_of_gap;
+}
+
 bool isLocated(const std::vector<Place>& where) {
   if (!isTold(where) || where.front().is_ruled_out) return false;
   const std::vector<std::string> others = othersPossible(where);
@@ -239,8 +244,7 @@ std::string otherwise(const Diagnosis& d) {
 
 /// A warning if the motion is so sensitive that the step size, or slightly stronger muscles, change it by a noticeable share of the gap.
 std::string unsteadyWords(const Unsteady& unsteady) {
-  constexpr double worth_saying = 0.1;
-  if (unsteady.share_of_gap < worth_saying) return "";
+  if (!isNoticeable(unsteady)) return "";
   return fmt::format(
       "Under these commands the simulated motion is sensitive: {} {} by {:.0f} times the noise, {:.0f} % of the gap, as happens after "
       "impacts on stops. Such motions hardly distinguish causes; record gentler ones.",

@@ -25,6 +25,8 @@ struct Caveats {
   std::string model;     ///< effects that the model has already
 };
 Caveats caveatsOf(const Diagnosis& diagnosis);
+/// Whether a sensitive motion makes a tenth of the gap or more, so that a reader is warned.
+bool isNoticeable(const Unsteady& unsteady);
 /// Whether the first place is more probable than all others together and the signals rule out all others; command and pressure count as
 /// one.
 bool isLocated(const std::vector<Place>& where);

@@ -60,6 +60,10 @@ TEST(Report, SignTellsHowFarTheAnswerCanBeBelieved) {
   d.none_of_these = 0.5;
   EXPECT_TRUE(contains(diagnosisReport(d), "<strong>Explained in part</strong>")) << "it holds too little on the held-out recording";
   d = sampleDiagnosis();
+  d.unsteady = {"angle_elbow_deg", 50, 0.3};
+  EXPECT_TRUE(contains(diagnosisReport(d), "<strong>Explained in part</strong>")) << "small errors move the model by a part of the gap";
+  EXPECT_TRUE(contains(diagnosisReport(d), "record gentler motions"));
+  d = sampleDiagnosis();
   d.partial = true;
   EXPECT_TRUE(contains(diagnosisReport(d), "<strong>Cannot tell</strong>"));
   EXPECT_TRUE(contains(diagnosisReport(answer(Verdict::unexplained)), "<strong>Cannot tell</strong>"));
