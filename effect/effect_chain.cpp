@@ -13,6 +13,7 @@
 #include "musclesim/base/units.h"
 #include "musclesim/effect/catalogue.h"
 #include "musclesim/robot/robot.h"
+#include "pressure/muscle_air.h"
 #include "sensor_stage.h"
 
 namespace musclesim {
@@ -31,6 +32,7 @@ struct EffectChain::Muscle {
   const Actuator& actuator;
   ForceStack forces;
   LengthRate length_rate;
+  MuscleAir* air = nullptr;  ///< the effect whose balance holds the terms of all others; null without such effects
 };
 
 EffectChain::EffectChain(World& world, std::vector<ActiveEffect> effects)
@@ -80,6 +82,7 @@ void EffectChain::addObject(const Planned& planned, EffectPlace place) {
     case Stage::command:
       return command_.push_back(as<RatioEffect>(std::move(effect), info));
     case Stage::pressure:
+      if (auto* air = dynamic_cast<MuscleAir*>(effect.get())) joinBalance(*muscles_[static_cast<std::size_t>(place.muscle)], *air);
       return pressure_.push_back(as<RatioEffect>(std::move(effect), info));
     case Stage::force:
       return muscles_[static_cast<std::size_t>(place.muscle)]->forces.add(as<ForceEffect>(std::move(effect), info));
@@ -88,6 +91,14 @@ void EffectChain::addObject(const Planned& planned, EffectPlace place) {
     case Stage::sensor:
       return sensors_->add(place.signal, as<SensorEffect>(std::move(effect), info));
   }
+}
+
+/// The first effect on a muscle's air holds its balance, the others become terms of it.
+void EffectChain::joinBalance(Muscle& muscle, MuscleAir& effect) {
+  if (!muscle.air)
+    muscle.air = &effect;
+  else if (effect.isTerm())
+    muscle.air->takeUp(effect);
 }
 
 /// Takes in muscles that have been built since the last call.

@@ -22,6 +22,7 @@
 #include "listing.h"
 #include "musclesim/diagnosis/diagnosis.h"
 #include "musclesim/robot/robot_file.h"
+#include "number_instead.h"
 #include "odd_recording.h"
 #include "tune.h"
 #include "unknown_start.h"
@@ -209,6 +210,8 @@ class Run {
     listNumbers(plant_, offer_.explanation, diagnosis_);
     listTrials(search_, diagnosis_);
     listEffects(search_, heldOut(), options_, diagnosis_);
+    if (diagnosis_.verdict == Verdict::effects_found && !plant_.interrupted())
+      diagnosis_.numbers_instead = numbersInstead(search_, options_.job_count, [this] { monitor_.count(); });
     if (!plant_.interrupted() && unknown_starts_.seconds.empty()) proposeExperiment();
   }
 

@@ -99,6 +99,10 @@ Json toJson(const FittedNumber& number) {
           {"in_tolerances", number.in_tolerances}};
 }
 
+Json toJson(const NumberInstead& number) {
+  return {{"name", number.name}, {"unit", number.unit}, {"given", number.given}, {"instead", number.instead}, {"effect", number.effect}};
+}
+
 template <class Value>
 Json listOf(const std::vector<Value>& values) {
   Json list = Json::array();
@@ -150,6 +154,7 @@ std::string diagnosisJson(const Diagnosis& d, const std::string& schedule_file) 
   }
   if (d.remainder.in_sigmas > 0) json["remainder"] = toJson(d.remainder);
   if (!d.numbers.empty()) json["numbers"] = listOf(d.numbers);
+  if (!d.numbers_instead.empty()) json["numbers_instead"] = listOf(d.numbers_instead);
   if (!d.tuned.empty()) json["tuned"] = listOf(d.tuned);
   if (!d.odd_recordings.empty()) json["odd_recordings"] = d.odd_recordings;
   if (!d.unknown_start.empty()) json["unknown_start"] = d.unknown_start;

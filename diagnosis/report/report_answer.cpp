@@ -147,7 +147,8 @@ std::string sureAnswer(const Diagnosis& d, const Caveats& caveats) {
     text +=
         fmt::format("<p>A residual is called noise up to {} times its {}, {} times where the floor was estimated from quiet rows.{}</p>",
                     out_of_noise, term("floor"), out_of_estimated_noise, largestResidual(d));
-  text += paragraph(caveats.none) + paragraph(caveats.numbers) + paragraph(caveats.unsteady) + paragraph(caveats.model);
+  text += paragraph(caveats.none) + paragraph(caveats.numbers) + paragraph(caveats.instead) + paragraph(caveats.unsteady) +
+          paragraph(caveats.model);
   if (d.verdict == Verdict::unexplained && text.empty()) return "<p>No explanation is believed.</p>";
   return text;
 }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 
 #include "../../base/parallel.h"
 #include "search.h"
@@ -85,6 +86,7 @@ void Search::fitFinalists() {
   dropHopeless();
   fitAll(explanations_, [this](Explanation& explanation) { fitFinely(explanation); });
   tryEarlier();
+  tryEffectsOfTheBest();
   tryOtherStrengths();
   tryVariants();
   tryFurtherMechanisms();
@@ -224,6 +226,31 @@ void Search::tryWithoutOne() {
 /// The earlier finding with the values that were given: the search fitted it in coarse steps, from where another minimum may be nearer.
 void Search::tryEarlier() {
   if (!options_.earlier.empty()) keepIfBetter({earlierFinding()});
+}
+
+/// Explanations near the best one, each with an effect more that only the best one has: two sets that are equally good may differ in two
+/// effects that belong together. Example: one muscle's pressure is too low and the other muscle too weak, or the sensor of the pressure
+/// reads too little and the other muscle is mounted too long; a payload acts in both, but was only tried beside the second.
+void Search::tryEffectsOfTheBest() {
+  if (explanations_.empty() || plant_.interrupted()) return;
+  std::ranges::stable_sort(explanations_, std::greater<>{}, &Explanation::score);
+  const Explanation& best = explanations_.front();
+  const Model model = causes_.modelOf(best);
+  std::vector<Explanation> larger;
+  for (const Explanation& near : explanations_) {
+    if (near.score < best.score - near_best || near.members.empty() || static_cast<int>(near.members.size()) >= options_.max_effects)
+      continue;
+    for (std::size_t m = 0; m < best.members.size(); ++m) {
+      if (!fitsBeside(best.members[m], near.members)) continue;
+      Explanation one = causes_.with(near, best.members[m], model.effects[m].parameters);
+      if (sameAmong(explanations_, one) == explanations_.end()) larger.push_back(std::move(one));
+    }
+  }
+  const double least_score = best.score - near_best;
+  fitAll(larger, [&](Explanation& one) { fitRoughly(one, least_score); });
+  std::erase_if(larger, [&](const Explanation& one) { return one.score < least_score; });
+  fitAll(larger, [this](Explanation& one) { fitFinely(one); });
+  std::ranges::move(larger, std::back_inserter(explanations_));
 }
 
 /// Evaluates each start. Where it is better than the same set among the explanations, or that set is new, fits it in fine steps and takes

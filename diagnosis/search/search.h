@@ -85,7 +85,7 @@ class Search {
     std::size_t count;                                      ///< labels at most, besides some of each stage
     int variants;                                           ///< of each label
     const std::vector<Sensitivity>* beside_near = nullptr;  ///< known changes beside an explanation that is near, where there are any
-    std::string place = {};                                 ///< Hypothesis::place() of which all are simulated, whatever they promise
+    std::vector<std::string> places = {};                   ///< Hypothesis::place() of which all are simulated, whatever they promise
   };
   /// A linear model about one explanation, and the meaning of its columns.
   struct Surroundings {
@@ -122,7 +122,7 @@ class Search {
   static std::vector<std::size_t> inOrderOf(const std::vector<double>& costs);
   std::vector<std::size_t> worthSimulatingBeside(const Surroundings& around, const std::vector<LinearModel::Column>& columns,
                                                  const Neighbours& neighbours) const;
-  std::vector<std::size_t> unscreenedBeside(const Explanation& base, const std::string& place) const;
+  std::vector<std::size_t> unscreenedBeside(const Explanation& base, const std::vector<std::string>& places) const;
   std::vector<Sensitivity> changesBeside(const Explanation& base, const std::vector<std::size_t>& indices) const;
   Proposal proposed(const Surroundings& around, const std::vector<std::size_t>& kept, const std::vector<std::size_t>& added) const;
 
@@ -160,8 +160,9 @@ class Search {
   std::vector<Proposal> exchanged(const Explanation& base) const;
   std::vector<Proposal> standIns(const Explanation& base, std::size_t member, const std::vector<Sensitivity>& beside_all);
   std::vector<Proposal> allStandIns(const Explanation& base, std::size_t member, const std::vector<Sensitivity>& beside_all);
+  std::vector<std::string> placesLike(std::size_t hypothesis) const;
   bool predictResidual(Explanation& explanation) const;
-  std::vector<Proposal> additionsAt(const std::string& place, const Surroundings& around, std::size_t count) const;
+  std::vector<Proposal> additionsAt(const std::vector<std::string>& places, const Surroundings& around, std::size_t count_per_place) const;
   std::vector<Proposal> bestAdded(const Surroundings& around) const;
   void tryStandIns();
 
@@ -189,6 +190,7 @@ class Search {
   void tryExchanged();
   void tryWithoutOne();
   void tryEarlier();
+  void tryEffectsOfTheBest();
   void keepIfBetter(std::vector<Explanation> ones);
   void polish();
   void weigh();

@@ -1,6 +1,7 @@
 // Stand-ins: every member of the likely sets is replaced by what could act in its place.
 #include <algorithm>
 #include <iterator>
+#include <string_view>
 
 #include "../../base/parallel.h"
 #include "search.h"
@@ -81,19 +82,40 @@ std::vector<Search::Proposal> Search::exchanged(const Explanation& base) const {
   return result;
 }
 
+/// The member's place, and the place that the same readings may come from: if a pressure in one muscle is wrong, its sensor may be, and the
+/// reverse. Only the motion tells these apart, and other members can take up what it tells.
+std::vector<std::string> Search::placesLike(std::size_t hypothesis) const {
+  const Hypothesis& one = causes_.hypotheses[hypothesis];
+  std::vector<std::string> places = {one.place()};
+  constexpr std::string_view muscle = "muscle_", reading = "signal_pressure_";
+  const auto componentLike = [&](std::string_view own, std::string_view other) {
+    return one.component().starts_with(own) ? std::string(other) + one.component().substr(own.size()) : std::string();
+  };
+  const Stage stage = one.info().stage;
+  const std::string like = stage == Stage::pressure ? componentLike(muscle, reading)
+                           : stage == Stage::sensor ? componentLike(reading, muscle)
+                                                    : std::string();
+  const auto found = std::ranges::find_if(causes_.hypotheses, [&](const Hypothesis& other) {
+    return other.component() == like && (other.info().stage == Stage::pressure || other.info().stage == Stage::sensor);
+  });
+  if (found != causes_.hypotheses.end()) places.push_back(found->place());
+  return places;
+}
+
 /// The effects that, alone or as a pair, explain best what the set leaves unexplained without one member, and the nearest of those of the
-/// member's place: flow limits and friction do not act in proportion, so that little follows from what they change beside no effect.
-/// `beside_all` are the changes that the catalogue makes beside all members. Every rest is tried once for each place.
+/// places like the member's: flow limits and friction do not act in proportion, so that little follows from what they change beside no
+/// effect. `beside_all` are the changes that the catalogue makes beside all members. Every rest is tried once for each place.
 std::vector<Search::Proposal> Search::standIns(const Explanation& base, std::size_t member, const std::vector<Sensitivity>& beside_all) {
-  const std::string place = causes_.hypotheses[base.members[member]].place();
+  std::vector<std::string> places = placesLike(base.members[member]);
   Explanation rest = causes_.without(base, member);
   const std::set<std::string> labels = causes_.labelsOf(rest.members);
-  if (!places_tried_.insert({labels, place}).second) return {};
-  if (rest.members.empty()) return additionsAt(place, about_nothing_.front(), causes_.hypotheses.size());
+  std::erase_if(places, [&](const std::string& place) { return !places_tried_.insert({labels, place}).second; });
+  if (places.empty()) return {};
+  if (rest.members.empty()) return additionsAt(places, about_nothing_.front(), causes_.hypotheses.size());
   if (!predictResidual(rest)) return {};
   const bool is_new = stood_in_.insert(labels).second;
-  const Surroundings around = surroundingsOf(rest, {is_new ? beside_rest_count : 0, variant_count, &beside_all, place});
-  std::vector<Proposal> result = additionsAt(place, around, same_place_count);
+  const Surroundings around = surroundingsOf(rest, {is_new ? beside_rest_count : 0, variant_count, &beside_all, places});
+  std::vector<Proposal> result = additionsAt(places, around, same_place_count);
   if (is_new)
     for (Proposal& proposal : bestAdded(around))
       if (std::ranges::none_of(result, [&](const Proposal& other) { return other.start.members == proposal.start.members; }))
@@ -101,15 +123,15 @@ std::vector<Search::Proposal> Search::standIns(const Explanation& base, std::siz
   return result;
 }
 
-/// Replaces the member by each effect of its place, and returns the sets that have not been fitted yet. All of them are worth a fit,
-/// because linear models can promise ten nats too little. Example: dry friction turns a motion into steps. A dead time of 0.16 s shifts
-/// them; to replace it by one of 0.06 s and a lag is no small change, although both fit nearly the same readings.
+/// Replaces the member by each effect of the places like its own, and returns the sets that have not been fitted yet. All of them are worth
+/// a fit, because linear models can promise ten nats too little. Example: dry friction turns a motion into steps. A dead time of 0.16 s
+/// shifts them; to replace it by one of 0.06 s and a lag is no small change, although both fit nearly the same readings.
 std::vector<Search::Proposal> Search::allStandIns(const Explanation& base, std::size_t member, const std::vector<Sensitivity>& beside_all) {
-  const std::string place = causes_.hypotheses[base.members[member]].place();
+  const std::vector<std::string> places = placesLike(base.members[member]);
   Explanation rest = causes_.without(base, member);
   if (rest.members.empty() || !predictResidual(rest)) return {};  // single effects have all been fitted
-  const Surroundings around = surroundingsOf(rest, {0, variant_count, &beside_all, place});
-  std::vector<Proposal> result = additionsAt(place, around, causes_.hypotheses.size());
+  const Surroundings around = surroundingsOf(rest, {0, variant_count, &beside_all, places});
+  std::vector<Proposal> result = additionsAt(places, around, causes_.hypotheses.size());
   std::erase_if(result, [&](const Proposal& proposal) { return sameAmong(pool_, proposal.start) != pool_.end(); });
   return result;
 }
@@ -124,11 +146,18 @@ bool Search::predictResidual(Explanation& explanation) const {
   return true;
 }
 
-/// The nearest additions of one place.
-std::vector<Search::Proposal> Search::additionsAt(const std::string& place, const Surroundings& around, std::size_t count) const {
-  std::vector<Proposal> result = additions(around);
-  std::erase_if(result, [&](const Proposal& proposal) { return causes_.hypotheses[proposal.start.members.back()].place() != place; });
-  return nearest(std::move(result), count);
+/// The nearest additions of each of the places.
+std::vector<Search::Proposal> Search::additionsAt(const std::vector<std::string>& places, const Surroundings& around,
+                                                  std::size_t count_per_place) const {
+  const std::vector<Proposal> all = additions(around);
+  std::vector<Proposal> result;
+  for (const std::string& place : places) {
+    std::vector<Proposal> here;
+    for (const Proposal& proposal : all)
+      if (causes_.hypotheses[proposal.start.members.back()].place() == place) here.push_back(proposal);
+    std::ranges::move(nearest(std::move(here), count_per_place), std::back_inserter(result));
+  }
+  return result;
 }
 
 /// The best additions of one effect and of two.

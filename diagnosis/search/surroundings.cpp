@@ -185,9 +185,9 @@ std::vector<std::size_t> Search::inOrderOf(const std::vector<double>& costs) {
   return order;
 }
 
-/// Hypotheses that were not screened (there are too many components), but may act beside the base: in `place`, or as the effect of a member
-/// on another component.
-std::vector<std::size_t> Search::unscreenedBeside(const Explanation& base, const std::string& place) const {
+/// Hypotheses that were not screened (there are too many components), but may act beside the base: in one of the places, or as the effect
+/// of a member on another component.
+std::vector<std::size_t> Search::unscreenedBeside(const Explanation& base, const std::vector<std::string>& places) const {
   std::vector<std::size_t> result;
   for (std::size_t i = 0; i < causes_.hypotheses.size(); ++i) {
     const Hypothesis& hypothesis = causes_.hypotheses[i];
@@ -195,7 +195,7 @@ std::vector<std::size_t> Search::unscreenedBeside(const Explanation& base, const
     if (std::ranges::none_of(catalogue_.sensitivities[i].per_strength, is_unknown) || !fitsBeside(i, base.members)) continue;
     const bool is_effect_of_member =
         std::ranges::any_of(base.members, [&](std::size_t member) { return causes_.hypotheses[member].info().id == hypothesis.info().id; });
-    if (hypothesis.place() == place || is_effect_of_member) result.push_back(i);
+    if (std::ranges::find(places, hypothesis.place()) != places.end() || is_effect_of_member) result.push_back(i);
   }
   return result;
 }
@@ -219,15 +219,15 @@ std::vector<std::size_t> Search::worthSimulatingBeside(const Surroundings& aroun
     const Hypothesis& hypothesis = causes_.hypotheses[index];
     std::size_t& of_stage = per_stage[hypothesis.info().stage];
     int& chosen = variants_of_label[hypothesis.label()];
-    const bool is_left_out =
-        hypothesis.place() != neighbours.place && variants_of_label.size() > neighbours.count && of_stage >= beside_per_stage_count;
+    const bool is_left_out = std::ranges::find(neighbours.places, hypothesis.place()) == neighbours.places.end() &&
+                             variants_of_label.size() > neighbours.count && of_stage >= beside_per_stage_count;
     if (chosen == 0 && is_left_out) chosen = neighbours.variants;  // its other variants are left out, too
     if (chosen >= neighbours.variants) continue;
     of_stage += chosen == 0 ? 1 : 0;
     ++chosen;
     result.push_back(index);
   }
-  for (const std::size_t index : unscreenedBeside(around.base, neighbours.place))
+  for (const std::size_t index : unscreenedBeside(around.base, neighbours.places))
     if (variants_of_label[causes_.hypotheses[index].label()]++ < neighbours.variants) result.push_back(index);
   return result;
 }

@@ -40,7 +40,7 @@ const std::vector<EffectWords> effect_words = {
      "leak",
      "{} loses air",
      nullptr,
-     "Air escapes. The regulator, if there is one, replaces it, so the pressure stays somewhat below the command.",
+     "Air escapes. The valve replaces it, but not at once, so the pressure stays somewhat below the command.",
      {{"leak_per_s", "rate of the loss", "a rate of {}"}, {"regulator_time_constant_s", "time constant of the regulator"}}},
     {"pressure_calibration",
      "regulator out of calibration",

@@ -175,6 +175,24 @@ std::string listWords(const std::vector<std::string>& labels) {
   return fmt::format("{} and {} together", fmt::join(words.begin(), words.end() - 1, ", "), words.back());
 }
 
+/// Which numbers that were taken as exact would do what a named effect does.
+std::string numbersInsteadWords(const Diagnosis& d) {
+  std::vector<std::string> clauses;
+  for (auto first = d.numbers_instead.begin(); first != d.numbers_instead.end();) {
+    const auto last = std::find_if(first, d.numbers_instead.end(), [&](const NumberInstead& one) { return one.effect != first->effect; });
+    std::vector<std::string> values;
+    for (auto one = first; one != last; ++one)
+      values.push_back(fmt::format("{} = {:.4g} {} (given as {:.4g})", one->name, one->instead, one->unit, one->given));
+    clauses.push_back(fmt::format("{} would do what {} does", fmt::join(values, " or "), labelWords(first->effect)));
+    first = last;
+  }
+  if (clauses.empty()) return "";
+  return fmt::format(
+      "Numbers that were taken as exact may be the cause instead: {}. Give those that are not known so well a parameter_tolerance in the "
+      "sidecar.",
+      fmt::join(clauses, "; "));
+}
+
 /// One effect or two with their parameters. Those of more would hide what the sentence says; they are listed elsewhere.
 std::string chosenWords(const Diagnosis& d) {
   if (d.chosen.size() > 2) return listWords(d.chosen);
@@ -337,6 +355,7 @@ std::vector<std::string> foundSentences(const Diagnosis& d) {
                       d.chosen.size() > 1 ? "them" : "it", percentWords(d.reduction_percent), intervalWords(d)),
           remainder(d, d.after),
           numbersWords(d),
+          numbersInsteadWords(d),
           standInWords(d),
           otherwise(d)};
 }
@@ -387,6 +406,7 @@ std::string modelEffectsWords(const Diagnosis& d) {
 Caveats caveatsOf(const Diagnosis& d) {
   return {d.verdict == Verdict::effects_found ? remainder(d, d.after) : "",
           numbersWords(d),
+          numbersInsteadWords(d),
           d.verdict == Verdict::effects_found ? standInWords(d) : noneWords(d),
           otherwise(d),
           unsteadyWords(d.unsteady),

@@ -19,6 +19,7 @@ std::vector<std::string> answerSentences(const Diagnosis& diagnosis);
 struct Caveats {
   std::string rest;      ///< what stands out of the noise with the effects found
   std::string numbers;   ///< numbers of the model that are off
+  std::string instead;   ///< numbers taken as exact that may be the cause instead
   std::string none;      ///< probability that no known effect is the cause
   std::string others;    ///< explanations that are as good
   std::string unsteady;  ///< the motion is sensitive

@@ -28,13 +28,16 @@ EffectInfo ValveLag::info() {
       .ignores_motion = true};
 }
 
-double ValveLag::output(double input, const StepTime& time) {
+double ValveLag::filled(double input, const StepTime& time) {
   if (time.h_s <= 0) return pressures_.back();
   double from = input, to = input, share = 1 / (1 + ratio_ + ratio_ * ratio_);
   for (double& pressure : pressures_) {
     const double before = pressure, lag_s = share * (to > pressure ? fill_s_ : vent_s_);
+    const bool loses_air = hasTerms() && &pressure == pressures_.data();
     const double behind = (to - from) * lag_s / time.h_s;  // of an input that goes on like this
-    pressure = lag_s > 0 ? to - behind + (pressure - from + behind) * std::exp(-time.h_s / lag_s) : to;
+    pressure = lag_s <= 0  ? to
+               : loses_air ? pressureAfter(time.h_s, pressure, to, lag_s)
+                           : to - behind + (pressure - from + behind) * std::exp(-time.h_s / lag_s);
     from = before;
     to = pressure;
     share *= ratio_;
@@ -42,9 +45,10 @@ double ValveLag::output(double input, const StepTime& time) {
   return pressures_.back();
 }
 
-double ValveLag::settled(double input) {
-  pressures_.fill(input);
-  return input;
+double ValveLag::settledAir(double input) {
+  const double held = hasTerms() ? heldPressure(input, fill_s_ / (1 + ratio_ + ratio_ * ratio_)) : input;
+  pressures_.fill(held);
+  return held;
 }
 
 }  // namespace musclesim

@@ -19,7 +19,8 @@ EffectInfo VolumeCoupling::info() {
           .signature = "pushing the joint at constant command changes the pressure",
           .source = "polytropic gas in a changing volume; volume from virtual work as in Chou and Hannaford 1996",
           .parameters = {{"polytropic_exponent", "", 0, 0, 2, 1, 1.4, "n; 1: isothermal, 1.4: adiabatic"},
-                         {"regulator_time_constant_s", "s", 0.1, 1e-4, 10, 0.02, 0.5, "tau", true},
+                         {"regulator_time_constant_s", "s", 0.1, 1e-4, 10, 0.02, 0.5,
+                          "tau, where neither a valve lag nor a leak acts on the muscle", true},
                          {"rest_volume_ratio", "", 1, 0.05, 100, 0.5, 3,
                           "v_0, volume at rest length over the change of volume from l_c to rest length", true}},
           .make = [](const EffectValues& values) {
@@ -29,7 +30,7 @@ EffectInfo VolumeCoupling::info() {
 }
 
 void VolumeCoupling::attach(const EffectPlace& place) {
-  MuscleRatioEffect::attach(place);
+  MuscleAir::attach(place);
   contracted_mm_ = actuator().contractedLengthMm();
   range_mm_ = actuator().restLengthMm() - contracted_mm_;
 }
@@ -39,15 +40,13 @@ double VolumeCoupling::relativeVolumeRatePerS() const {
   return -2 * r * lengthRateMmPerS() / range_mm_ / (1 + rest_volume_ratio_ - r * r);
 }
 
-double VolumeCoupling::output(double input, const StepTime& time) {
+AirRate VolumeCoupling::ownRate(double) const {
   const double squeeze_per_s = exponent_ * relativeVolumeRatePerS();
-  const double rate_per_s = 1 / regulator_s_ + squeeze_per_s;
-  const double drive_per_s = input / regulator_s_ - squeeze_per_s * atmosphere_ratio;
-  const double x = rate_per_s * time.h_s;
-  // p(h) = p e^-x + drive h (1 - e^-x)/x. x may be negative: the muscle may shrink faster than the valve lets air out.
-  const double share = std::abs(x) > 1e-12 ? -std::expm1(-x) / x : 1;
-  pressure_ = std::max(0.0, pressure_ * std::exp(-x) + drive_per_s * time.h_s * share);
-  return pressure_;
+  return {squeeze_per_s, -squeeze_per_s * atmosphere_ratio};
+}
+
+double VolumeCoupling::filled(double input, const StepTime& time) {
+  return pressure_ = pressureAfter(time.h_s, pressure_, input, regulator_s_);
 }
 
 }  // namespace musclesim

@@ -133,6 +133,46 @@ TEST(Leak, HoldsLessAndFollowsItsRegulator) {
   }
 }
 
+/// dp/dt = (u - p) / tau - k p: one lag, neither slower than the lag alone nor with a second one behind it.
+TEST(Leak, IsATermOfTheValveLag) {
+  const double tau_s = 0.125, k = 0.8, u = 0.5, before = 0.3, gain = 1 / (1 + k * tau_s);
+  const ActiveEffect lag = {"valve_lag", "all", {{"fill_time_constant_s", tau_s}, {"vent_time_constant_s", tau_s}}};
+  for (const double tau_r_s : {0.02, 0.15}) {
+    const ReplayResult run =
+        replayWith(stepOf("rig", {before}, {u}), {lag, {"leak", "all", {{"leak_per_s", k}, {"regulator_time_constant_s", tau_r_s}}}});
+    for (std::size_t row = 0; row < run.simulated.time_s.size(); ++row) {
+      const double t = sinceStep(run.simulated.time_s[row]);
+      EXPECT_NEAR(valuesOf(run, "pressure_0")[row], gain * (u + (before - u) * std::exp(-t * (1 / tau_s + k))), 1e-12);
+    }
+  }
+}
+
+/// The weaker the leak, the nearer to the lag alone, also with further lags: a fit can go there.
+TEST(Leak, GoesOverIntoTheLagAlone) {
+  for (const double ratio : {0.0, 0.6}) {
+    const ActiveEffect lag = {
+        "valve_lag", "muscle_0", {{"fill_time_constant_s", 0.09}, {"vent_time_constant_s", 0.06}, {"next_lag_ratio", ratio}}};
+    const Recording commands = wavesFor("rig", 0.5);
+    const ReplayResult alone = replayWith(commands, {lag}), weak = replayWith(commands, {lag, {"leak", "all", {{"leak_per_s", 1e-6}}}});
+    for (std::size_t row = 0; row < commands.time_s.size(); ++row)
+      EXPECT_NEAR(valuesOf(weak, "pressure_0")[row], valuesOf(alone, "pressure_0")[row], 1e-7);
+  }
+}
+
+/// Two leaks of a muscle add up, and a lag that acts twice stays two lags.
+TEST(Leak, AddsUp) {
+  const Recording step = stepOf("rig", {0.3}, {0.5});
+  const ReplayResult two = replayWith(step, {{"leak", "all", {{"leak_per_s", 1.0}}}, {"leak", "muscle_0", {{"leak_per_s", 0.5}}}}),
+                     one = replayWith(step, {{"leak", "all", {{"leak_per_s", 1.5}}}});
+  for (std::size_t row = 0; row < step.time_s.size(); ++row)
+    EXPECT_NEAR(valuesOf(two, "pressure_0")[row], valuesOf(one, "pressure_0")[row], 1e-12);
+  const std::map<std::string, Parameter::Value> lag = {{"fill_time_constant_s", 0.1}};
+  const ReplayResult twice = replayWith(step, {{"valve_lag", "all", lag}, {"valve_lag", "muscle_0", lag}});
+  const double t = 0.1;  // since the step; two equal lags leave (1 + t / tau) e^(-t / tau) of it
+  EXPECT_NEAR(valuesOf(twice, "pressure_0")[20], 0.5 - 0.2 * 2 * std::exp(-1.0), 5e-4)
+      << t << " s; the second lag takes what the first delivers as constant within an internal step";
+}
+
 TEST(SupplyDroop, LimitsAllMusclesByTheirCommonDemand) {
   const double droop = 0.1;
   const ReplayResult run = replayWith(stepOf("elbow", {0.9, 0.2}, {0.9, 0.7}), {{"supply_droop", "all", {{"droop", droop}}}});
@@ -162,6 +202,23 @@ TEST(VolumeCoupling, ConservesThePolytropicProductWhereTheValveIsSlow) {
   EXPECT_GT(std::abs(length.back() - length.front()), 5);
   EXPECT_GT(std::abs(valuesOf(run, "pressure_0").back() - 0.5), 0.01);
   for (std::size_t row = 0; row < commands.time_s.size(); ++row) EXPECT_NEAR(product(row), product(0), 0.005 * product(0)) << row;
+}
+
+/// The valve lag takes the place of the effect's own valve.
+TEST(VolumeCoupling, IsATermOfTheValveLag) {
+  ReplayOptions options;
+  options.initial_state = "built";
+  const Recording commands = commandsFor("rig", 0.15, [](double) { return Action{0.5}; });
+  const std::map<std::string, Parameter::Value> slow = {{"fill_time_constant_s", 5.0}, {"vent_time_constant_s", 5.0}};
+  const ReplayResult own =
+      replayWith(commands, {{"volume_coupling", "all", {{"polytropic_exponent", 1.3}, {"regulator_time_constant_s", 5.0}}}}, options);
+  const ReplayResult shared = replayWith(
+      commands,
+      {{"valve_lag", "all", slow}, {"volume_coupling", "all", {{"polytropic_exponent", 1.3}, {"regulator_time_constant_s", 0.02}}}},
+      options);
+  EXPECT_GT(std::abs(valuesOf(own, "pressure_0").back() - 0.5), 0.01);
+  for (std::size_t row = 0; row < commands.time_s.size(); ++row)
+    EXPECT_NEAR(valuesOf(shared, "pressure_0")[row], valuesOf(own, "pressure_0")[row], 1e-12);
 }
 
 TEST(VolumeCoupling, VanishesWithAFastValve) {

@@ -223,6 +223,14 @@ struct Attempt {
   double reduction_percent = 0, reduction_low_percent = 0, reduction_high_percent = 0;
 };
 
+/// A number of the robot's description that was taken as exact. With another value, and everything else fitted anew, the model explains the
+/// fitted recordings as well without one of the named effects.
+struct NumberInstead {
+  std::string name, unit;
+  double given = 0, instead = 0;
+  std::string effect;  ///< "id@component"
+};
+
 struct Diagnosis {
   std::string robot;
   std::vector<std::string> muscle_names;  ///< that the robot gave its muscles, in their order; empty if they only have numbers
@@ -243,6 +251,7 @@ struct Diagnosis {
   std::vector<std::vector<std::string>> ambiguity_sets;  ///< sets of effects that the data cannot tell from the chosen one, that one first
   Remainder remainder;
   std::vector<FittedNumber> numbers;
+  std::vector<NumberInstead> numbers_instead;
   std::vector<RemovalStep> removal;       ///< the chosen effects, added one after another; empty if there are fewer than two
   std::vector<std::string> alternatives;  ///< the same as words, "a@x + b@y"; empty if there is only the chosen one
   std::string model_options;              ///< options of the program for the robot of the recordings: "--robot rig --set rig.load_kg=2"

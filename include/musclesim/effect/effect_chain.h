@@ -14,6 +14,7 @@
 namespace musclesim {
 
 class ForceStack;
+class MuscleAir;
 class SensorStage;
 
 /// Owns the effects' objects and calls them, stage by stage; effects whose parameters are neutral are left out. Within a stage they act in
@@ -67,6 +68,7 @@ class EffectChain final : public RobotEffects {
   struct Planned;
   void requireMuscles();
   void addObject(const Planned& planned, EffectPlace place);
+  static void joinBalance(Muscle& muscle, MuscleAir& effect);
   MuscleInput inputOf(std::size_t muscle, double pressure_ratio, double h_s) const;
   StepTime at(double h_s) const { return {world_.clock().now_s(), h_s}; }
 

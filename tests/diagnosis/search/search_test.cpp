@@ -184,5 +184,45 @@ TEST(Search, GoesOnFromAnEffectThatWasNotScreened) {
   EXPECT_EQ(search.causes().labelsOf(search.explanations().front().members), Labels{"flow_limit@muscle_3"});
 }
 
+/// A leak takes part in the balance of the lag. Were its air replaced by a regulator of its own, a leak of one muscle beside a lag of all
+/// would be a second lag of that muscle.
+TEST(Search, FindsALeakOfOneMuscleBesideALagOfAll) {
+  const std::vector<ActiveEffect> planted = {{"valve_lag", "all", {{"fill_time_constant_s", 0.12}, {"vent_time_constant_s", 0.12}}},
+                                             {"leak", "muscle_1", {{"leak_per_s", 0.8}}}};
+  std::vector<Recording> recordings;
+  for (const double amplitude : {0.05, 0.08, 0.06}) {
+    Recording plan;
+    plan.info.robot = "elbow";
+    plan.info.robot_parameters = {{"muscle.model", std::string("line")}};
+    plan.signals = {{"command_0", {}}, {"command_1", {}}};
+    for (int row = 0; row < 300; ++row) {
+      const double t = 0.01 * row, way = amplitude * (t < 1.5 ? std::sin(4 * t) : std::fmod(t, 0.8) < 0.4 ? 1 : -1);
+      plan.time_s.push_back(t);
+      plan.signals[0].values.push_back(0.4 + way);
+      plan.signals[1].values.push_back(0.4 - way);
+    }
+    ReplayOptions options;
+    options.effects = planted;
+    Recording recording = replayRecording(plan, options).simulated;
+    recording.file = "elbow_" + std::to_string(recordings.size()) + ".csv";
+    recording.info.active_effects.clear();
+    recording.info.noise_std = {{"pressure_0", 0.002}, {"pressure_1", 0.002}, {"angle_elbow_deg", 0.05}};
+    std::erase_if(recording.signals,
+                  [&](const Signal& s) { return !s.name.starts_with("command_") && !recording.info.noise_std.contains(s.name); });
+    for (Signal& signal : recording.signals) {
+      const auto noise = recording.info.noise_std.find(signal.name);
+      RandomStream random(recordings.size(), signal.name);
+      for (double& value : signal.values) value += noise == recording.info.noise_std.end() ? 0 : noise->second * random.normal();
+    }
+    recordings.push_back(std::move(recording));
+  }
+  const Diagnosis found = diagnose(recordings, planted::few({"valve_lag", "leak", "force_gain", "sensor_gain", "transport_delay"}));
+  ASSERT_EQ(std::set(found.chosen.begin(), found.chosen.end()), (Labels{"leak@muscle_1", "valve_lag@all"})) << diagnosisSummary(found);
+  for (const FoundEffect& effect : found.effects) {
+    if (effect.label() == "leak@muscle_1") EXPECT_NEAR(effect.parameters.at("leak_per_s").value, 0.8, 0.15);
+    if (effect.label() == "valve_lag@all") EXPECT_NEAR(effect.parameters.at("fill_time_constant_s").value, 0.12, 0.006);
+  }
+}
+
 }  // namespace
 }  // namespace musclesim

@@ -49,6 +49,19 @@ TEST(VerdictSentence, SaysWhereSignalsSpeakAgainstWhatTheGapLooksLike) {
       "The shape of the gap favours the body stage (hand, 90 %), although the signals contradict it; the signals do not rule out force");
 }
 
+TEST(VerdictSentence, NamesNumbersThatMayBeTheCauseInstead) {
+  Diagnosis d = lagFound();
+  EXPECT_EQ(caveatsOf(d).instead, "");
+  d.numbers_instead = {{"leg.foot_kg", "kg", 1, 1.1484, "payload@hand"},
+                       {"leg.lever_mm", "mm", 30, 27, "payload@hand"},
+                       {"leg.stop_deg", "deg", 60, 55, "joint_stop_offset@joint_knee"}};
+  EXPECT_EQ(caveatsOf(d).instead,
+            "Numbers that were taken as exact may be the cause instead: leg.foot_kg = 1.148 kg (given as 1) or leg.lever_mm = 27 mm (given "
+            "as 30) would do what payload on hand does; leg.stop_deg = 55 deg (given as 60) would do what joint stop offset on joint knee "
+            "does. Give those that are not known so well a parameter_tolerance in the sidecar.");
+  EXPECT_TRUE(contains(verdictSentence(d), caveatsOf(d).instead));
+}
+
 TEST(VerdictSentence, ConfirmsNothingOnDataWithoutAGap) {
   Diagnosis d = lagFound();
   d.verdict = Verdict::unexplained;
