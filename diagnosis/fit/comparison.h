@@ -35,7 +35,7 @@ inline double meanOfBlock(const Eigen::VectorXd& values, Eigen::Index first, Eig
 struct Tolerance {
   double share_of_gap, nats;
 };
-/// Found by conditional logit on plants with known causes; docs/developer/diagnosis.md says on which.
+/// Found by conditional logit on plants with known causes; docs/developer/diagnosis_choices.md says on which.
 inline constexpr std::array<Tolerance, 3> tolerances = {{{0.1, 1.625}, {0.03, 1.125}, {0.01, 1.125}}};
 
 /// The compared rows of some segments. A residual block is one signal in one segment, either row by row or averaged over blocks of rows:

@@ -73,7 +73,7 @@ double shareOfMisfitLeft(const Comparison& comparison, const Eigen::VectorXd& be
 
 std::size_t namedSet(const std::vector<std::set<std::string>>& sets, const std::vector<double>& probabilities) {
   constexpr double as_likely_absent = 0.5;
-  constexpr double tie = 0.2;  // nats, about 5 to 4: where it comes from is told in docs/developer/diagnosis.md
+  constexpr double tie = 0.2;  // nats, about 5 to 4: where it comes from is told in docs/developer/diagnosis_choices.md
   std::map<std::string, double> of_effect;
   for (std::size_t i = 0; i < sets.size(); ++i)
     for (const std::string& effect : sets[i]) of_effect[effect] += probabilities[i];

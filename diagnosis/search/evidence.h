@@ -23,13 +23,13 @@ struct Complexity {
   double places = 0;         ///< ln of the number of components that an effect could act on alone: they share its prior
   constexpr std::array<double, 6> asArray() const { return {parameters, effects, same_place, excess, shared_sensor, places}; }
 };
-/// Nats for one of each; docs/developer/diagnosis.md says on which plants they were found.
+/// Nats for one of each; docs/developer/diagnosis_choices.md says on which plants they were found.
 inline constexpr Complexity prices = {
     .parameters = 1.0, .effects = 3.1, .same_place = 1.0, .excess = 2.0, .shared_sensor = 4.0, .places = 1.0};
 /// ln odds of something else per share of the misfit that an explanation leaves, and the share at which it is as likely as not.
 inline constexpr double per_share_left = 12, share_of_unknown = 0.3;
-/// Where something else acts, the probability that a named effect only stands in for it; docs/developer/diagnosis.md says where it comes
-/// from.
+/// Where something else acts, the probability that a named effect only stands in for it; docs/developer/diagnosis_choices.md says where it
+/// comes from.
 inline constexpr double stand_in_share = 0.6;
 
 /// The probability that something else acts, 1 / (1 + exp(-per_share_left (share_left - share_of_unknown))), where an explanation leaves a
