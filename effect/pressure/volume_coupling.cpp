@@ -15,7 +15,8 @@ EffectInfo VolumeCoupling::info() {
           .summary = "stretching a muscle compresses the air in it",
           .equation =
               "dp/dt = (u - p) / tau - n (p + p_atm) (dV/dt) / V, V ~ 1 + v_0 - r^2, r = (l - l_c) / (l_0 - l_c)    u delivered, p actual, "
-              "l length, l_0 rest length of the force law, l_c where it stops pulling at full pressure",
+              "l length, l_0 rest length of the force law, l_c where it stops pulling at full pressure; with a valve lag or a leak on the "
+              "muscle, the second term is one of that effect's equation",
           .signature = "pushing the joint at constant command changes the pressure",
           .source = "polytropic gas in a changing volume; volume from virtual work as in Chou and Hannaford 1996",
           .parameters = {{"polytropic_exponent", "", 0, 0, 2, 1, 1.4, "n; 1: isothermal, 1.4: adiabatic"},
