@@ -32,7 +32,7 @@ struct EffectChain::Muscle {
   const Actuator& actuator;
   ForceStack forces;
   LengthRate length_rate;
-  MuscleAir* air = nullptr;  ///< the effect whose balance holds the terms of all others; null without such effects
+  MuscleAir* air = nullptr;  ///< while effects are added: the one whose balance takes up the next one; null if there is none
 };
 
 EffectChain::EffectChain(World& world, std::vector<ActiveEffect> effects)
@@ -82,7 +82,7 @@ void EffectChain::addObject(const Planned& planned, EffectPlace place) {
     case Stage::command:
       return command_.push_back(as<RatioEffect>(std::move(effect), info));
     case Stage::pressure:
-      if (auto* air = dynamic_cast<MuscleAir*>(effect.get())) joinBalance(*muscles_[static_cast<std::size_t>(place.muscle)], *air);
+      if (place.muscle >= 0) joinBalance(*muscles_[static_cast<std::size_t>(place.muscle)], dynamic_cast<MuscleAir*>(effect.get()));
       return pressure_.push_back(as<RatioEffect>(std::move(effect), info));
     case Stage::force:
       return muscles_[static_cast<std::size_t>(place.muscle)]->forces.add(as<ForceEffect>(std::move(effect), info));
@@ -93,12 +93,12 @@ void EffectChain::addObject(const Planned& planned, EffectPlace place) {
   }
 }
 
-/// The first effect on a muscle's air holds its balance, the others become terms of it.
-void EffectChain::joinBalance(Muscle& muscle, MuscleAir& effect) {
-  if (!muscle.air)
-    muscle.air = &effect;
-  else if (effect.isTerm())
-    muscle.air->takeUp(effect);
+/// The first effect on a muscle's air holds its balance, those that follow become terms of it, up to an effect of another kind (null).
+void EffectChain::joinBalance(Muscle& muscle, MuscleAir* effect) {
+  if (muscle.air && effect && effect->isTerm())
+    muscle.air->takeUp(*effect);
+  else
+    muscle.air = effect;
 }
 
 /// Takes in muscles that have been built since the last call.

@@ -210,12 +210,19 @@ class Run {
     listNumbers(plant_, offer_.explanation, diagnosis_);
     listTrials(search_, diagnosis_);
     listEffects(search_, heldOut(), options_, diagnosis_);
-    if (diagnosis_.verdict == Verdict::effects_found && !plant_.interrupted())
-      diagnosis_.numbers_instead = numbersInstead(search_, options_.job_count, [this] { monitor_.count(); });
-    if (!plant_.interrupted() && unknown_starts_.seconds.empty()) proposeExperiment();
+    if (plant_.interrupted() || !unknown_starts_.seconds.empty()) return;
+    tryExactNumbers();
+    proposeExperiment();
+  }
+
+  void tryExactNumbers() {
+    if (diagnosis_.verdict != Verdict::effects_found) return;
+    monitor_.phase("trying numbers that were taken as exact", 0);
+    diagnosis_.numbers_instead = numbersInstead(search_, [this] { monitor_.count(); });
   }
 
   void proposeExperiment() {
+    if (diagnosis_.verdict == Verdict::no_gap) return;
     constexpr std::size_t most = 4;
     std::vector<const Explanation*> likely = asGood(search_);
     if (likely.size() < 2) return;

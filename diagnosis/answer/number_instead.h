@@ -9,8 +9,8 @@
 
 namespace musclesim {
 
-/// For every effect of the chosen explanation the numbers, nearest to their given values first, that can take its place on the fitted
-/// recordings. Each is checked by simulation.
-std::vector<NumberInstead> numbersInstead(const Search& search, int job_count, const OnSimulation& on_simulation);
+/// The numbers that can take the place of effects of the chosen explanation on the fitted recordings: those that replace several effects
+/// first, then by effect, nearest to their given values first. Each is checked by simulation.
+std::vector<NumberInstead> numbersInstead(const Search& search, const OnSimulation& on_simulation);
 
 }  // namespace musclesim

@@ -22,7 +22,8 @@ struct Probe {
   Model model;
   struct Target {
     std::size_t hypothesis, strength;
-    int signal;  ///< the only affected signal; -1: all
+    int signal;         ///< the only affected signal; -1: all
+    double amount = 1;  ///< of the strength: the change is divided by it
   };
   std::vector<Target> targets;
 };
@@ -143,6 +144,17 @@ bool shows(const Comparison& comparison, const Hypothesis& hypothesis, std::size
   return (change ? excitationRatio(comparison, *change) : 0) >= least;
 }
 
+/// A probe of one strength at an amount, or at the end of its range if that is nearer; none if not even the typical amount is possible.
+void addProbe(std::vector<Probe>& probes, const Hypothesis& hypothesis, std::size_t index, std::size_t strength, double amount) {
+  const int coordinate = hypothesis.strengths()[strength];
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(hypothesis.coordinateCount());
+  z[coordinate] = amount;
+  const double possible = hypothesis.clamped(z)[coordinate];
+  if (std::abs(possible) < 1) return;
+  z[coordinate] = possible;
+  probes.push_back({{{hypothesis.at(z)}, {}}, {{index, strength, -1, possible}}});
+}
+
 /// Probes of strengths that change nothing at their typical value but would if they were stronger, such as limits that nothing reaches.
 /// `direction` -1: only strengths that may have either sign.
 std::vector<Probe> strongerProbes(const Comparison& comparison, const std::vector<Hypothesis>& hypotheses,
@@ -153,9 +165,7 @@ std::vector<Probe> strongerProbes(const Comparison& comparison, const std::vecto
     for (std::size_t k = 0; k < hypotheses[s].strengths().size(); ++k) {
       const int coordinate = hypotheses[s].strengths()[k];
       if ((direction < 0 && !hypotheses[s].isSigned(coordinate)) || shows(comparison, hypotheses[s], k, sensitivities[s])) continue;
-      Eigen::VectorXd z = Eigen::VectorXd::Zero(hypotheses[s].coordinateCount());
-      z[coordinate] = direction * strong;
-      result.push_back({{{hypotheses[s].at(z)}, {}}, {{s, k, -1}}});
+      addProbe(result, hypotheses[s], s, k, direction * strong);
     }
   }
   return result;
@@ -337,21 +347,20 @@ std::vector<Probe> lateProbes(const std::vector<Hypothesis>& hypotheses, const s
       const bool is_useless = is_sole && sensitivities[s].misfit > useless * misfit;
       if (hypotheses[s].info().stage == Stage::sensor) continue;
       if (!hypotheses[s].isTime(coordinate) && !is_useless) continue;
-      Eigen::VectorXd z = Eigen::VectorXd::Zero(hypotheses[s].coordinateCount());
-      z[coordinate] = late;
-      result.push_back({{{hypotheses[s].at(z)}, {}}, {{s, k, -1}}});
+      addProbe(result, hypotheses[s], s, k, late);
     }
   return result;
 }
 
-/// Probes the hypotheses and adds what they show to their sensitivities, per unit of `strength`.
-void probeInto(std::vector<Sensitivity>& sensitivities, const Comparison& comparison, const std::vector<Probe>& probes, double strength,
+/// Probes the hypotheses and adds what they show to their sensitivities, per typical strength.
+void probeInto(std::vector<Sensitivity>& sensitivities, const Comparison& comparison, const std::vector<Probe>& probes,
                const Eigen::VectorXd& nominal, const Model& base, int job_count, const OnSimulation& on_simulation) {
   const std::vector<Eigen::VectorXd> changes = changesBy(comparison, probes, nominal, base, job_count, on_simulation);
   for (std::size_t i = 0; i < probes.size(); ++i)
     for (const Probe::Target& target : probes[i].targets)
       if (changes[i].size())
-        sensitivities[target.hypothesis].per_strength[target.strength] = shared(only(comparison, changes[i] / strength, target.signal));
+        sensitivities[target.hypothesis].per_strength[target.strength] =
+            shared(only(comparison, changes[i] / target.amount, target.signal));
 }
 
 }  // namespace
@@ -361,15 +370,15 @@ std::vector<Sensitivity> changesOf(const Comparison& comparison, const std::vect
   std::vector<Sensitivity> result(hypotheses.size());
   for (std::size_t s = 0; s < hypotheses.size(); ++s)
     result[s].per_strength.resize(std::max<std::size_t>(1, hypotheses[s].strengths().size()));
-  probeInto(result, comparison, probes(comparison, hypotheses), 1, nominal, base, job_count, on_simulation);
+  probeInto(result, comparison, probes(comparison, hypotheses), nominal, base, job_count, on_simulation);
   return result;
 }
 
 std::vector<Sensitivity> sensitivitiesOf(const Comparison& comparison, std::vector<Hypothesis>& hypotheses, const Eigen::VectorXd& nominal,
                                          const Model& base, int job_count, const OnSimulation& on_simulation) {
   std::vector<Sensitivity> result = changesOf(comparison, hypotheses, nominal, base, job_count, on_simulation);
-  const auto probe = [&](std::vector<Sensitivity>& into, const std::vector<Probe>& probes, double strength) {
-    probeInto(into, comparison, probes, strength, nominal, base, job_count, on_simulation);
+  const auto probe = [&](std::vector<Sensitivity>& into, const std::vector<Probe>& probes) {
+    probeInto(into, comparison, probes, nominal, base, job_count, on_simulation);
   };
   for (Sensitivity& sensitivity : result)
     if (std::ranges::all_of(sensitivity.per_strength, [](const SharedVector& change) { return change != nullptr; })) {
@@ -389,13 +398,13 @@ std::vector<Sensitivity> sensitivitiesOf(const Comparison& comparison, std::vect
   };
   adaptOnlyStrengths([&](std::size_t s) { return result[s].per_strength.front() && !shows(comparison, hypotheses[s], 0, result[s]); },
                      [](OnlyStrength& it) { it.searchThreshold(); });
-  for (const int direction : {1, -1}) probe(result, strongerProbes(comparison, hypotheses, result, direction), direction * strong);
+  for (const int direction : {1, -1}) probe(result, strongerProbes(comparison, hypotheses, result, direction));
   for (std::size_t s = 0; s < hypotheses.size(); ++s) leaveOutIdle(comparison, hypotheses[s], result[s]);
   constexpr int weakenings = 3;
-  for (int i = 0; i < weakenings; ++i) probe(result, weakerProbes(comparison, hypotheses, result, residual), 1);
+  for (int i = 0; i < weakenings; ++i) probe(result, weakerProbes(comparison, hypotheses, result, residual));
   for (std::size_t s = 0; s < hypotheses.size(); ++s) fitLinearly(comparison, hypotheses[s], residual, result[s]);
   std::vector<Sensitivity> late_result = result;
-  probe(late_result, lateProbes(hypotheses, result, comparison.misfit(residual)), late);
+  probe(late_result, lateProbes(hypotheses, result, comparison.misfit(residual)));
   for (std::size_t s = 0; s < hypotheses.size(); ++s) {
     fitLinearly(comparison, hypotheses[s], residual, late_result[s]);
     if (late_result[s].misfit < result[s].misfit) result[s] = std::move(late_result[s]);

@@ -342,6 +342,21 @@ void Plant::findNumbers(const std::map<std::string, double>& given) {
   }
 }
 
+std::vector<Parameter> Plant::exactNumbers() const {
+  const std::vector<std::string> varying = allThatVaries(recordings_);
+  const std::string group = reference_->robot().name() + ".";
+  std::vector<Parameter> exact;
+  for (const Parameter& parameter : reference_->parameters().declared()) {
+    const std::string& name = parameter.name;
+    const bool is_factor = std::holds_alternative<double>(parameter.value) && !parameter.integer && std::get<double>(parameter.value) != 0;
+    if (is_factor && name.starts_with(group) &&
+        std::ranges::none_of(varying, [&](const std::string& listed) { return means(listed, name); }) &&
+        std::ranges::none_of(numbers_, [&](const UncertainNumber& number) { return number.parameter.name == name; }))
+      exact.push_back(parameter);
+  }
+  return exact;
+}
+
 double Plant::tensionN(int muscle, double pressure_ratio, double length_mm) const {
   return reference_->world().actuators()[static_cast<std::size_t>(muscle)]->calculateForce(pressure_ratio, length_mm);
 }

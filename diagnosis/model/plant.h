@@ -104,6 +104,8 @@ class Plant {
   /// Numbers of the model that are known with an error only: those of a tolerance in a sidecar or a robot file, and DiagnosisOptions::tune.
   /// Every explanation fits them along with its effects.
   const std::vector<UncertainNumber>& numbers() const { return numbers_; }
+  /// Numbers of the robot's own description that count as exact: they have no tolerance, do not vary between the recordings and are not 0.
+  std::vector<Parameter> exactNumbers() const;
   Eigen::Index numberCount() const { return static_cast<Eigen::Index>(numbers_.size()); }
   /// Coordinates at which the numbers have the values in force: 0, except for tuned ones.
   const Eigen::VectorXd& numbersInForce() const { return numbers_in_force_; }

@@ -100,7 +100,7 @@ Json toJson(const FittedNumber& number) {
 }
 
 Json toJson(const NumberInstead& number) {
-  return {{"name", number.name}, {"unit", number.unit}, {"given", number.given}, {"instead", number.instead}, {"effect", number.effect}};
+  return {{"name", number.name}, {"unit", number.unit}, {"given", number.given}, {"instead", number.instead}, {"effects", number.effects}};
 }
 
 template <class Value>

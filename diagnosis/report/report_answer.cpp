@@ -144,11 +144,12 @@ std::string sureAnswer(const Diagnosis& d, const Caveats& caveats) {
   }
   text += paragraph(alternativesSentence(d, caveats));
   if (!d.small_gap && (d.verdict == Verdict::no_gap || d.verdict == Verdict::not_excited))
-    text +=
-        fmt::format("<p>A residual is called noise up to {} times its {}, {} times where the floor was estimated from quiet rows.{}</p>",
-                    out_of_noise, term("floor"), out_of_estimated_noise, largestResidual(d));
-  text += paragraph(caveats.none) + paragraph(caveats.numbers) + paragraph(caveats.instead) + paragraph(caveats.unsteady) +
-          paragraph(caveats.model);
+    text += fmt::format(
+        "<p>A residual is called noise up to {} times its {} in all recordings together ({} where the floor was estimated from "
+        "quiet rows), and a little more in a single one.{}</p>",
+        out_of_noise, term("floor"), out_of_estimated_noise, largestResidual(d));
+  text += paragraph(caveats.none) + paragraph(caveats.numbers) + paragraph(caveats.unsteady) + paragraph(caveats.model);
+  if (d.small_gap && text.empty()) return "<p>Causes of a gap this small were not looked for.</p>";
   if (d.verdict == Verdict::unexplained && text.empty()) return "<p>No explanation is believed.</p>";
   return text;
 }
@@ -203,9 +204,11 @@ std::string nextSteps(const Diagnosis& d, Belief belief) {
     steps = "<li>Run the diagnosis again and let it finish.</li>";
   else if (d.verdict == Verdict::no_gap)
     steps =
-        (isExplainedByNumbers(d)
-             ? fmt::format("<li>Use the model with the fitted numbers: {}.</li>", command("musclesim replay NEW.csv --config nominal.toml"))
-             : "<li>Use the model as it is.</li>") +
+        (isExplainedByNumbers(d) ? fmt::format("<li>Use the model with the fitted numbers: {}.</li>",
+                                               command("musclesim replay NEW.csv --config nominal.toml" + substepsOption(d)))
+         : d.substeps > 0        ? fmt::format("<li>Use the model as it is, in the internal steps of this diagnosis: {}.</li>",
+                                               command("musclesim replay NEW.csv" + substepsOption(d)))
+                                 : "<li>Use the model as it is.</li>") +
         std::string(d.not_excited.empty() ? ""
                                           : "<li>Before you rely on other motions, see the effects that these could not show, below.</li>");
   else if (d.verdict == Verdict::not_excited)
@@ -235,7 +238,7 @@ std::string verdictBox(const Diagnosis& d) {
   return fmt::format(
       "<section class=\"verdict {}\"><div class=signal>{}<div><strong>{}</strong>{}</div></div>\n{}<dl "
       "class=answers>\n{}{}{}{}</dl></section>\n",
-      sign.look, signFigure(belief), sign.word, sign.sentence, headline(d), row("Where", whereAnswer(d)),
+      sign.look, signFigure(belief), sign.word, sign.sentence, headline(d) + paragraph(caveats.instead), row("Where", whereAnswer(d)),
       row("How sure", sureAnswer(d, caveats)), row("How much is left", restAnswer(d, caveats)),
       row("What to do next", nextSteps(d, belief)));
 }

@@ -136,7 +136,11 @@ std::string effectTitles(const std::vector<std::string>& labels) {
 
 std::string fileOptions(const Diagnosis& d) {
   return std::string(fittedNumbersToml(d).empty() ? "" : "--config nominal.toml ") + "--effects " +
-         (d.chosen.empty() ? "attempt.json" : "effects.json") + (d.substeps > 0 ? fmt::format(" --substeps {}", d.substeps) : "");
+         (d.chosen.empty() ? "attempt.json" : "effects.json") + substepsOption(d);
+}
+
+std::string substepsOption(const Diagnosis& d) {
+  return d.substeps > 0 ? fmt::format(" --substeps {}", d.substeps) : "";
 }
 
 }  // namespace musclesim::report

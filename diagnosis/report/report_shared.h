@@ -43,5 +43,7 @@ Belief beliefOf(const Diagnosis& d);
 std::string effectTitles(const std::vector<std::string>& labels);
 /// The options with which another command uses what was found.
 std::string fileOptions(const Diagnosis& d);
+/// " --substeps 20" if the model was simulated in other internal steps than a replay takes by itself; empty otherwise.
+std::string substepsOption(const Diagnosis& d);
 
 }  // namespace musclesim::report

@@ -16,6 +16,7 @@ constexpr std::size_t finalist_count = 10;
 constexpr std::size_t always_count = 2;     ///< of each size
 constexpr std::size_t restarted_count = 4;  ///< explanations near the best that are fitted from other strengths,
 constexpr std::size_t start_count = 2;      ///< from so many starts each
+constexpr std::size_t enlarged_count = 6;   ///< explanations near the best to which its further effects are added
 constexpr int variant_passes = 3;           ///< changes of one effect's variant each
 constexpr double listed = 0.01;             ///< least probability of explanations that are fitted to the end and may be chosen
 constexpr int coarse_rounds = 6, fine_rounds = 4;
@@ -236,21 +237,24 @@ void Search::tryEffectsOfTheBest() {
   std::ranges::stable_sort(explanations_, std::greater<>{}, &Explanation::score);
   const Explanation& best = explanations_.front();
   const Model model = causes_.modelOf(best);
+  const double least_score = best.score - near_best;
   std::vector<Explanation> larger;
+  std::size_t enlarged = 0;
   for (const Explanation& near : explanations_) {
-    if (near.score < best.score - near_best || near.members.empty() || static_cast<int>(near.members.size()) >= options_.max_effects)
-      continue;
+    if (near.score < least_score || enlarged == enlarged_count) break;
+    if (near.members.empty() || static_cast<int>(near.members.size()) >= options_.max_effects) continue;
+    ++enlarged;
     for (std::size_t m = 0; m < best.members.size(); ++m) {
       if (!fitsBeside(best.members[m], near.members)) continue;
       Explanation one = causes_.with(near, best.members[m], model.effects[m].parameters);
-      if (sameAmong(explanations_, one) == explanations_.end()) larger.push_back(std::move(one));
+      if (sameAmong(explanations_, one) == explanations_.end() && sameAmong(larger, one) == larger.end()) larger.push_back(std::move(one));
     }
   }
-  const double least_score = best.score - near_best;
   fitAll(larger, [&](Explanation& one) { fitRoughly(one, least_score); });
   std::erase_if(larger, [&](const Explanation& one) { return one.score < least_score; });
   fitAll(larger, [this](Explanation& one) { fitFinely(one); });
   std::ranges::move(larger, std::back_inserter(explanations_));
+  std::ranges::stable_sort(explanations_, std::greater<>{}, &Explanation::score);
 }
 
 /// Evaluates each start. Where it is better than the same set among the explanations, or that set is new, fits it in fine steps and takes

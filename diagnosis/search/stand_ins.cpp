@@ -91,12 +91,13 @@ std::vector<std::string> Search::placesLike(std::size_t hypothesis) const {
   const auto componentLike = [&](std::string_view own, std::string_view other) {
     return one.component().starts_with(own) ? std::string(other) + one.component().substr(own.size()) : std::string();
   };
-  const Stage stage = one.info().stage;
-  const std::string like = stage == Stage::pressure ? componentLike(muscle, reading)
-                           : stage == Stage::sensor ? componentLike(reading, muscle)
-                                                    : std::string();
+  const auto isBeforePressure = [](const Hypothesis& other) {
+    return other.info().stage == Stage::command || other.info().stage == Stage::pressure;
+  };
+  const bool is_sensor = one.info().stage == Stage::sensor;
+  const std::string like = isBeforePressure(one) ? componentLike(muscle, reading) : is_sensor ? componentLike(reading, muscle) : "";
   const auto found = std::ranges::find_if(causes_.hypotheses, [&](const Hypothesis& other) {
-    return other.component() == like && (other.info().stage == Stage::pressure || other.info().stage == Stage::sensor);
+    return other.component() == like && (is_sensor ? isBeforePressure(other) : other.info().stage == Stage::sensor);
   });
   if (found != causes_.hypotheses.end()) places.push_back(found->place());
   return places;

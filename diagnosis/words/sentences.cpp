@@ -179,11 +179,13 @@ std::string listWords(const std::vector<std::string>& labels) {
 std::string numbersInsteadWords(const Diagnosis& d) {
   std::vector<std::string> clauses;
   for (auto first = d.numbers_instead.begin(); first != d.numbers_instead.end();) {
-    const auto last = std::find_if(first, d.numbers_instead.end(), [&](const NumberInstead& one) { return one.effect != first->effect; });
+    const auto last = std::find_if(first, d.numbers_instead.end(), [&](const NumberInstead& one) { return one.effects != first->effects; });
     std::vector<std::string> values;
     for (auto one = first; one != last; ++one)
-      values.push_back(fmt::format("{} = {:.4g} {} (given as {:.4g})", one->name, one->instead, one->unit, one->given));
-    clauses.push_back(fmt::format("{} would do what {} does", fmt::join(values, " or "), labelWords(first->effect)));
+      values.push_back(
+          fmt::format("{} = {:.4g}{}{} (given as {:.4g})", one->name, one->instead, one->unit.empty() ? "" : " ", one->unit, one->given));
+    clauses.push_back(fmt::format("{} would do what {} {}", fmt::join(values, " or "), listWords(first->effects),
+                                  first->effects.size() == 1 ? "does" : "do"));
     first = last;
   }
   if (clauses.empty()) return "";

@@ -1,8 +1,10 @@
-/// The balance of the air in one muscle: what a slow valve lets in and out, and what else changes the pressure meanwhile.
+/// The balance of the air in one muscle: a valve of finite speed fills and vents it, and a leak or a change of volume acts meanwhile.
 ///     dp/dt = (u - p) / tau + sum over terms of (gain - loss p)
-/// u delivered, p actual pressure, fractions of full scale; tau is the valve's time constant, loss (1/s) and gain (1/s) are those of a leak
-/// or of a change of volume. All effects of this kind on one muscle share one balance and one valve, that of the first of them in the
-/// catalogue's order: a leak beside a valve lag is a term of the lag's equation and brings no regulator of its own.
+/// u delivered pressure, p pressure behind the valve (behind the first lag of a valve of three), fractions of full scale; tau is the
+/// valve's time constant, loss (1/s) and gain (1/s) are those of a leak or a change of volume. Effects of this kind that follow each other
+/// on one muscle share the balance and the valve of the first of them: a leak beside a valve lag is a term of the lag's equation and brings
+/// no valve of its own. Behind a limited flow a balance of its own begins, since the limit is no term of the one before it. A second valve
+/// lag is a lag in series.
 #pragma once
 
 #include <vector>
@@ -30,7 +32,7 @@ class MuscleAir : public MuscleRatioEffect {
   virtual double filled(double input, const StepTime& time) = 0;
   virtual double settledAir(double input) = 0;
 
-  /// Whether anything beside the valve changes the pressure.
+  /// Whether it has taken up other effects.
   bool hasTerms() const { return !terms_.empty(); }
   /// The sum over this effect and those that it has taken up.
   AirRate rate(double pressure) const;

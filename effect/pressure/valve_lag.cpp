@@ -12,7 +12,7 @@ EffectInfo ValveLag::info() {
       .summary = "the valve fills and vents the muscle with a lag",
       .equation =
           "tau_k dp_k/dt = p_(k-1) - p_k, tau_k = tau r^k / (1 + r + r^2), k = 0, 1, 2    p_-1 = u delivered, p_2 actual, tau of filling "
-          "or venting, r = next_lag_ratio",
+          "or venting, r = next_lag_ratio; leaks and volume couplings of the muscle are terms of the first lag",
       .signature =
           "fast commands are attenuated, with an error in proportion to amplitude; no error remains if the measured pressure drives "
           "the model",
@@ -32,11 +32,12 @@ double ValveLag::filled(double input, const StepTime& time) {
   if (time.h_s <= 0) return pressures_.back();
   double from = input, to = input, share = 1 / (1 + ratio_ + ratio_ * ratio_);
   for (double& pressure : pressures_) {
-    const double before = pressure, lag_s = share * (to > pressure ? fill_s_ : vent_s_);
-    const bool loses_air = hasTerms() && &pressure == pressures_.data();
+    const bool has_terms = hasTerms() && &pressure == pressures_.data();
+    const bool fills = to > pressure || (has_terms && to == pressure && rate(pressure).gain_per_s < rate(pressure).loss_per_s * pressure);
+    const double before = pressure, lag_s = share * (fills ? fill_s_ : vent_s_);
     const double behind = (to - from) * lag_s / time.h_s;  // of an input that goes on like this
     pressure = lag_s <= 0  ? to
-               : loses_air ? pressureAfter(time.h_s, pressure, to, lag_s)
+               : has_terms ? pressureAfter(time.h_s, pressure, to, lag_s)
                            : to - behind + (pressure - from + behind) * std::exp(-time.h_s / lag_s);
     from = before;
     to = pressure;

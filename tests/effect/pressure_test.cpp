@@ -173,6 +173,29 @@ TEST(Leak, AddsUp) {
       << t << " s; the second lag takes what the first delivers as constant within an internal step";
 }
 
+/// A valve that only fills with a lag holds less than the command after every step; one that fills at once replaces what is lost.
+TEST(Leak, BesideALagOfOneDirection) {
+  const double tau_s = 0.1, k = 0.8, u = 0.3;
+  const ActiveEffect leak = {"leak", "all", {{"leak_per_s", k}}};
+  const Recording down = stepOf("rig", {0.5}, {u}, 2.0);
+  const ReplayResult fills = replayWith(down, {{"valve_lag", "all", {{"fill_time_constant_s", tau_s}}}, leak}),
+                     vents = replayWith(down, {{"valve_lag", "all", {{"vent_time_constant_s", tau_s}}}, leak});
+  EXPECT_NEAR(valuesOf(fills, "pressure_0").back(), u / (1 + k * tau_s), 1e-6);
+  EXPECT_NEAR(valuesOf(vents, "pressure_0").front(), 0.5, 1e-12);
+  EXPECT_NEAR(valuesOf(vents, "pressure_0").back(), u, 1e-12);
+}
+
+/// A limited flow after the lag is no term of its balance: a leak behind it has its own valve.
+TEST(Leak, BehindALimitedFlowHasItsOwnValve) {
+  const double k = 2;
+  const Recording step = stepOf("rig", {0.3}, {0.5}, 2.0);
+  const ReplayResult run = replayWith(step, {{"valve_lag", "all", {{"fill_time_constant_s", 0.2}, {"vent_time_constant_s", 0.2}}},
+                                             {"flow_limit", "all", {{"fill_rate_per_s", 100.0}}},
+                                             {"leak", "all", {{"leak_per_s", k}, {"regulator_time_constant_s", 0.05}}}});
+  EXPECT_NEAR(valuesOf(run, "pressure_0").front(), 0.3 / (1 + k * 0.05), 1e-9);
+  EXPECT_NEAR(valuesOf(run, "pressure_0").back(), 0.5 / (1 + k * 0.05), 1e-4);
+}
+
 TEST(SupplyDroop, LimitsAllMusclesByTheirCommonDemand) {
   const double droop = 0.1;
   const ReplayResult run = replayWith(stepOf("elbow", {0.9, 0.2}, {0.9, 0.7}), {{"supply_droop", "all", {{"droop", droop}}}});

@@ -224,11 +224,11 @@ struct Attempt {
 };
 
 /// A number of the robot's description that was taken as exact. With another value, and everything else fitted anew, the model explains the
-/// fitted recordings as well without one of the named effects.
+/// fitted recordings as well without some of the named effects.
 struct NumberInstead {
   std::string name, unit;
   double given = 0, instead = 0;
-  std::string effect;  ///< "id@component"
+  std::vector<std::string> effects;  ///< that it takes the place of, "id@component"
 };
 
 struct Diagnosis {

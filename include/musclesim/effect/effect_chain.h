@@ -68,7 +68,7 @@ class EffectChain final : public RobotEffects {
   struct Planned;
   void requireMuscles();
   void addObject(const Planned& planned, EffectPlace place);
-  static void joinBalance(Muscle& muscle, MuscleAir& effect);
+  static void joinBalance(Muscle& muscle, MuscleAir* effect);
   MuscleInput inputOf(std::size_t muscle, double pressure_ratio, double h_s) const;
   StepTime at(double h_s) const { return {world_.clock().now_s(), h_s}; }
 

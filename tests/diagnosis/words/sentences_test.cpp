@@ -52,13 +52,13 @@ TEST(VerdictSentence, SaysWhereSignalsSpeakAgainstWhatTheGapLooksLike) {
 TEST(VerdictSentence, NamesNumbersThatMayBeTheCauseInstead) {
   Diagnosis d = lagFound();
   EXPECT_EQ(caveatsOf(d).instead, "");
-  d.numbers_instead = {{"leg.foot_kg", "kg", 1, 1.1484, "payload@hand"},
-                       {"leg.lever_mm", "mm", 30, 27, "payload@hand"},
-                       {"leg.stop_deg", "deg", 60, 55, "joint_stop_offset@joint_knee"}};
+  d.numbers_instead = {{"leg.foot_kg", "kg", 1, 1.1484, {"payload@hand"}},
+                       {"leg.lever_mm", "mm", 30, 27, {"payload@hand"}},
+                       {"leg.ratio", "", 0.5, 0.45, {"joint_stop_offset@joint_knee", "creep@all"}}};
   EXPECT_EQ(caveatsOf(d).instead,
             "Numbers that were taken as exact may be the cause instead: leg.foot_kg = 1.148 kg (given as 1) or leg.lever_mm = 27 mm (given "
-            "as 30) would do what payload on hand does; leg.stop_deg = 55 deg (given as 60) would do what joint stop offset on joint knee "
-            "does. Give those that are not known so well a parameter_tolerance in the sidecar.");
+            "as 30) would do what payload on hand does; leg.ratio = 0.45 (given as 0.5) would do what joint stop offset on joint knee "
+            "together with creep on all components do. Give those that are not known so well a parameter_tolerance in the sidecar.");
   EXPECT_TRUE(contains(verdictSentence(d), caveatsOf(d).instead));
 }
 
