@@ -1,10 +1,10 @@
 /// Pressure stage: a muscle loses air, and a valve of finite speed replaces it.
 ///     dp/dt = (u - p) / tau_r - k p^n,    tau_r = 0.05 s and n = 1 unless given
-/// Where a valve lag acts on the muscle, the loss is a term of that lag's equation (its first lag), and tau_r is not used (MuscleAir).
-/// u delivered, p actual pressure, fractions of full scale; k = leak_per_s, tau_r = regulator_time_constant_s, n = flow_exponent: 1 for
-/// laminar flow through a pore or for choked flow, 0.5 for a hole at low pressure (turbulent flow grows with the root of the pressure
-/// difference). p^(n-1) is evaluated at p >= 0.001. For constant u and n = 1 p settles at u / (1 + k tau_r). For n = 1 the step is exact if
-/// u is constant over it; otherwise p^(n-1) is taken at the start of the step.
+/// Where a valve lag acts on the muscle, with no limited flow behind it, the loss is a term of the lag's equation (its first lag), and
+/// tau_r is not used (MuscleAir). u delivered, p actual pressure, fractions of full scale; k = leak_per_s, tau_r =
+/// regulator_time_constant_s, n = flow_exponent: 1 for laminar flow through a pore or for choked flow, 0.5 for a hole at low pressure
+/// (turbulent flow grows with the root of the pressure difference). p^(n-1) is evaluated at p >= 0.001. For constant u and n = 1 p settles
+/// at u / (1 + k tau_r). For n = 1 the step is exact if u is constant over it; otherwise p^(n-1) is taken at the start of the step.
 /// Neutral: k = 0, which also removes the regulator's lag: p = u. Range 0 .. 100 per s, usually 0.0003 .. 1: intact muscles have up to
 /// 0.05, which is visible only with a closed valve; with a regulator leaks are visible from about 0.1. Source: mass balance with a loss
 /// driven by gauge pressure; losses of 3 % to 80 % in 120 s measured on muscles with a closed valve. The upper end is an estimate: a hole

@@ -30,6 +30,7 @@ class MuscleAir : public MuscleRatioEffect {
   virtual AirRate ownRate(double pressure) const = 0;
   /// How the valve fills the muscle while this effect has the balance; its state is the pressure that it returns.
   virtual double filled(double input, const StepTime& time) = 0;
+  /// Sets that state to what it is when `input` has been there for ever, and returns it.
   virtual double settledAir(double input) = 0;
 
   /// Whether it has taken up other effects.
