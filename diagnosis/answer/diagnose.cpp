@@ -222,7 +222,6 @@ class Run {
   }
 
   void proposeExperiment() {
-    if (diagnosis_.verdict == Verdict::no_gap) return;
     constexpr std::size_t most = 4;
     std::vector<const Explanation*> likely = asGood(search_);
     if (likely.size() < 2) return;
