@@ -93,7 +93,8 @@ void EffectChain::addObject(const Planned& planned, EffectPlace place) {
   }
 }
 
-/// The first effect on a muscle's air holds its balance, those that follow become terms of it, up to an effect of another kind (null).
+/// Tells a muscle of the next effect on its pressure; null if that does not act on the muscle's air. The first effect on the air holds the
+/// balance, and the next ones become terms of it, until an effect of another kind comes.
 void EffectChain::joinBalance(Muscle& muscle, MuscleAir* effect) {
   if (muscle.air && effect && effect->isTerm())
     muscle.air->takeUp(*effect);

@@ -276,7 +276,7 @@ void listTrials(const Search& search, Diagnosis& diagnosis) {
                 rmsOf(fitted.residual),
                 {misfits.begin(), misfits.end()},
                 {complexity.begin(), complexity.end()},
-                0.5 * fitted.numbers.squaredNorm(),
+                costOfNumbers(fitted.numbers),
                 fitted.score,
                 {}};
     Eigen::Index first = 0;

@@ -9,14 +9,14 @@
 #include <optional>
 
 #include "../../base/parallel.h"
+#include "verdict.h"
 
 namespace musclesim {
 
 namespace {
 
-constexpr double as_well_nats = 2.5;           ///< behind the chosen explanation, prices included: what is nearer explains as well
 constexpr double promising = 0.5;              ///< largest share of the excess that a step may leave by linear models, if that is more than
-                                               ///< as_well_nats; they are rough where dry friction holds
+                                               ///< allowed; they are rough where dry friction holds
 const double step = std::log(1.02);            ///< of ln(number / given value), for derivatives
 const double farthest = std::log(1.3);         ///< nobody takes a number for exact that is further off
 constexpr int check_count = 3;                 ///< simulated steps towards the value of a number
@@ -57,7 +57,7 @@ class Replacement {
     without_ = residualOf(search.modelOf(rest_));
     // A number costs one parameter; the effects that it replaces cost more.
     const Evidence evidence = search.evidence();
-    allowed_ = as_well_nats + std::max(0.0, evidence.price(chosen_) - evidence.price(rest_) - prices.parameters);
+    allowed_ = clearly + std::max(0.0, evidence.price(chosen_) - evidence.price(rest_) - prices.parameters);
   }
 
   /// Whether the rest does as well by itself; then the effects say nothing that a number could say.
@@ -76,7 +76,7 @@ class Replacement {
   }
 
   double costOf(const Eigen::VectorXd& residual, const Eigen::VectorXd& numbers) const {
-    return comparison_.misfit(residual) + 0.5 * numbers.squaredNorm();
+    return comparison_.misfit(residual) + costOfNumbers(numbers);
   }
 
   /// Gauss-Newton steps with the derivatives of the whole, each simulated. The rows below those of the residual are the numbers' prior.

@@ -9,8 +9,9 @@
 
 namespace musclesim {
 
-/// The numbers that can take the place of effects of the chosen explanation on the fitted recordings: those that replace several effects
-/// first, then by effect, nearest to their given values first. Each is checked by simulation.
+/// The numbers with which the chosen explanation does as well without one of its effects, or without several. Numbers that replace several
+/// effects come first. The others follow in the order of the effects; of one effect, the number that changes least comes first. Every
+/// number is checked by simulating the fitted recordings.
 std::vector<NumberInstead> numbersInstead(const Search& search, const OnSimulation& on_simulation);
 
 }  // namespace musclesim

@@ -10,8 +10,7 @@ namespace musclesim {
 
 namespace {
 
-constexpr double named = 0.5;    ///< probability above which an explanation, or none_of_these, is the answer
-constexpr double clearly = 2.5;  ///< nats by which an explanation must be ahead of a model without effects
+constexpr double named = 0.5;  ///< probability above which an explanation, or none_of_these, is the answer
 
 std::vector<std::string> labelsOf(const Model& model) {
   std::vector<std::string> labels;
@@ -81,7 +80,7 @@ bool isSmall(const Comparison& comparison, const Eigen::VectorXd& residual, cons
 bool numbersSuffice(const Search& search, const DiagnosisOptions& options) {
   const Explanation& no_effect = search.nothing();
   std::optional<SmallGap> left;
-  return no_effect.numbers.size() > 0 && 0.5 * no_effect.numbers.squaredNorm() <= clearly &&
+  return no_effect.numbers.size() > 0 && costOfNumbers(no_effect.numbers) <= clearly &&
          no_effect.residual.size() == search.fitComparison().size() && isSmall(search.fitComparison(), no_effect.residual, options, left);
 }
 

@@ -6,6 +6,9 @@
 
 namespace musclesim {
 
+/// Nats by which an explanation is clearly ahead of another model; about 12 to 1.
+inline constexpr double clearly = 2.5;
+
 /// The held-out rows and what the unchanged model leaves of them. References must outlive the object.
 struct HeldOut {
   const Comparison& comparison;

@@ -97,7 +97,7 @@ double Evidence::price(const Explanation& explanation) const {
 
 double Evidence::score(const Explanation& explanation) const {
   if (explanation.is_inactive || explanation.residual.size() != comparison_.size()) return -std::numeric_limits<double>::infinity();
-  return -comparison_.misfit(explanation.residual) - price(explanation) - 0.5 * explanation.numbers.squaredNorm();
+  return -comparison_.misfit(explanation.residual) - price(explanation) - costOfNumbers(explanation.numbers);
 }
 
 double Evidence::ofSomethingElse(const std::vector<Explanation>& explanations) const {

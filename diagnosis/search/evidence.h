@@ -32,6 +32,11 @@ inline constexpr double per_share_left = 12, share_of_unknown = 0.3;
 /// comes from.
 inline constexpr double stand_in_share = 0.6;
 
+/// What it costs, in nats, that numbers of the model are off by so many tolerances: eta^2 / 2 each, a normal prior.
+inline double costOfNumbers(const Eigen::VectorXd& numbers) {
+  return numbers.squaredNorm() / 2;
+}
+
 /// The probability that something else acts, 1 / (1 + exp(-per_share_left (share_left - share_of_unknown))), where an explanation leaves a
 /// share of the misfit of the model without effects: the right one leaves a small one.
 double probabilityOfUnknown(double share_left);

@@ -28,14 +28,14 @@ class MuscleAir : public MuscleRatioEffect {
  protected:
   /// What this effect adds to the balance at pressure p.
   virtual AirRate ownRate(double pressure) const = 0;
-  /// How the valve fills the muscle while this effect has the balance; its state is the pressure that it returns.
+  /// The pressure at the end of a step, where this effect holds the balance. The effect keeps it as its state.
   virtual double filled(double input, const StepTime& time) = 0;
-  /// Sets that state to what it is when `input` has been there for ever, and returns it.
+  /// The pressure after `input` has been there for ever. The effect keeps it as its state, too.
   virtual double settledAir(double input) = 0;
 
   /// Whether it has taken up other effects.
   bool hasTerms() const { return !terms_.empty(); }
-  /// The sum over this effect and those that it has taken up.
+  /// Loss and gain of this effect and of all that it has taken up, summed.
   AirRate rate(double pressure) const;
   /// p, 0 at least, at the end of a step of h_s that begins at `pressure`. Exact if u, loss and gain are constant; loss and gain are those
   /// of the beginning.
