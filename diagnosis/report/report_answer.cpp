@@ -37,12 +37,29 @@ std::string sentenceOfPart(const Diagnosis& d) {
                      their);
 }
 
+/// "delay (dead time)", for every number that is beyond what is usual.
+std::vector<std::string> unusualNumbers(const Diagnosis& d) {
+  std::vector<std::string> numbers;
+  for (const FoundEffect& effect : shownEffects(d))
+    for (const ParameterLine& line : parameterLines(effect, comparedSignals(d)))
+      if (line.is_beyond) numbers.push_back(fmt::format("{} ({})", line.label, effectTitle(effect.id)));
+  return numbers;
+}
+
+/// Where everything is explained.
+std::string sentenceOfAll(const Diagnosis& d) {
+  const char *causes = d.chosen.size() > 1 ? "causes" : "cause", *their = d.chosen.size() > 1 ? "their" : "its";
+  const std::vector<std::string> unusual = unusualNumbers(d);
+  if (unusual.empty()) return fmt::format("You can believe place, kind and numbers of the {} below.", causes);
+  return fmt::format("You can believe the place of the {} below. Check the kind and {} numbers: {} {} beyond what is usual.", causes, their,
+                     listed(unusual), unusual.size() > 1 ? "are" : "is");
+}
+
 SignWords signWords(const Diagnosis& d, Belief belief) {
   const bool are_several = d.chosen.size() > 1;
   switch (belief) {
     case Belief::explained:
-      return {"explained", "Explained",
-              fmt::format("You can believe place, kind and numbers of the {} below.", are_several ? "causes" : "cause")};
+      return {"explained", "Explained", sentenceOfAll(d)};
     case Belief::partly:
       return {"partly", "Explained in part",
               isAmbiguous(d) ? fmt::format("Other causes would explain these recordings as well: record more before you rely on {}.",

@@ -46,13 +46,12 @@ std::string filled(std::string text, const std::string& word) {
   return text;
 }
 
-/// "a, b and c".
+}  // namespace
+
 std::string listed(const std::vector<std::string>& words) {
   if (words.size() < 2) return words.empty() ? "" : words.front();
   return fmt::format("{} and {}", fmt::join(words.begin(), words.end() - 1, ", "), words.back());
 }
-
-}  // namespace
 
 std::string capitalised(std::string words) {
   if (!words.empty()) words.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(words.front())));
@@ -175,6 +174,19 @@ std::string remarkFor(const Estimate& estimate, const EffectParameter& parameter
   return fmt::format("usual range {:.4g} to {:.4g} {}", said.factor * parameter.usual_low, said.factor * parameter.usual_high, said.unit);
 }
 
+/// A weak effect is nothing unusual; a strong one, or one of an unusual kind, may stand for something else. So may one whose strength is
+/// nearly a constant of nature, such as a polytropic exponent, but is not that constant.
+bool isBeyond(double value, const EffectParameter& parameter) {
+  constexpr double narrow = 2;  // upper over lower end of the usual strengths
+  if (parameter.unit == "unit of the signal") return false;
+  const bool is_narrow = parameter.usual_low > parameter.neutral &&
+                         parameter.usual_high - parameter.neutral < narrow * (parameter.usual_low - parameter.neutral);
+  if (parameter.shape || is_narrow) return value < parameter.usual_low || value > parameter.usual_high;
+  if (std::isinf(parameter.neutral)) return value < parameter.usual_low;
+  const double farthest = std::max(std::abs(parameter.usual_low - parameter.neutral), std::abs(parameter.usual_high - parameter.neutral));
+  return std::abs(value - parameter.neutral) > farthest;
+}
+
 std::string readingUnit(const FoundEffect& effect, const std::vector<std::string>& signals) {
   if (!effect.component.starts_with("signal_")) return "";
   const std::string name = effect.component.substr(7);
@@ -214,7 +226,8 @@ std::vector<ParameterLine> parameterLines(const FoundEffect& effect, const std::
     if (number(estimate.value).find_first_of("123456789") == std::string::npos) continue;  // too small to be told
     lines.push_back({spaced(words.label), number(estimate.value) + unit,
                      with_interval ? fmt::format("{} to {}{}", number(estimate.low), number(estimate.high), unit) : "",
-                     remarkFor(estimate, parameter, said, isCorrection(effect))});
+                     remarkFor(estimate, parameter, said, isCorrection(effect)),
+                     !isCorrection(effect) && isBeyond(estimate.value, parameter)});
   }
   return lines;
 }

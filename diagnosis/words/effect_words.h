@@ -25,10 +25,11 @@ std::string signalUnitWords(const std::string& signal);
 
 /// One parameter of a found effect in words.
 struct ParameterLine {
-  std::string label;     ///< "lag while filling"
-  std::string value;     ///< "40 ms"
-  std::string interval;  ///< "38 to 42 ms"; empty if an interval says nothing
-  std::string remark;    ///< "usual range 10 to 200 ms", "at its bound", "these recordings hardly determine it"
+  std::string label;       ///< "lag while filling"
+  std::string value;       ///< "40 ms"
+  std::string interval;    ///< "38 to 42 ms"; empty if an interval says nothing
+  std::string remark;      ///< "usual range 10 to 200 ms", "at its bound", "these recordings hardly determine it"
+  bool is_beyond = false;  ///< a strength larger than usual, or a shape outside of its usual range
 };
 /// The parameters that do something, in the catalogue's order. `signals` are the compared columns, for the units of readings.
 std::vector<ParameterLine> parameterLines(const FoundEffect& effect, const std::vector<std::string>& signals);
@@ -45,6 +46,8 @@ inline constexpr double nearly_sure = 0.8;
 /// nearly_sure ends with it: "(38 % likely)".
 std::vector<std::string> claimSentences(const std::vector<FoundEffect>& effects, const std::vector<std::string>& signals);
 
+/// "a, b and c".
+std::string listed(const std::vector<std::string>& words);
 /// The first letter as a capital.
 std::string capitalised(std::string words);
 

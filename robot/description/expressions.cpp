@@ -3,8 +3,12 @@
 #include <fmt/format.h>
 #include <muParser.h>
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "musclesim/base/parameters.h"
@@ -21,18 +25,59 @@ std::string problemOf(const mu::Parser::exception_type& error, const std::map<st
                      nearest.empty() ? "" : ", did you mean \"" + nearest + "\"?", fmt::join(known, ", "));
 }
 
-Expressions::Expressions(std::map<std::string, double> names) : names_(std::move(names)) {
-  parser_.DefineConst("pi", std::numbers::pi);
-  for (const auto& [name, number] : names_) parser_.DefineConst(name, number);
-}
+namespace {
+
+/// The expressions that this thread has read, with the names as variables: a diagnosis builds one robot thousands of times with other
+/// numbers, and reading an expression takes a hundred times as long as evaluating it.
+class ReadExpressions {
+ public:
+  /// The value of an expression, and how many values it has. Throws as muParser does.
+  std::pair<double, int> valueOf(const std::string& expression, const std::map<std::string, double>& names) {
+    if (numbers_ != names) take(names);
+    std::unique_ptr<mu::Parser>& parser = parsers_[expression];
+    if (parser) return valueOf(*parser);
+    auto fresh = std::make_unique<mu::Parser>();
+    fresh->EnableOptimizer(false);  // it rearranges sums, which changes the last digits
+    fresh->DefineConst("pi", std::numbers::pi);
+    for (auto& [name, number] : numbers_) fresh->DefineVar(name, &number);
+    fresh->SetExpr(expression);
+    const std::pair<double, int> result = valueOf(*fresh);
+    if (numbers_ != names) {
+      take(names);
+      throw mu::ParserError("\"=\" would change a parameter");
+    }
+    if (result.second == 1) parser = std::move(fresh);
+    return result;
+  }
+
+ private:
+  void take(const std::map<std::string, double>& names) {
+    const auto isSameName = [](const auto& a, const auto& b) { return a.first == b.first; };
+    if (!std::ranges::equal(numbers_, names, isSameName)) {
+      parsers_.clear();
+      numbers_ = names;
+    }
+    for (auto& [name, number] : numbers_) number = names.at(name);
+  }
+  static std::pair<double, int> valueOf(mu::Parser& parser) {
+    int value_count = 0;
+    const double value = *parser.Eval(value_count);
+    return {value, value_count};
+  }
+
+  std::map<std::string, double> numbers_;  ///< the variables of all parsers, which hold pointers to the values
+  std::unordered_map<std::string, std::unique_ptr<mu::Parser>> parsers_;
+};
+
+}  // namespace
 
 double Expressions::operator()(const Quantity& quantity) const {
   if (quantity.expression.empty()) return quantity.number;
+  thread_local ReadExpressions read;
   double value = 0;
   try {
-    parser_.SetExpr(quantity.expression);
     int value_count = 0;
-    value = *parser_.Eval(value_count);
+    std::tie(value, value_count) = read.valueOf(quantity.expression, names_);
     if (value_count != 1) quantity.place.refuse("\"" + quantity.expression + "\" must be one number");
   } catch (const mu::Parser::exception_type& error) {
     quantity.place.refuse("\"" + quantity.expression + "\": " + problemOf(error, names_));

@@ -16,10 +16,9 @@ namespace musclesim::description {
 std::string problemOf(const mu::ParserError& error, const std::map<std::string, double>& names);
 
 /// Evaluates quantities with muParser: + - * / ^, parentheses, sqrt, sin, cos (radians) and its like, the constant pi, and the names given.
-/// One object serves one thread.
 class Expressions {
  public:
-  explicit Expressions(std::map<std::string, double> names);
+  explicit Expressions(std::map<std::string, double> names) : names_(std::move(names)) {}
 
   /// Throws BadFile for an expression that cannot be read, has an unknown name or is not finite.
   double operator()(const Quantity& quantity) const;
@@ -29,7 +28,6 @@ class Expressions {
 
  private:
   std::map<std::string, double> names_;
-  mutable mu::Parser parser_;  ///< knows the names; making one takes longer than many expressions
 };
 
 }  // namespace musclesim::description

@@ -223,6 +223,7 @@ const std::vector<Wrong>& wrongDescriptions() {
       {"letter for a place", "at_mm = [0, 0, 0]\naxis", "at_mm = \"y\"\naxis", "list of 3 numbers", 19},
       {"pulley without radius that no muscle uses", "radius_mm = 10", "radius_mm = 0", "must be positive", 27},
       {"density of a body with inertia", "mass_g = 400", "density_g_per_mm3 = 0.001\ninertia_g_mm2 = [1, 1, 1]", "needs mass_g", 14},
+      {"assignment to a parameter", "\"lever_mm\", -260", "\"lever_mm = 3\", -260", "\"lever_mm = 3\"", 31},
       {"two values in one expression", "\"lever_mm\", -260", "\"lever_mm, 2\", -260", "must be one number", 31},
       {"tolerance of nothing", "range = [20, 200]", "range = [20, 200]\ntolerance = 0", "0 must be above 0 and at most 2", 7},
       {"tolerance above its range", "range = [20, 200]", "range = [20, 200]\ntolerance = 2.5", "2.5 must be above 0 and at most 2", 7},

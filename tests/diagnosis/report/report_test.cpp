@@ -131,6 +131,15 @@ TEST(Report, IsSureOfACauseThatAllGoodExplanationsShare) {
   EXPECT_TRUE(contains(page, "Less likely, but possible: leak (muscle 0)."));
 }
 
+TEST(Report, DoesNotPromiseNumbersBeyondWhatIsUsual) {
+  Diagnosis d = sampleDiagnosis();
+  d.chosen = {"volume_coupling@all"};
+  d.effects = {{"volume_coupling", "all", 0.98, {{"polytropic_exponent", {0.93, 0.85, 1.0}}}}};
+  EXPECT_TRUE(contains(diagnosisReport(d),
+                       "You can believe the place of the cause below. Check the kind and its numbers: polytropic exponent "
+                       "(motion changes the pressure) is beyond what is usual."));
+}
+
 TEST(Report, SaysWhereTheSignalsAloneDoNotConfirmACause) {
   const std::string page = diagnosisReport(sampleDiagnosis());
   EXPECT_TRUE(contains(page, "in the body stage (the hand). The signals alone do not confirm the body stage."));

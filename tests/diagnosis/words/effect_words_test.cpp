@@ -25,6 +25,7 @@ TEST(EffectWords, HasWordsAndADrawingForEveryEffectOfTheCatalogue) {
       found.parameters[parameter.name] = {value, value, value};
       const std::vector<ParameterLine> lines = parameterLines(found, {});
       ASSERT_EQ(lines.size(), 1U) << info.id << " " << parameter.name;
+      EXPECT_FALSE(lines.front().is_beyond) << info.id << " " << parameter.name;
       EXPECT_FALSE(contains(lines.front().label, "_")) << info.id << " " << parameter.name;
       EXPECT_NE(lines.front().label, parameter.name) << info.id << ": a parameter without words";
       EXPECT_TRUE(contains(claimSentences({found}, {}).front(), lines.front().value)) << info.id << " " << parameter.name;
@@ -48,6 +49,18 @@ TEST(EffectWords, SaysOnWhichSideOfTheModelAMachineIs) {
   };
   EXPECT_EQ(claim(0.8), "Muscle 1 is weaker than in the model: a factor of 0.8.");
   EXPECT_EQ(claim(1.2), "Muscle 1 is stronger than in the model: a factor of 1.2.");
+}
+
+TEST(EffectWords, TellsNumbersBeyondWhatIsUsual) {
+  const auto is_beyond = [](const std::string& id, const std::string& parameter, double value) {
+    return parameterLines({id, "all", 1, {{parameter, {value, value, value}}}}, {}).front().is_beyond;
+  };
+  EXPECT_TRUE(is_beyond("volume_coupling", "polytropic_exponent", 1.6));
+  EXPECT_TRUE(is_beyond("volume_coupling", "polytropic_exponent", 0.9)) << "air is at least isothermal";
+  EXPECT_TRUE(is_beyond("transport_delay", "delay_s", 0.9));
+  EXPECT_FALSE(is_beyond("transport_delay", "delay_s", 0.002)) << "a short dead time is nothing unusual";
+  EXPECT_TRUE(is_beyond("flow_limit", "fill_rate_per_s", 0.01)) << "a limit is strong where it is low";
+  EXPECT_FALSE(is_beyond("flow_limit", "fill_rate_per_s", 1e4));
 }
 
 TEST(EffectWords, GivesReadingsTheirUnit) {
