@@ -5,8 +5,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <map>
 #include <memory>
+#include <optional>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "../import/import.h"
 #include "../robot/inspection.h"
@@ -26,10 +30,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A simulation with the robot as built, to look at.
-std::unique_ptr<Simulation> built(const ModelOptions& model, const std::string& robot) {
+/// A simulation with the robot as built, to look at; a number may have another value.
+std::unique_ptr<Simulation> built(const ModelOptions& model, const std::string& robot,
+                                  const std::optional<std::pair<std::string, double>>& changed = {}) {
   if (model.robot) throw BadParameter("--robot", *model.robot, "be left out: the robot is the argument after the sub-command");
-  const ReplayOptions options = replayOptionsFrom(model);
+  ReplayOptions options = replayOptionsFrom(model);
+  if (changed) options.parameters.set(changed->first, changed->second, "robot check");
   RecordingInfo plant;
   plant.robot = robot;
   auto simulation = std::make_unique<Simulation>(simulationOptionsFor(plant, robot, options));
@@ -63,6 +69,41 @@ void printTolerances(const Robot& robot) {
              words.empty() ? "none" : fmt::format("{}", fmt::join(words, ", ")));
 }
 
+/// All readings after a short motion under commands that differ from muscle to muscle.
+std::vector<double> readingsAfterMotion(Simulation& simulation) {
+  constexpr double duration_s = 0.2, least_command = 0.2, spread = 0.5;
+  Robot& robot = simulation.robot();
+  const int count = robot.actuatorCount();
+  musclesim::Action command(static_cast<std::size_t>(count), least_command);
+  simulation.start(robot.initialState(), command);
+  for (int i = 0; i < count; ++i) command[static_cast<std::size_t>(i)] += spread * i / count;
+  for (robot.step(command); simulation.time_s() < duration_s;) simulation.step();
+  const State state = robot.getState();
+  std::vector<double> readings = state.angle_deg;
+  for (const auto* more : {&state.force_N, &state.length_mm, &state.pressure}) readings.insert(readings.end(), more->begin(), more->end());
+  return readings;
+}
+
+/// Numbers with a tolerance that do not matter, because every muscle has a force law or settings of its own.
+std::vector<std::string> tolerancesForNothing(const ModelOptions& model, const std::string& robot, Simulation& simulation) {
+  std::vector<std::string> found;
+  const std::map<std::string, double> tolerances = simulation.robot().parameterTolerances();
+  if (tolerances.empty()) return found;
+  const std::vector<Parameter> declared = simulation.parameters().declared();
+  try {
+    const std::vector<double> before = readingsAfterMotion(*built(model, robot));
+    for (const auto& [name, tolerance] : tolerances) {
+      const auto number = std::ranges::find(declared, name, &Parameter::name);
+      if (number == declared.end() || !std::holds_alternative<double>(number->value)) continue;
+      const double value = std::clamp(std::get<double>(number->value) * (1 + tolerance), number->minimum, number->maximum);
+      if (readingsAfterMotion(*built(model, robot, std::pair{name, value})) == before)
+        found.push_back(fmt::format("{} changes nothing in this robot, so its tolerance is of no use", name));
+    }
+  } catch (const Diverged&) {  // not what is asked here
+  }
+  return found;
+}
+
 int check(const ModelOptions& model, const std::string& robot) {
   const auto simulation = built(model, robot);
   const Robot& made = simulation->robot();
@@ -72,6 +113,7 @@ int check(const ModelOptions& model, const std::string& robot) {
   auto found = oddities(simulation->world(), made);
   if (isRobotFile(robot)) std::ranges::move(unstatedConstants(robot), std::back_inserter(found));
   if (made.initialState() == "settled") simulation->settle(musclesim::Action(static_cast<std::size_t>(made.actuatorCount()), 0.0));
+  std::ranges::move(tolerancesForNothing(model, robot, *simulation), std::back_inserter(found));
   printFriction(made);
   printTolerances(made);
   printOddities(found);

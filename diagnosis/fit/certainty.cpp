@@ -153,10 +153,13 @@ Derivatives derivativesAt(const Comparison& comparison, const FitProblem& proble
   return found;
 }
 
-Certainty certaintyOf(const Comparison& comparison, const FitProblem& problem, const FitPoint& at, const Derivatives& derivatives) {
+Certainty certaintyOf(const Comparison& comparison, const FitProblem& problem, const FitPoint& at, const Derivatives& derivatives,
+                      const Eigen::VectorXd& step_change) {
   constexpr double nothing = 1e-12, flat = 1e-8, takes_part = 0.1;
   constexpr double unbounded = std::numeric_limits<double>::infinity();
   const Eigen::VectorXd weights = perDeviation(comparison, at.residual), residual = weights.cwiseProduct(at.residual);
+  Eigen::VectorXd of_step = Eigen::VectorXd::Zero(residual.size());
+  if (step_change.size() == residual.size()) of_step = weights.cwiseProduct(step_change);
   const Eigen::MatrixXd weighted = weights.asDiagonal() * derivatives.jacobian;
   const Eigen::MatrixXd information = weighted.transpose() * weighted;
   const Eigen::VectorXd precision = problem.precision.size() ? problem.precision : Eigen::VectorXd::Zero(weighted.cols());
@@ -165,11 +168,12 @@ Certainty certaintyOf(const Comparison& comparison, const FitProblem& problem, c
   const Eigen::VectorXd per_size = (size > nothing).select(size.inverse(), 0.0);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> of_data(per_size.asDiagonal() * information * per_size.asDiagonal());
   Eigen::MatrixXd known = precision.cwiseProduct(per_size.cwiseAbs2()).asDiagonal();
-  Eigen::VectorXd slope = -per_size.cwiseProduct(precision).cwiseProduct(at.z);
+  Eigen::VectorXd slope = -per_size.cwiseProduct(precision).cwiseProduct(at.z), slope_of_step = Eigen::VectorXd::Zero(size.size());
   for (int signal = 0; signal < signalCount(comparison); ++signal) {
     Eigen::MatrixXd columns(readingsOf(comparison, signal, residual).size(), weighted.cols());
     for (Eigen::Index k = 0; k < columns.cols(); ++k) columns.col(k) = per_size[k] * readingsOf(comparison, signal, weighted.col(k));
     const Eigen::VectorXd downhill = columns.transpose() * readingsOf(comparison, signal, residual);
+    const Eigen::VectorXd with_step = columns.transpose() * readingsOf(comparison, signal, of_step);
     const Eigen::VectorXd uncertain = columns.colwise().norm().transpose().cwiseProduct(derivatives.error.row(signal).transpose());
     for (Eigen::Index k = 0; k < size.size(); ++k) {
       const Eigen::VectorXd direction = of_data.eigenvectors().col(k);
@@ -177,11 +181,12 @@ Certainty certaintyOf(const Comparison& comparison, const FitProblem& problem, c
       if (certain <= 0) continue;
       known += certain * direction * direction.transpose();
       slope += direction.dot(downhill) * direction;
+      slope_of_step += direction.dot(with_step) * direction;
     }
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> directions(known);
   Eigen::ArrayXd variance = Eigen::ArrayXd::Zero(size.size()), determined = Eigen::ArrayXd::Zero(size.size());
-  Eigen::VectorXd to_least_squares = Eigen::VectorXd::Zero(size.size());
+  Eigen::VectorXd to_least_squares = Eigen::VectorXd::Zero(size.size()), by_half_step = Eigen::VectorXd::Zero(size.size());
   for (Eigen::Index k = 0; k < size.size(); ++k) {
     const Eigen::VectorXd direction = directions.eigenvectors().col(k);
     const Eigen::ArrayXd share = direction.array().square();
@@ -189,12 +194,15 @@ Certainty certaintyOf(const Comparison& comparison, const FitProblem& problem, c
       variance += share / directions.eigenvalues()[k];
       determined += share;
       to_least_squares += direction * (direction.dot(slope) / directions.eigenvalues()[k]);
+      by_half_step += direction * (direction.dot(slope_of_step) / directions.eigenvalues()[k]);
     } else {
       variance = (share > takes_part * takes_part).select(unbounded, variance);
     }
   }
   const Eigen::VectorXd least_squares = problem.clamped(at.z + per_size.cwiseProduct(to_least_squares));
-  const Eigen::ArrayXd half_width = normal_95 * variance.sqrt() * per_size.array() + (least_squares - at.z).array().abs();
+  constexpr double halves = 2;
+  const Eigen::ArrayXd by_step = halves * per_size.cwiseProduct(by_half_step).array().abs();
+  const Eigen::ArrayXd half_width = normal_95 * variance.sqrt() * per_size.array() + (least_squares - at.z).array().abs() + by_step;
   return {(size > nothing).select(half_width, unbounded), determined};
 }
 

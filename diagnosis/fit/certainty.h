@@ -41,6 +41,10 @@ Derivatives derivativesAt(const Comparison& comparison, const FitProblem& proble
 /// The errors of the derivatives alone could feign some information about a direction; from the information of each signal that much is
 /// subtracted. If nothing is left of any signal, the direction is not known, and every coordinate that takes part in it has an infinite
 /// half width.
-Certainty certaintyOf(const Comparison& comparison, const FitProblem& problem, const FitPoint& at, const Derivatives& derivatives);
+///
+/// `step_change`: what half the time step changes in the prediction, empty if that is not asked. The error of the whole step is twice that,
+/// because the stepper is of first order; what the coordinates would change with it widens the intervals, too.
+Certainty certaintyOf(const Comparison& comparison, const FitProblem& problem, const FitPoint& at, const Derivatives& derivatives,
+                      const Eigen::VectorXd& step_change = {});
 
 }  // namespace musclesim

@@ -276,7 +276,7 @@ Eigen::VectorXd Comparison::withNominal(Eigen::VectorXd prediction) const {
 
 Eigen::VectorXd Comparison::predicted(const std::vector<Prediction>& per_segment, Fidelity fidelity) const {
   Eigen::VectorXd result = gathered(per_segment);
-  if (result.size() && fidelity != Fidelity::fine) result += correction_;
+  if (result.size() && fidelity > Fidelity::fine) result += correction_;
   return result;
 }
 

@@ -341,6 +341,23 @@ std::vector<Hypothesis> Hypothesis::withAndWithoutShares() const {
   return without.coordinateCount() < coordinateCount() ? std::vector{*this, std::move(without)} : std::vector{*this};
 }
 
+/// The first strength with and without the shares, which belong to its law, and each further one alone. A fit of all would have to tell
+/// what they share.
+std::vector<Hypothesis> Hypothesis::eachLaw() const {
+  std::vector<Hypothesis> result;
+  for (const int kept : strengths_) {
+    Hypothesis one = *this;
+    for (int i = coordinateCount() - 1; i >= 0; --i)
+      if (i != kept && std::ranges::find(strengths_, i) != strengths_.end()) one.leaveOut(i);
+    std::vector<Hypothesis> own = one.withAndWithoutShares();
+    if (kept == strengths_.front())
+      result = std::move(own);
+    else
+      result.push_back(std::move(own.back()));
+  }
+  return result;
+}
+
 /// Variants for the start and the end of a muscle, if the robot has both.
 std::vector<Hypothesis> Hypothesis::ends(const Plant& plant) const {
   std::vector<Hypothesis> result;
@@ -413,6 +430,8 @@ std::vector<Hypothesis> Hypothesis::variants(const Plant& plant) const {
   switch (info_.variants) {
     case Variants::shares:
       return withAndWithoutShares();
+    case Variants::laws:
+      return eachLaw();
     case Variants::strengths:
       return togetherAndAlone();
     case Variants::sizes:

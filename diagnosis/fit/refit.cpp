@@ -101,7 +101,8 @@ FitResult fit(const Comparison& comparison, const FitProblem& problem, int round
   return {best.z, best.residual, best.cost, certaintyOf(comparison, problem, best, withoutErrors(comparison, jacobian)), jacobian};
 }
 
-FitResult finish(const Comparison& comparison, const FitProblem& cheap, const Predicted& exact, const Eigen::VectorXd& residual) {
+FitResult finish(const Comparison& comparison, const FitProblem& cheap, const Predicted& exact, const Eigen::VectorXd& residual,
+                 const Predicted& finer) {
   constexpr int step_count = 4;
   constexpr double exactly_enough = 1e-6;  // nats of the tempered misfit: a step of about a tenth of a standard error
   FitPoint best{cheap.start, residual, comparison.misfit(residual) + priorCost(cheap, cheap.start)};
@@ -117,7 +118,9 @@ FitResult finish(const Comparison& comparison, const FitProblem& cheap, const Pr
     if (!stepDown(comparison, exactly, jacobian, damping, best)) break;
     update(jacobian, before, best);
   }
-  return {best.z, best.residual, best.cost, certaintyOf(comparison, cheap, best, near), jacobian};
+  Eigen::VectorXd step_change = finer ? finer(best.z) : Eigen::VectorXd{};
+  if (step_change.size()) step_change -= comparison.measured() - best.residual;
+  return {best.z, best.residual, best.cost, certaintyOf(comparison, cheap, best, near, step_change), jacobian};
 }
 
 FitResult fitCorrected(const Comparison& comparison, const FitProblem& cheap, const Predicted& exact, int round_count) {

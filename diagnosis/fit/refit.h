@@ -31,7 +31,9 @@ FitResult fitCorrected(const Comparison& comparison, const FitProblem& cheap, co
 
 /// Ends a fit at cheap.start, where measured minus the exact prediction is `residual`: derivatives over steps as short as the intervals
 /// (derivativesAt, by the cheap prediction), up to four steps with them by the exact prediction, and the intervals. fit() ends when a step
-/// gains less than FitProblem::enough of the tempered misfit; that may be many standard errors from the least one.
-FitResult finish(const Comparison& comparison, const FitProblem& cheap, const Predicted& exact, const Eigen::VectorXd& residual);
+/// gains less than FitProblem::enough of the tempered misfit; that may be many standard errors from the least one. `finer`, if given,
+/// predicts with half the time step of the exact prediction: the intervals hold what the step changes.
+FitResult finish(const Comparison& comparison, const FitProblem& cheap, const Predicted& exact, const Eigen::VectorXd& residual,
+                 const Predicted& finer = {});
 
 }  // namespace musclesim

@@ -112,6 +112,7 @@ Plant::Plant(std::vector<Recording> recordings, const DiagnosisOptions& options,
   compareSignals();
   for (const auto* part : {&split_.fit, &split_.held_out}) requireNumbers(*part);
   chooseSubsteps();
+  leaveOutWhatChangesNothing();
 }
 
 void Plant::findNominalParameters() {

@@ -43,8 +43,8 @@ struct Split {
 };
 
 /// Time step of a simulation: each level doubles the step of the one before, which costs less. The error is nearly the same for all models
-/// of one plant, so differences between coarse predictions are valid (Comparison corrects for the rest).
-enum class Fidelity { fine, medium, coarse, coarsest };
+/// of one plant, so differences between coarse predictions are valid (Comparison corrects for the rest). `finer` tells what is left of it.
+enum class Fidelity { finer = -1, fine, medium, coarse, coarsest };
 
 /// Which signals of a prediction are asked for. Pressures alone need no simulation of the body.
 enum class Focus { pressures, all_signals };
@@ -136,6 +136,9 @@ class Plant {
   Simulation& model() const { return *reference_; }
   /// Internal steps per control step in fine simulations, and whether they are others than a replay takes by itself.
   int substeps() const { return substeps_; }
+  /// Whether simulated and recorded motions differ by the error of the time step: machines have no internal steps, but recordings of this
+  /// program are replayed in those they were made in.
+  bool hasStepError() const;
   bool hasOwnSubsteps() const { return options_.model.substeps > 0 || substeps_ != reference_->substeps(); }
   /// The robot as built.
   RobotDrawing drawing() const;
@@ -167,6 +170,8 @@ class Plant {
   void findNumbers(const std::map<std::string, double>& given);
   void findNominalParameters();
   void chooseSubsteps();
+  bool changesNothing(const std::string& name, double value) const;
+  void leaveOutWhatChangesNothing();
   double largestChangeInSigmas(const std::vector<Prediction>& one, const std::vector<Prediction>& other) const;
   int substepsOf(Fidelity fidelity) const;
   std::string simulationKey(int recording, std::size_t rows, Fidelity fidelity) const;

@@ -60,7 +60,7 @@ bool Plant::beginsUnknown(int recording) const {
 void Plant::chooseSubsteps() {
   constexpr double bearable_sigmas = 0.5;
   substeps_ = reference_->substeps();
-  if (options_.model.substeps > 0 || substeps_ >= fewest_to_coarsen || std::ranges::any_of(recordings_, isSimulated)) return;
+  if (options_.model.substeps > 0 || substeps_ >= fewest_to_coarsen || !hasStepError()) return;
   const auto predicted = [this] {
     std::vector<Prediction> all(recordings_.size());
     parallelFor(static_cast<int>(all.size()), jobCount(), [&](int i) { all[static_cast<std::size_t>(i)] = predict(i, Model{}); });
@@ -75,6 +75,25 @@ void Plant::chooseSubsteps() {
       break;
     }
     usual = std::move(finer);
+  }
+}
+
+/// Whether the model predicts the first recording to the last digit as before if a number has another value.
+bool Plant::changesNothing(const std::string& name, double value) const {
+  Model changed;
+  changed.parameters.emplace_back(name, value);
+  const Prediction before = predict(0, Model{}, 0, Fidelity::coarse), after = predict(0, changed, 0, Fidelity::coarse);
+  return !after.diverged && !after.refused && !after.cut && before.values == after.values;
+}
+
+/// A file's muscles may have force laws and settings of their own; then the program's numbers for these are for no muscle.
+void Plant::leaveOutWhatChangesNothing() {
+  constexpr double larger = 1.1;
+  std::erase_if(nominal_, [&](const auto& number) { return changesNothing(number.first, larger * number.second); });
+  for (Eigen::Index i = 0; i < numberCount(); ++i) {
+    const std::string& name = numbers_[static_cast<std::size_t>(i)].parameter.name;
+    if (changesNothing(name, numberAt(i, numbers_in_force_[i] + 1)))
+      notes_.push_back(fmt::format("{} changes nothing in this robot, so that it may be off explains nothing", name));
   }
 }
 
@@ -96,12 +115,17 @@ double Plant::largestChangeInSigmas(const std::vector<Prediction>& one, const st
   return largest;
 }
 
+bool Plant::hasStepError() const {
+  return std::ranges::none_of(recordings_, isSimulated);
+}
+
 Fidelity Plant::possible(Fidelity fidelity) const {
-  return substeps_ >= fewest_to_coarsen ? fidelity : Fidelity::fine;
+  return substeps_ >= fewest_to_coarsen ? fidelity : std::min(fidelity, Fidelity::fine);
 }
 
 /// Where more were chosen than a replay takes, never fewer than that: the search would lose effects in the error of longer steps.
 int Plant::substepsOf(Fidelity fidelity) const {
+  if (fidelity == Fidelity::finer) return 2 * substeps_;
   const int ratio = ratioOf(possible(fidelity)), usual = reference_->substeps();
   const int substeps = (substeps_ + ratio - 1) / ratio;
   return substeps_ > usual ? std::max(substeps, usual) : substeps;

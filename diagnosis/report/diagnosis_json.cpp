@@ -43,8 +43,11 @@ Json toJson(const FoundEffect& effect) {
   return json;
 }
 
-Json toJson(const Place& place) {
-  Json json = {{"stage", place.stage}, {"component", place.component}, {"share", place.share}, {"ruled_out", place.is_ruled_out}};
+/// What the signals show is where most of the gap arises; a cause that was found elsewhere makes the rest.
+Json toJson(const Place& place, bool is_found) {
+  Json json = {{"stage", place.stage}, {"component", place.component}, {"share", place.share}};
+  json["ruled_out"] = place.is_ruled_out && !is_found;
+  if (is_found) json["found"] = true;
   if (!place.phase.empty()) json["regime"] = place.phase;
   return json;
 }
@@ -137,7 +140,8 @@ Json fittedJson(const Diagnosis& d) {
 
 std::string diagnosisJson(const Diagnosis& d, const std::string& schedule_file) {
   Json json = {{"format", "musclesim-diagnosis-1"}, {"robot", d.robot}, {"recordings", d.recordings}, {"verdict", nameOf(d.verdict)}};
-  json["where"] = listOf(d.where);
+  json["where"] = Json::array();
+  for (const Place& place : d.where) json["where"].push_back(toJson(place, isFoundAt(d, place.stage)));
   json["effects"] = listOf(d.effects);
   json["none_of_these"] = d.none_of_these;
   json["explanations"] = Json::array();

@@ -55,16 +55,20 @@ std::string sentenceOfAll(const Diagnosis& d) {
                      listed(unusual), unusual.size() > 1 ? "are" : "is");
 }
 
+/// Where another explanation is about as good.
+std::string sentenceOfAmbiguity(const Diagnosis& d) {
+  const char* these = d.chosen.size() > 1 ? "these" : "this one";
+  if (d.next_experiment.commands.empty())
+    return fmt::format("Other causes would explain these recordings as well, and no motion that was tried would tell them from {}.", these);
+  return fmt::format("Other causes would explain these recordings as well: record more before you rely on {}.", these);
+}
+
 SignWords signWords(const Diagnosis& d, Belief belief) {
-  const bool are_several = d.chosen.size() > 1;
   switch (belief) {
     case Belief::explained:
       return {"explained", "Explained", sentenceOfAll(d)};
     case Belief::partly:
-      return {"partly", "Explained in part",
-              isAmbiguous(d) ? fmt::format("Other causes would explain these recordings as well: record more before you rely on {}.",
-                                           are_several ? "these" : "this one")
-                             : sentenceOfPart(d)};
+      return {"partly", "Explained in part", isAmbiguous(d) ? sentenceOfAmbiguity(d) : sentenceOfPart(d)};
     case Belief::cannot_tell:
       return {"cannot_tell", "Cannot tell", "Believe none of the causes yet."};
     case Belief::no_gap:
@@ -108,15 +112,18 @@ std::string whereAnswer(const Diagnosis& d) {
   const std::string seen = d.where.empty() ? "" : whereSentence(d) + ".";
   if (d.chosen.empty()) return seen.empty() ? "<p>Not known.</p>" : paragraph(seen);
   std::vector<std::string> places;
-  std::string unconfirmed;
+  std::vector<std::string> unconfirmed;
   for (const FoundEffect& effect : shownEffects(d)) {
     const std::string stage = nameOf(effectInfo(effect.id).stage);
     const std::string place = fmt::format("in the {} stage ({})", stage, ownerWords(effect.id, effect.component));
-    if (isLocated(d.where) && !mayBeAt(d.where, stage)) unconfirmed = " The signals alone do not confirm the " + stage + " stage.";
+    if (isLocated(d.where) && !mayBeAt(d.where, stage) && std::ranges::find(unconfirmed, stage) == unconfirmed.end())
+      unconfirmed.push_back(stage);
     if (std::ranges::find(places, place) == places.end()) places.push_back(place);
   }
-  return paragraph(
-             fmt::format("{} {}.{}", d.chosen.size() > 1 ? "The causes act" : "The cause acts", fmt::join(places, " and "), unconfirmed)) +
+  return paragraph(fmt::format("{} {}.{}", d.chosen.size() > 1 ? "The causes act" : "The cause acts", listed(places),
+                               unconfirmed.empty() ? ""
+                                                   : fmt::format(" The signals alone do not confirm the {} stage{}.", listed(unconfirmed),
+                                                                 unconfirmed.size() > 1 ? "s" : ""))) +
          (seen.empty() ? "" : "<p class=small>From the signals alone: " + escapedXml(seen) + "</p>");
 }
 

@@ -119,11 +119,13 @@ std::string togetherList(const Diagnosis& d) {
 
 std::string where(const Diagnosis& d) {
   if (d.where.empty()) return "";
+  const bool is_elsewhere =
+      std::ranges::any_of(d.where, [&](const Place& p) { return isFoundAt(d, p.stage) && !mayBeAt(d.where, p.stage); });
   return heading("Where") + "<div class=place><div>" +
-         lead("A sample passes five " + term("stage", "stages") + ". The darker a box, the likelier the gap arises there" +
-              (isLocated(d.where) ? "; a thick red frame marks where the signals leave no other choice:" : ":")) +
-         "<figure>" + stagesFigure(d.where) + "</figure>" + paragraph("Evidence: " + d.where_method + ".") + "</div>" + drawing(d) +
-         "</div>\n";
+         lead("A sample passes five " + term("stage", "stages") + ". The darker a box, the likelier " +
+              (is_elsewhere ? "most of the gap" : "the gap") + " arises there, by the signals alone" +
+              (isLocated(d.where) ? "; a thick red frame marks where they leave no other choice:" : ":")) +
+         "<figure>" + stagesFigure(d) + "</figure>" + paragraph("Evidence: " + d.where_method + ".") + "</div>" + drawing(d) + "</div>\n";
 }
 
 std::string which(const Diagnosis& d) {

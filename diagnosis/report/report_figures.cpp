@@ -53,7 +53,7 @@ std::string barsFigure(const std::string& title, const std::vector<Bar>& bars, d
   return fmt::format("<div class=bars role=group aria-label=\"{}\">\n{}</div>\n", escapedXml(title), rows);
 }
 
-std::string stagesFigure(const std::vector<Place>& where) {
+std::string stagesFigure(const Diagnosis& d) {
   constexpr std::array<const char*, 5> stages = {"command", "pressure", "force", "body", "sensor"};
   constexpr double box = 94, gap = 20, height = 58, top = 6;
   const double width = static_cast<double>(stages.size()) * (box + gap) - gap + 4;
@@ -61,9 +61,9 @@ std::string stagesFigure(const std::vector<Place>& where) {
   std::string markup;
   for (std::size_t i = 0; i < stages.size(); ++i) {
     const double x = 2 + static_cast<double>(i) * (box + gap);
-    const auto place = std::ranges::find(where, std::string(stages[i]), &Place::stage);
-    const double share = place == where.end() ? 0 : place->share;
-    const bool marked = mayBeAt(where, stages[i]);
+    const auto place = std::ranges::find(d.where, std::string(stages[i]), &Place::stage);
+    const double share = place == d.where.end() ? 0 : place->share;
+    const bool marked = mayBeAt(d.where, stages[i]), is_found = isFoundAt(d, stages[i]);
     const int grey = static_cast<int>(std::lround(245 - 190 * share));
     const std::string ink = share > 0.5 ? "#ffffff" : "#222222";
     markup += fmt::format(
@@ -77,7 +77,9 @@ std::string stagesFigure(const std::vector<Place>& where) {
     };
     words(top + 24, stages[i], 17, ink);
     words(top + 46, fmt::format("{:.0f} %", 100 * share), 18, ink);
-    if (share >= 0.05)
+    if (is_found)
+      words(top + height + 20, "cause found", 15, guilty_color);
+    else if (share >= 0.05)
       words(top + height + 20, place->component == "all" ? "all" : componentWords(withoutPrefix(place->component)), 15, "#222222");
     if (i + 1 < stages.size())
       markup += fmt::format("<path d=\"M{0:.0f} {1:.0f}h{2:.0f}m-7 -5l7 5l-7 5\" fill=\"none\" stroke=\"#555555\" stroke-width=\"1.6\"/>",

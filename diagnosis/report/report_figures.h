@@ -18,8 +18,8 @@ struct Bar {
 };
 std::string barsFigure(const std::string& title, const std::vector<Bar>& bars, double full);
 
-/// The five stages that a sample passes, each as dark as its share of the gap.
-std::string stagesFigure(const std::vector<Place>& where);
+/// The five stages that a sample passes, each as dark as its share of the gap, with those where a cause was found.
+std::string stagesFigure(const Diagnosis& d);
 
 /// The robot from the front with the component of the first place marked.
 std::string robotFigure(const RobotDrawing& drawing, const Place& place);

@@ -164,7 +164,7 @@ FitProblem Causes::problemOf(const Explanation& explanation, const Comparison& c
     at.z = z.head(effect_count);
     at.numbers = z.tail(number_count);
     const Model model = modelOf(at);
-    return fidelity == Fidelity::fine ? comparison.predicted(model, Fidelity::fine) : comparison.predicted(model);
+    return fidelity <= Fidelity::fine ? comparison.predicted(model, fidelity) : comparison.predicted(model);
   };
   return problem;
 }
@@ -205,7 +205,8 @@ void Causes::refitHolding(Explanation& explanation, Eigen::Index coordinate, con
 void Causes::finish(Explanation& explanation, const Comparison& comparison) const {
   take(explanation,
        musclesim::finish(comparison, problemOf(explanation, comparison, Fidelity::coarse),
-                         problemOf(explanation, comparison, Fidelity::fine).predicted, explanation.residual),
+                         problemOf(explanation, comparison, Fidelity::fine).predicted, explanation.residual,
+                         plant_.hasStepError() ? problemOf(explanation, comparison, Fidelity::finer).predicted : Predicted{}),
        true);
 }
 

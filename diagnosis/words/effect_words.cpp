@@ -169,6 +169,8 @@ std::string remarkFor(const Estimate& estimate, const EffectParameter& parameter
   const auto limited = [&](double bound) { return std::isfinite(bound) && estimate.value == bound && bound != parameter.neutral; };
   if (limited(parameter.minimum) || limited(parameter.maximum)) return "at its bound";
   if (estimate.low < estimate.high && !saysSomething(estimate, parameter)) return "these recordings hardly determine it";
+  if (parameter.shape && estimate.value == estimate.low && estimate.low < estimate.high && estimate.value != parameter.neutral)
+    return "the smallest that was tried";
   if (!estimate.is_determined) return "these recordings do not determine it";
   if (is_correction || (estimate.value >= parameter.usual_low && estimate.value <= parameter.usual_high)) return "";
   return fmt::format("usual range {:.4g} to {:.4g} {}", said.factor * parameter.usual_low, said.factor * parameter.usual_high, said.unit);

@@ -25,9 +25,9 @@ std::string numbersWords(const Diagnosis& d) {
   std::vector<std::string> words;
   for (const FittedNumber& number : d.numbers)
     if (std::abs(number.in_tolerances) >= unusual_tolerances && (number.fitted.low > number.start || number.fitted.high < number.start))
-      words.push_back(fmt::format("{} of {} instead of {:.4g} {}", number.name, estimateWords(number.fitted), number.start, number.unit));
+      words.push_back(fmt::format("{} = {} instead of {:.4g} {}", number.name, estimateWords(number.fitted), number.start, number.unit));
   if (words.empty()) return "";
-  return fmt::format("The data speak for a {}.{}", fmt::join(words, " and a "),
+  return fmt::format("The data speak for {}.{}", fmt::join(words, " and "),
                      d.chosen.empty() ? "" : " The effects need these numbers: use effects.json with nominal.toml.");
 }
 

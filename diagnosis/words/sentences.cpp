@@ -103,6 +103,11 @@ bool mayBeAt(const std::vector<Place>& where, const std::string& stage) {
   return isLocated(where) && (place == where.begin() || (place != where.end() && !place->is_ruled_out));
 }
 
+bool isFoundAt(const Diagnosis& d, const std::string& stage) {
+  return std::ranges::any_of(d.chosen,
+                             [&](const std::string& label) { return nameOf(effectInfo(label.substr(0, label.find('@'))).stage) == stage; });
+}
+
 namespace {
 
 /// ", mostly while venting" if the held-out data, whose bars the page shows, agree.

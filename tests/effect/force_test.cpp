@@ -95,6 +95,20 @@ TEST(BraidHysteresis, GoesWithThePressureAlone) {
     }
 }
 
+TEST(BraidHysteresis, MayBeConstant) {
+  for (const double pressure : {0.3, 0.6})
+    for (const double length_mm : {230.0, 250.0}) {
+      LengthMachine machine({{"braid_hysteresis", "all", {{"constant_friction_N", 6.0}, {"presliding_mm", 1.0}}}}, pressure, length_mm - 10);
+      machine.moveTo(length_mm, 50, h_s);
+      const double friction_N = 6, law_N = machine.lawN(pressure, length_mm);
+      ASSERT_GT(law_N, friction_N);
+      EXPECT_NEAR(machine.tensionAt(length_mm), law_N + friction_N, 1e-6) << pressure << " " << length_mm;
+      machine.moveTo(length_mm + 5, 50, h_s);
+      machine.moveTo(length_mm, 50, h_s);
+      EXPECT_NEAR(machine.tensionAt(length_mm), law_N - friction_N, 1e-6) << pressure << " " << length_mm;
+    }
+}
+
 TEST(BraidHysteresis, DoesNotPush) {
   LengthMachine machine({{"braid_hysteresis", "all", {{"relative_width", 1.0}, {"presliding_mm", 1.0}, {"pressure_share", 1.0}}}}, 0.2,
                         260);

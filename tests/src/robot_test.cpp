@@ -56,6 +56,17 @@ TEST_F(RobotCommand, NewWritesAFileThatRuns) {
   EXPECT_TRUE(contains(run({"replay", "data/lever.csv"}).err, "its text has changed"));
 }
 
+TEST_F(RobotCommand, CheckTellsTolerancesOfNoUse) {
+  ASSERT_EQ(run({"robot", "new", "lever"}).status, 0);
+  change("lever.toml", "# tolerance = 0.02", "tolerance = 0.02");
+  const std::string of_bar = run({"robot", "check", "lever.toml"}).out;
+  EXPECT_TRUE(contains(of_bar, "nothing odd found")) << of_bar;
+  change("lever.toml", "[[body]]",
+         "[parameter.spare_kg]\nvalue = 1\nrange = [0.5, 2]\nmeaning = \"of a bar in the drawer\"\ntolerance = 0.1\n\n[[body]]");
+  const std::string of_spare = run({"robot", "check", "lever.toml"}).out;
+  EXPECT_TRUE(contains(of_spare, "odd: lever.spare_kg changes nothing in this robot, so its tolerance is of no use")) << of_spare;
+}
+
 TEST_F(RobotCommand, NewDoesNotWriteOverAFile) {
   ASSERT_EQ(run({"robot", "new", "lever"}).status, 0);
   const auto again = run({"robot", "new", "lever"});

@@ -19,6 +19,7 @@ inline constexpr double unlimited = std::numeric_limits<double>::infinity();
 /// Choices of an effect's parameters that a fit cannot reach from each other: a diagnosis tries each by itself.
 enum class Variants {
   shares,     ///< with and without the parameters that are shares and may be zero (further lags, a filter)
+  laws,       ///< the first strength with and without the shares, and each further one alone: each is a law of its own
   strengths,  ///< all strengths together, and each alone
   sizes,      ///< small and large: these show differently
   bits,       ///< every number of bits, and how a converter rounds

@@ -131,6 +131,18 @@ TEST(CertaintyOfSignals, ASignalThatJumpsHidesNothingThatAnotherOneTells) {
   EXPECT_GT(jumping, 0.5 * smooth);
 }
 
+/// Half the time step changes the prediction as a shift of the coordinates would, so the whole step as twice that shift.
+TEST_F(CertaintyOfAFit, IntervalsHoldWhatTheTimeStepChanges) {
+  const Eigen::Vector3d truth(1, 0, 0), by_half_step(0.004, -0.002, 0.003);
+  const FitProblem exact = problem(lateAndLagging, truth, truth);
+  const Predicted finer = [&](const Eigen::VectorXd& z) -> Eigen::VectorXd { return exact.predicted(z + by_half_step); };
+  const Eigen::VectorXd left = residual(exact, truth);
+  const FitResult without = finish(both, exact, exact.predicted, left), with = finish(both, exact, exact.predicted, left, finer);
+  EXPECT_EQ(with.z, without.z) << "the intervals are widened, nothing is moved";
+  const Eigen::VectorXd wider = with.certainty.half_width - without.certainty.half_width;
+  for (Eigen::Index k = 0; k < 3; ++k) EXPECT_NEAR(wider[k], 2 * std::abs(by_half_step[k]), 0.2 * std::abs(by_half_step[k])) << k;
+}
+
 /// A fit ends where another step gains little of the tempered misfit, which may be many standard errors from the truth. Only the exact
 /// prediction has its least misfit there.
 TEST_F(CertaintyOfAFit, TheLastStepsEndWithinTheInterval) {

@@ -95,6 +95,10 @@ TEST_F(PlantedRig, ALawWithAShareOfSomethingHasAVariantWithout) {
   const ActiveEffect simple = lags[1].at(lags[1].typical());
   EXPECT_EQ(std::get<double>(simple.parameters.at("next_lag_ratio")), 0);
   EXPECT_EQ(hypothesis("payload", "hand").variants(plant_).size(), 1);
+  std::vector<std::vector<std::string>> strengths;
+  for (const Hypothesis& friction : hypothesis("braid_hysteresis", "muscle_0").variants(plant_))
+    strengths.push_back(friction.strengthNames());
+  EXPECT_EQ(strengths, (std::vector<std::vector<std::string>>{{"relative_width"}, {"relative_width"}, {"constant_friction_N"}}));
 }
 
 TEST_F(PlantedRig, HeldSamplesAreCountedNotFitted) {

@@ -26,7 +26,7 @@ TEST(FittedNumbers, MayExplainAGap) {
 
 TEST(FittedNumbers, AreToldWhereTheyAreFarOff) {
   Diagnosis d = withLoad(Verdict::no_gap);
-  EXPECT_EQ(numbersWords(d), "The data speak for a rig.load_kg of 2.20 (2.10 to 2.30) instead of 2 kg.");
+  EXPECT_EQ(numbersWords(d), "The data speak for rig.load_kg = 2.20 (2.10 to 2.30) instead of 2 kg.");
   d.chosen = {"valve_lag@all"};
   EXPECT_TRUE(contains(numbersWords(d), "use effects.json with nominal.toml"));
   d.numbers.front().in_tolerances = 0.9;
