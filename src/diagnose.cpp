@@ -6,6 +6,7 @@
 #include <ctime>
 #include <filesystem>
 #include <memory>
+#include <set>
 
 #include "commands.h"
 #include "diagnose_arguments.h"
@@ -171,10 +172,12 @@ int diagnoseCommand(const ModelOptions& model, const DiagnoseArguments& argument
   const std::filesystem::path folder = folderFor(arguments);
   requireDifferent(arguments.tune);
   std::vector<Recording> recordings;
+  std::set<std::string> said;  // what holds for all recordings is said once
   for (const std::string& file : arguments.recordings) {
     recordings.push_back(readRecording(file, {arguments.ignore_columns}));
     if (arguments.without_active_effects) recordings.back().info.active_effects.clear();
-    for (const auto& note : recordings.back().notes) say(model, note);
+    for (const auto& note : recordings.back().notes)
+      if (said.insert(note).second) say(model, note);
   }
   requirePlaces(folder, model, arguments);
   DiagnosisOptions options;

@@ -82,6 +82,10 @@ class Monitor {
   DiagnosisProgress progress_;
 };
 
+void addNew(const std::string& note, std::vector<std::string>& notes) {
+  if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
+}
+
 class Run {
  public:
   /// `given` as for Plant.
@@ -114,7 +118,7 @@ class Run {
     diagnosis_.robot = plant_.robot();
     for (const Recording& recording : plant_.recordings()) {
       diagnosis_.recordings.push_back(recording.file);
-      for (const std::string& note : recording.notes) diagnosis_.notes.push_back(note);
+      for (const std::string& note : recording.notes) addNew(note, diagnosis_.notes);
     }
     for (const ActiveEffect& effect : plant_.recordings().front().info.active_effects)
       diagnosis_.model_effects.push_back(effect.id + "@" + effect.component);
@@ -271,8 +275,7 @@ Diagnosis run(std::vector<Recording> recordings, const DiagnosisOptions& options
     diagnosis.partial = true;
     return diagnosis;
   }
-  for (const std::string& note : diagnosis.notes)
-    if (std::ranges::find(again.notes, note) == again.notes.end()) again.notes.push_back(note);
+  for (const std::string& note : diagnosis.notes) addNew(note, again.notes);
   again.unknown_start = starts.sentence;
   again.simulation_count += diagnosis.simulation_count;
   again.simulated_s += diagnosis.simulated_s;

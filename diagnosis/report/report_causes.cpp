@@ -17,24 +17,20 @@ namespace musclesim::report {
 
 namespace {
 
-/// The robot with the located component in colour, or else the component of the best explanation.
+/// The robot with the components of the causes found in colour, or else the one to which the signals point.
 std::string drawing(const Diagnosis& d) {
   if (d.drawing.lines.empty()) return "";
-  Place place;
+  std::vector<Place> places;
   std::string words = "The robot from the front.";
-  const auto best =
-      std::ranges::find_if(d.effects, [&](const FoundEffect& effect) { return !d.chosen.empty() && effect.label() == d.chosen.front(); });
-  if (isLocated(d.where)) {
-    place = d.where.front();
-    words += fmt::format(" In colour, if it can be drawn: {}, where the gap arises.", componentWords(place.component));
-  } else if (best != d.effects.end()) {
-    place = {nameOf(effectInfo(best->id).stage), best->component, {}};
-    words += fmt::format(
-        " In colour, if it can be drawn: {}, where the best explanation acts; this follows from the search for causes below, not from the "
-        "boxes.",
-        componentWords(place.component));
+  const auto placeOf = [](const FoundEffect& effect) { return Place{nameOf(effectInfo(effect.id).stage), effect.component, {}}; };
+  if (!d.chosen.empty()) {
+    for (const FoundEffect& effect : shownEffects(d)) places.push_back(placeOf(effect));
+    words += " In colour, as far as it can be drawn: where the causes found act.";
+  } else if (isLocated(d.where)) {
+    places = {d.where.front()};
+    words += fmt::format(" In colour, as far as it can be drawn: where the gap arises ({}).", componentWords(places.front().component));
   }
-  return "<div class=robot>" + robotFigure(d.drawing, place) + small(words) + "</div>\n";
+  return "<div class=robot>" + robotFigure(d.drawing, places) + small(words) + "</div>\n";
 }
 
 std::string parameterTable(const FoundEffect& effect, const Diagnosis& d) {

@@ -99,13 +99,15 @@ std::vector<std::string> drawnComponents(const RobotDrawing& drawing, const Plac
   if (name.starts_with("signal_hand")) name = "hand";
   std::vector<std::string> names;
   for (std::istringstream parts(name); std::getline(parts, name, '+');) names.push_back(name);
-  const bool all_muscles = place.component == "all" && place.stage != "body" && place.stage != "sensor";
+  const bool all = place.component == "all", all_joints = all && place.stage == "body";
+  const bool all_muscles = all && !all_joints && place.stage != "sensor";
   std::vector<std::string> drawn;
   for (const RobotDrawing::Line& line : drawing.lines)
     if (!line.component.empty() && (all_muscles || std::ranges::find(names, line.component) != names.end()))
       drawn.push_back(line.component);
   for (const RobotDrawing::Point& point : drawing.points)
-    if (std::ranges::find(names, point.component) != names.end()) drawn.push_back(point.component);
+    if ((all_joints && point.component.starts_with("joint_")) || std::ranges::find(names, point.component) != names.end())
+      drawn.push_back(point.component);
   return drawn;
 }
 
@@ -120,7 +122,7 @@ std::string guiltyLabel(SvgPoint at, double offset, const std::string& component
 
 }  // namespace
 
-std::string robotFigure(const RobotDrawing& drawing, const Place& place) {
+std::string robotFigure(const RobotDrawing& drawing, const std::vector<Place>& places) {
   if (drawing.lines.empty()) return "";
   Eigen::AlignedBox2d box;
   for (const RobotDrawing::Line& line : drawing.lines)
@@ -132,9 +134,14 @@ std::string robotFigure(const RobotDrawing& drawing, const Place& place) {
   auto pixel = [&](const Eigen::Vector2d& p) {
     return SvgPoint{width / 2 + (p.x() - box.center().x()) * scale, height / 2 - (p.y() - box.center().y()) * scale};
   };
-  const std::vector<std::string> marked = drawnComponents(drawing, place);
+  std::vector<std::string> marked;
+  for (const Place& place : places)
+    for (std::string& component : drawnComponents(drawing, place))
+      if (std::ranges::find(marked, component) == marked.end()) marked.push_back(std::move(component));
   const auto isMarked = [&](const std::string& component) { return std::ranges::find(marked, component) != marked.end(); };
   const Svg svg(width, height, "The robot from the front" + (marked.empty() ? "" : fmt::format("; marked: {}", fmt::join(marked, ", "))));
+  const bool are_all =
+      std::ranges::all_of(drawing.lines, [&](const auto& line) { return line.component.empty() || isMarked(line.component); });
   std::string markup, labels;
   for (const RobotDrawing::Line& line : drawing.lines) {
     const bool muscle = !line.component.empty(), guilty = muscle && isMarked(line.component);
@@ -148,7 +155,7 @@ std::string robotFigure(const RobotDrawing& drawing, const Place& place) {
         : muscle ? "#9a9a9a"
                  : "#dcdcdc",
         std::max(2.0, line.width_mm * scale) + (guilty ? 2 : 0), escapedXml(line.title));
-    if (guilty && place.component != "all") {
+    if (guilty && !are_all) {
       const SvgPoint before = points[(points.size() - 1) / 2], behind = points[points.size() / 2];
       labels += guiltyLabel({0.5 * (before.x + behind.x), 0.5 * (before.y + behind.y) - 12}, 14, line.component, width);
     }

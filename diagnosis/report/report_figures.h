@@ -22,7 +22,7 @@ std::string barsFigure(const std::string& title, const std::vector<Bar>& bars, d
 std::string stagesFigure(const Diagnosis& d);
 
 /// The robot from the front with the component of the first place marked.
-std::string robotFigure(const RobotDrawing& drawing, const Place& place);
+std::string robotFigure(const RobotDrawing& drawing, const std::vector<Place>& places);
 
 struct TraceWords {
   std::string title, unit, remark;
