@@ -68,7 +68,11 @@ SignWords signWords(const Diagnosis& d, Belief belief) {
     case Belief::explained:
       return {"explained", "Explained", sentenceOfAll(d)};
     case Belief::partly:
-      return {"partly", "Explained in part", isAmbiguous(d) ? sentenceOfAmbiguity(d) : sentenceOfPart(d)};
+      return {"partly", "Explained in part",
+              isAmbiguous(d) ? sentenceOfAmbiguity(d)
+              : !d.numbers_instead.empty()
+                  ? "A wrong number of the model would do what a cause does: measure it before you rely on that cause."
+                  : sentenceOfPart(d)};
     case Belief::cannot_tell:
       return {"cannot_tell", "Cannot tell", "Believe none of the causes yet."};
     case Belief::no_gap:
@@ -148,7 +152,7 @@ std::string alternativesSentence(const Diagnosis& d, const Caveats& caveats) {
   for (std::size_t i = is_chosen_first ? 1 : 0; i < d.ambiguity_sets.size() && others.size() < told; ++i)
     others.push_back(effectTitles(d.ambiguity_sets[i]));
   const std::size_t more = d.ambiguity_sets.size() - others.size() - (is_chosen_first ? 1 : 0);
-  return fmt::format("{}: {}{}.", is_chosen_first ? "Less likely, but possible" : "Possible", fmt::join(others, ", or "),
+  return fmt::format("{}: {}{}.", is_chosen_first ? likelihoodOfOthers(d) : "Possible", fmt::join(others, ", or "),
                      more ? fmt::format(", or {} more", more) : "");
 }
 
@@ -161,7 +165,9 @@ std::string sureAnswer(const Diagnosis& d, const Caveats& caveats) {
     const auto only = std::ranges::find(d.effects, d.chosen.front(), &FoundEffect::label);
     if (d.chosen.size() == 1 && only != d.effects.end())
       text += fmt::format("<p>This cause has a {} of {}{}.</p>", term("probability"), probabilityWords(only->probability),
-                          together < only->probability - worth_telling ? "; that nothing else acts, " + probabilityWords(together) : "");
+                          together < only->probability - worth_telling && d.remainder.probability < rather_none
+                              ? "; that nothing else acts, " + probabilityWords(together)
+                              : "");
     else if (together > 0)
       text += fmt::format("<p>This explanation has a {} of {} as a whole; each cause has its own below.</p>", term("probability"),
                           probabilityWords(together));

@@ -49,7 +49,8 @@ std::string controlsFigure(const Diagnosis& d) {
   return lead("What is left, beside two controls that an explanation should beat clearly: the " + term("refit") + " and a " + term("sham") +
               ":") +
          barsFigure("Remaining gap", all, std::max({100.0, all[1].value, all[2].value, all[3].value})) +
-         small(fmt::format("Re-tuned were: {}.", fmt::join(d.refitted, ", ")));
+         small(d.refitted.empty() ? "This model has no number to re-tune."
+                                  : fmt::format("Re-tuned were: {}.", fmt::join(d.refitted, ", ")));
 }
 
 std::string phaseFigure(const Diagnosis& d) {

@@ -103,6 +103,14 @@ bool mayBeAt(const std::vector<Place>& where, const std::string& stage) {
   return isLocated(where) && (place == where.begin() || (place != where.end() && !place->is_ruled_out));
 }
 
+std::string likelihoodOfOthers(const Diagnosis& d) {
+  const auto named = std::ranges::find(d.explanations, d.chosen, &ExplanationProbability::effects);
+  const bool is_reached = named != d.explanations.end() && std::ranges::any_of(d.explanations, [&](const ExplanationProbability& other) {
+                            return other.effects != d.chosen && other.probability >= named->probability;
+                          });
+  return is_reached ? "About as likely" : "Less likely, but possible";
+}
+
 bool isFoundAt(const Diagnosis& d, const std::string& stage) {
   return std::ranges::any_of(d.chosen,
                              [&](const std::string& label) { return nameOf(effectInfo(label.substr(0, label.find('@'))).stage) == stage; });
@@ -263,7 +271,7 @@ std::string otherwise(const Diagnosis& d) {
   std::string experiment;
   if (!d.next_experiment.commands.empty()) experiment = "; record the schedule in next.csv to tell " + separatedWords(d);
   const auto more = static_cast<std::size_t>(d.alternatives.end() - end);
-  return fmt::format("Less likely, but possible: {}{}{}.", fmt::join(others, pairs ? "; or " : " or "),
+  return fmt::format("{}: {}{}{}.", likelihoodOfOthers(d), fmt::join(others, pairs ? "; or " : " or "),
                      more > 0 ? fmt::format("{}or {}", pairs ? "; " : ", ", counted(more, "other explanation")) : "", experiment);
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -47,6 +48,22 @@ TEST(DiagnoseSeveral, TakesNoSecondCauseThatOnlyMendsTheLawOfTheFirst) {
   const auto recordings = plant({{"foreign.growing_lag", "muscle_0", {{"fill_time_constant_s", 0.1}, {"vent_time_constant_s", 0.1}}}});
   const Diagnosis found = diagnose(recordings, few({"valve_lag", "transport_delay", "sensor_delay", "viscous_loss"}));
   EXPECT_EQ(found.chosen, std::vector<std::string>{"valve_lag@muscle_0"}) << diagnosisSummary(found);
+}
+
+/// Something that no effect knows moves the load by much more than the noise, but the pressures are those of a dead time.
+TEST(DiagnoseSeveral, NamesWhatExplainsThePressuresBesideAnUnknownMotion) {
+  std::vector<Recording> recordings = plant({{"transport_delay", "muscle_0", {{"delay_s", 0.06}}}}, planted::Pressure::measured);
+  for (Recording& recording : recordings)
+    for (Signal& signal : recording.signals)
+      if (signal.name == "length_0_mm")
+        for (std::size_t row = 0; row < recording.time_s.size(); ++row)
+          signal.values[row] += 20 * std::sin(11 * recording.time_s[row]) * std::sin(0.9 * recording.time_s[row] * recording.time_s[row]);
+  const Diagnosis found = diagnose(recordings, few({"transport_delay", "valve_lag", "payload", "sensor_gain"}));
+  EXPECT_EQ(found.verdict, Verdict::effects_found) << diagnosisSummary(found);
+  EXPECT_EQ(found.chosen, std::vector<std::string>{"transport_delay@muscle_0"}) << diagnosisSummary(found);
+  EXPECT_GT(found.remainder.probability, 0.5);
+  EXPECT_TRUE(found.remainder.is_significant);
+  EXPECT_TRUE(contains(diagnosisReport(found), "<strong>Explained in part</strong>"));
 }
 
 /// Three recordings of a rig with a line muscle under random steps of command, which hide a dead time behind the steep edges of a lag.
