@@ -98,7 +98,8 @@ TEST(BraidHysteresis, GoesWithThePressureAlone) {
 TEST(BraidHysteresis, MayBeConstant) {
   for (const double pressure : {0.3, 0.6})
     for (const double length_mm : {230.0, 250.0}) {
-      LengthMachine machine({{"braid_hysteresis", "all", {{"constant_friction_N", 6.0}, {"presliding_mm", 1.0}}}}, pressure, length_mm - 10);
+      LengthMachine machine({{"braid_hysteresis", "all", {{"constant_friction_N", 6.0}, {"presliding_mm", 1.0}}}}, pressure,
+                            length_mm - 10);
       machine.moveTo(length_mm, 50, h_s);
       const double friction_N = 6, law_N = machine.lawN(pressure, length_mm);
       ASSERT_GT(law_N, friction_N);
