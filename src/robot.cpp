@@ -69,37 +69,42 @@ void printTolerances(const Robot& robot) {
              words.empty() ? "none" : fmt::format("{}", fmt::join(words, ", ")));
 }
 
-/// All readings after a short motion under commands that differ from muscle to muscle.
-std::vector<double> readingsAfterMotion(Simulation& simulation) {
+/// All readings after a short motion under commands that differ from muscle to muscle; none if the robot cannot be built with the changed
+/// number, or cannot move.
+std::vector<double> readingsAfterMotion(const ModelOptions& model, const std::string& name,
+                                        const std::optional<std::pair<std::string, double>>& changed = {}) {
   constexpr double duration_s = 0.2, least_command = 0.2, spread = 0.5;
-  Robot& robot = simulation.robot();
-  const int count = robot.actuatorCount();
-  musclesim::Action command(static_cast<std::size_t>(count), least_command);
-  simulation.start(robot.initialState(), command);
-  for (int i = 0; i < count; ++i) command[static_cast<std::size_t>(i)] += spread * i / count;
-  for (robot.step(command); simulation.time_s() < duration_s;) simulation.step();
-  const State state = robot.getState();
-  std::vector<double> readings = state.angle_deg;
-  for (const auto* more : {&state.force_N, &state.length_mm, &state.pressure}) readings.insert(readings.end(), more->begin(), more->end());
-  return readings;
+  try {
+    const auto simulation = built(model, name, changed);
+    Robot& robot = simulation->robot();
+    const int count = robot.actuatorCount();
+    musclesim::Action command(static_cast<std::size_t>(count), least_command);
+    simulation->start(robot.initialState(), command);
+    for (int i = 0; i < count; ++i) command[static_cast<std::size_t>(i)] += spread * i / count;
+    for (robot.step(command); simulation->time_s() < duration_s;) simulation->step();
+    const State state = robot.getState();
+    std::vector<double> readings = state.angle_deg;
+    for (const auto* more : {&state.force_N, &state.length_mm, &state.pressure})
+      readings.insert(readings.end(), more->begin(), more->end());
+    return readings;
+  } catch (const Error&) {
+    return {};
+  }
 }
 
 /// Numbers with a tolerance that do not matter, because every muscle has a force law or settings of its own.
 std::vector<std::string> tolerancesForNothing(const ModelOptions& model, const std::string& robot, Simulation& simulation) {
   std::vector<std::string> found;
   const std::map<std::string, double> tolerances = simulation.robot().parameterTolerances();
-  if (tolerances.empty()) return found;
+  const std::vector<double> before = tolerances.empty() ? std::vector<double>{} : readingsAfterMotion(model, robot);
+  if (before.empty()) return found;
   const std::vector<Parameter> declared = simulation.parameters().declared();
-  try {
-    const std::vector<double> before = readingsAfterMotion(*built(model, robot));
-    for (const auto& [name, tolerance] : tolerances) {
-      const auto number = std::ranges::find(declared, name, &Parameter::name);
-      if (number == declared.end() || !std::holds_alternative<double>(number->value)) continue;
-      const double value = std::clamp(std::get<double>(number->value) * (1 + tolerance), number->minimum, number->maximum);
-      if (readingsAfterMotion(*built(model, robot, std::pair{name, value})) == before)
-        found.push_back(fmt::format("{} changes nothing in this robot, so its tolerance is of no use", name));
-    }
-  } catch (const Diverged&) {  // not what is asked here
+  for (const auto& [name, tolerance] : tolerances) {
+    const auto number = std::ranges::find(declared, name, &Parameter::name);
+    if (number == declared.end() || !std::holds_alternative<double>(number->value)) continue;
+    const double value = std::clamp(std::get<double>(number->value) * (1 + tolerance), number->minimum, number->maximum);
+    if (readingsAfterMotion(model, robot, std::pair{name, value}) == before)
+      found.push_back(fmt::format("{} changes nothing in this robot, so its tolerance is of no use", name));
   }
   return found;
 }

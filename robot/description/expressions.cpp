@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -28,12 +29,13 @@ std::string problemOf(const mu::Parser::exception_type& error, const std::map<st
 namespace {
 
 /// The expressions that this thread has read, with the names as variables: a diagnosis builds one robot thousands of times with other
-/// numbers, and reading an expression takes a hundred times as long as evaluating it.
+/// numbers, and reading an expression takes much longer than evaluating it.
 class ReadExpressions {
  public:
   /// The value of an expression, and how many values it has. Throws as muParser does.
   std::pair<double, int> valueOf(const std::string& expression, const std::map<std::string, double>& names) {
     if (numbers_ != names) take(names);
+    if (parsers_.size() >= most_kept) parsers_.clear();
     std::unique_ptr<mu::Parser>& parser = parsers_[expression];
     if (parser) return valueOf(*parser);
     auto fresh = std::make_unique<mu::Parser>();
@@ -64,6 +66,8 @@ class ReadExpressions {
     const double value = *parser.Eval(value_count);
     return {value, value_count};
   }
+
+  static constexpr std::size_t most_kept = 2000;  ///< more than any robot has; thousands of robots in one process need not stay
 
   std::map<std::string, double> numbers_;  ///< the variables of all parsers, which hold pointers to the values
   std::unordered_map<std::string, std::unique_ptr<mu::Parser>> parsers_;
