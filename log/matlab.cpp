@@ -92,6 +92,7 @@ class Columns {
   }
   std::vector<MatlabColumn> columns;
   std::vector<std::string> unreadable;  ///< names of what holds no real numbers
+  bool has_objects = false;             ///< beside texts
 
  private:
   std::string file_;
@@ -108,6 +109,7 @@ class Columns {
                                        inQuotes(name)));
     if (sides.size() > 2 || variable.isComplex || !variable.data || !read || variable.class_type == MAT_C_SPARSE) {
       unreadable.push_back(name);
+      has_objects = has_objects || variable.class_type != MAT_C_CHAR;
       return;
     }
     sides.resize(2, 1);
@@ -192,8 +194,8 @@ std::string tableOf(const std::string& file, const std::string& variable, std::v
         fmt::format("{}: the table has the {} arrays of length {}; of other length: {} (variable in the mapping's [table] chooses)", file,
                     columns.size(), length, fmt::join(others, ", ")));
   if (!all.unreadable.empty())
-    notes.push_back(fmt::format("{}: holds no real numbers that can be read: {} (objects such as timeseries must be saved as plain arrays)",
-                                file, fmt::join(all.unreadable, ", ")));
+    notes.push_back(fmt::format("{}: holds no real numbers that can be read: {}{}", file, fmt::join(all.unreadable, ", "),
+                                all.has_objects ? " (objects such as timeseries must be saved as plain arrays)" : ""));
   return tableText(columns, length);
 }
 

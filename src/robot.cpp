@@ -86,6 +86,7 @@ std::vector<double> readingsAfterMotion(const ModelOptions& model, const std::st
     std::vector<double> readings = state.angle_deg;
     for (const auto* more : {&state.force_N, &state.length_mm, &state.pressure})
       readings.insert(readings.end(), more->begin(), more->end());
+    if (state.hand_mm) readings.insert(readings.end(), state.hand_mm->data(), state.hand_mm->data() + state.hand_mm->size());
     return readings;
   } catch (const Error&) {
     return {};
@@ -102,9 +103,10 @@ std::vector<std::string> tolerancesForNothing(const ModelOptions& model, const s
   for (const auto& [name, tolerance] : tolerances) {
     const auto number = std::ranges::find(declared, name, &Parameter::name);
     if (number == declared.end() || !std::holds_alternative<double>(number->value)) continue;
-    const double value = std::clamp(std::get<double>(number->value) * (1 + tolerance), number->minimum, number->maximum);
+    const double given = std::get<double>(number->value);
+    const double value = given * (given * (1 + tolerance) <= number->maximum ? 1 + tolerance : 1 / (1 + tolerance));
     if (readingsAfterMotion(model, robot, std::pair{name, value}) == before)
-      found.push_back(fmt::format("{} changes nothing in this robot, so its tolerance is of no use", name));
+      found.push_back(fmt::format("{} changes nothing in a short motion: its tolerance may be of no use", name));
   }
   return found;
 }

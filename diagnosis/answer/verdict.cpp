@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
 
 #include "../../base/parallel.h"
+#include "../isolation/substitution.h"
 #include "../search/gap_reduction.h"
 
 namespace musclesim {
@@ -94,19 +97,32 @@ void acceptNumbers(const Eigen::VectorXd& after, const HeldOut& held_out, bool a
   diagnosis.notes.push_back("the gap is no larger than the tolerances of the model's numbers explain");
 }
 
-/// Whether each effect of an explanation makes some signal of the held-out rows noise that stands out clearly without it: a pressure that a
-/// dead time explains, however far something unknown turns the joint. `after` is what the explanation leaves.
-bool eachExplainsASignal(const Search& search, const HeldOut& held_out, const Explanation& explanation, const Gap& after) {
-  constexpr double as_noise = 1.2, clear = 3;  // RMS over the noise floor
-  const auto ratio = [](const SignalGap& gap) { return gap.noise_sigma > 0 ? gap.rmse / gap.noise_sigma : 0; };
+/// RMS over the noise floor of each signal of the held-out rows under a model; empty if it diverges.
+std::map<std::string, double> heldOutRatios(const HeldOut& held_out, const Model& model) {
+  std::map<std::string, double> ratios;
+  const Eigen::VectorXd predicted = held_out.comparison.predicted(model);
+  if (!predicted.size()) return ratios;
+  for (const auto& [signal, gap] : held_out.comparison.gap(held_out.comparison.measured() - predicted).per_signal)
+    ratios[signal] = gap.noise_sigma > 0 ? gap.rmse / gap.noise_sigma : 0;
+  return ratios;
+}
+
+/// Whether each effect of an explanation is needed to make noise of a signal of the held-out rows that stands out clearly in the model as
+/// it was given and with its numbers fitted: a pressure that a dead time explains, however far something unknown turns the joint. Effects
+/// that only make up for each other are not needed for any signal that stood out.
+bool eachExplainsASignal(const Search& search, const HeldOut& held_out, const Explanation& explanation) {
+  constexpr double clear = 3;  // noise floors: the least that a cause must make to be demanded in the check on withheld causes
+  const auto ratios = [&](const Explanation& one) { return heldOutRatios(held_out, search.modelOf(one)); };
+  const std::map<std::string, double> as_given = heldOutRatios(held_out, Model{}), with_numbers = ratios(search.nothing()),
+                                      with_all = ratios(explanation);
   for (std::size_t member = 0; member < explanation.members.size(); ++member) {
-    const Model others = search.modelOf(search.causes().without(explanation, member));
-    const Eigen::VectorXd predicted = held_out.comparison.predicted(others);
-    if (!predicted.size()) return false;
-    const Gap without = held_out.comparison.gap(held_out.comparison.measured() - predicted);
-    if (std::ranges::none_of(after.per_signal, [&](const auto& left) {
-          const auto stood_out = without.per_signal.find(left.first);
-          return stood_out != without.per_signal.end() && ratio(left.second) < as_noise && ratio(stood_out->second) > clear;
+    std::map<std::string, double> without = ratios(search.causes().without(explanation, member));
+    if (std::ranges::none_of(with_all, [&](const auto& left) {
+          const auto standsOut = [&](const std::map<std::string, double>& in) {
+            const auto found = in.find(left.first);
+            return found != in.end() && found->second > clear;
+          };
+          return left.second < agrees && standsOut(as_given) && standsOut(with_numbers) && standsOut(without);
         }))
       return false;
   }
@@ -150,8 +166,8 @@ Offer judge(const Search& search, const HeldOut& held_out, const DiagnosisOption
                                                : clearlyBeats(attempt.reduction_percent, diagnosis.nominal_refit_percent);
   const bool beats_controls = beats_numbers && clearlyBeats(attempt.reduction_percent, diagnosis.negative_control_percent);
   // Or it is a part of the whole: of all signals together it may remove little.
-  const bool found = !numbers_do_as_well && ((is_of_use && beats_controls) ||
-                                             (attempt.reduction_percent > 0 && eachExplainsASignal(search, held_out, best, gap_after)));
+  const bool found = !numbers_do_as_well &&
+                     ((is_of_use && beats_controls) || (attempt.reduction_percent > 0 && eachExplainsASignal(search, held_out, best)));
   if (found) {
     const double on_held_out = probabilityOfUnknown(shareOfMisfitLeft(held_out.comparison, held_out.before, after));
     diagnosis.none_of_these = stand_in_share * std::min(named, std::max(search.noneOfThese(), on_held_out));

@@ -341,8 +341,8 @@ std::vector<Hypothesis> Hypothesis::withAndWithoutShares() const {
   return without.coordinateCount() < coordinateCount() ? std::vector{*this, std::move(without)} : std::vector{*this};
 }
 
-/// The first strength with and without the shares, which belong to its law, and each further one alone. A fit of all would have to tell
-/// what they share.
+/// The first strength with and without the shares, which belong to its law, and each further one alone, without shares. A fit of all would
+/// have to tell what they share.
 std::vector<Hypothesis> Hypothesis::eachLaw() const {
   std::vector<Hypothesis> result;
   for (const int kept : strengths_) {

@@ -134,11 +134,11 @@ class Plant {
 
   /// The model as built, for queries; it is never stepped.
   Simulation& model() const { return *reference_; }
-  /// Internal steps per control step in fine simulations, and whether they are others than a replay takes by itself.
-  int substeps() const { return substeps_; }
   /// Whether simulated and recorded motions differ by the error of the time step: machines have no internal steps, but recordings of this
   /// program are replayed in those they were made in.
   bool hasStepError() const;
+  /// Internal steps per control step in fine simulations, and whether they are others than a replay takes by itself.
+  int substeps() const { return substeps_; }
   bool hasOwnSubsteps() const { return options_.model.substeps > 0 || substeps_ != reference_->substeps(); }
   /// The robot as built.
   RobotDrawing drawing() const;

@@ -86,15 +86,28 @@ bool Plant::changesNothing(const std::string& name, double value) const {
   return !after.diverged && !after.refused && !after.cut && before.values == after.values;
 }
 
-/// A file's muscles may have force laws and settings of their own; then the program's numbers for these are for no muscle.
+/// A file's muscles may have force laws and settings of their own; then the program's numbers for these are for no muscle. Such numbers are
+/// no part of the nominal refit, and a note names those that have a tolerance.
 void Plant::leaveOutWhatChangesNothing() {
   constexpr double larger = 1.1;
-  std::erase_if(nominal_, [&](const auto& number) { return changesNothing(number.first, larger * number.second); });
+  std::vector<std::pair<std::string, double>> changed;
+  for (const auto& [name, value] : nominal_) changed.emplace_back(name, larger * value);
   for (Eigen::Index i = 0; i < numberCount(); ++i) {
-    const std::string& name = numbers_[static_cast<std::size_t>(i)].parameter.name;
-    if (changesNothing(name, numberAt(i, numbers_in_force_[i] + 1)))
-      notes_.push_back(fmt::format("{} changes nothing in this robot, so that it may be off explains nothing", name));
+    const double given = numberAt(i, numbers_in_force_[i]), more = numberAt(i, numbers_in_force_[i] + 1);
+    changed.emplace_back(numbers_[static_cast<std::size_t>(i)].parameter.name,
+                         more != given ? more : numberAt(i, numbers_in_force_[i] - 1));
   }
+  std::vector<char> is_idle(changed.size());
+  parallelFor(static_cast<int>(changed.size()), jobCount(), [&](int i) {
+    const auto& [name, value] = changed[static_cast<std::size_t>(i)];
+    is_idle[static_cast<std::size_t>(i)] = changesNothing(name, value);
+  });
+  for (std::size_t i = nominal_.size(); i < changed.size(); ++i)
+    if (is_idle[i])
+      notes_.push_back(
+          fmt::format("{} changes no measured signal of the first recording: its tolerance explains nothing", changed[i].first));
+  std::size_t index = 0;
+  std::erase_if(nominal_, [&](const auto&) { return is_idle[index++] != 0; });
 }
 
 /// The largest RMS difference of any signal of any recording between two simulations of all, over the signal's noise sigma.

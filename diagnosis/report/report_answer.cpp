@@ -31,6 +31,8 @@ std::string sentenceOfPart(const Diagnosis& d) {
                        are_several ? "causes" : "cause");
   const char *causes = are_several ? "causes" : "cause", *their = are_several ? "their" : "its";
   const std::vector<FoundEffect> shown = shownEffects(d);
+  if (!std::ranges::all_of(shown, holdsOnUnseenData))
+    return "Not every cause below holds on the data not used for fitting: one may stand in for something else.";
   if (std::ranges::all_of(shown, [](const FoundEffect& effect) { return effect.probability >= nearly_sure; }))
     return fmt::format("Believe the place and the kind of the {}; {} numbers are rough, and something else is left.", causes, their);
   return fmt::format("Believe the {} only as far as the percentages below say; {} numbers are rough, and something else is left.", causes,
@@ -59,8 +61,14 @@ std::string sentenceOfAll(const Diagnosis& d) {
 std::string sentenceOfAmbiguity(const Diagnosis& d) {
   const char* these = d.chosen.size() > 1 ? "these" : "this one";
   if (d.next_experiment.commands.empty())
-    return fmt::format("Other causes would explain these recordings as well, and no motion that was tried would tell them from {}.", these);
+    return fmt::format("Other causes would explain these recordings as well, and no test signal known here tells them from {}.", these);
   return fmt::format("Other causes would explain these recordings as well: record more before you rely on {}.", these);
+}
+
+/// Where a number that was taken as exact would do what a cause does.
+std::string sentenceOfNumbers(const Diagnosis& d) {
+  return std::string("A wrong number of the model would do what a cause does: measure it before you rely on that cause.") +
+         (isRestLeft(d) ? " Something else is left." : "");
 }
 
 SignWords signWords(const Diagnosis& d, Belief belief) {
@@ -69,10 +77,9 @@ SignWords signWords(const Diagnosis& d, Belief belief) {
       return {"explained", "Explained", sentenceOfAll(d)};
     case Belief::partly:
       return {"partly", "Explained in part",
-              isAmbiguous(d) ? sentenceOfAmbiguity(d)
-              : !d.numbers_instead.empty()
-                  ? "A wrong number of the model would do what a cause does: measure it before you rely on that cause."
-                  : sentenceOfPart(d)};
+              isAmbiguous(d)              ? sentenceOfAmbiguity(d)
+              : d.numbers_instead.empty() ? sentenceOfPart(d)
+                                          : sentenceOfNumbers(d)};
     case Belief::cannot_tell:
       return {"cannot_tell", "Cannot tell", "Believe none of the causes yet."};
     case Belief::no_gap:

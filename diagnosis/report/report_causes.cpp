@@ -115,8 +115,9 @@ std::string togetherList(const Diagnosis& d) {
 
 std::string where(const Diagnosis& d) {
   if (d.where.empty()) return "";
-  const bool is_elsewhere =
-      std::ranges::any_of(d.where, [&](const Place& p) { return isFoundAt(d, p.stage) && !mayBeAt(d.where, p.stage); });
+  const bool is_elsewhere = isLocated(d.where) && std::ranges::any_of(d.where, [&](const Place& p) {
+                              return isFoundAt(d, p.stage) && !mayBeAt(d.where, p.stage);
+                            });
   return heading("Where") + "<div class=place><div>" +
          lead("A sample passes five " + term("stage", "stages") + ". The darker a box, the likelier " +
               (is_elsewhere ? "most of the gap" : "the gap") + " arises there, by the signals alone" +

@@ -21,7 +21,7 @@ std::string barsFigure(const std::string& title, const std::vector<Bar>& bars, d
 /// The five stages that a sample passes, each as dark as its share of the gap, with those where a cause was found.
 std::string stagesFigure(const Diagnosis& d);
 
-/// The robot from the front with the component of the first place marked.
+/// The robot from the front with the components of some places marked.
 std::string robotFigure(const RobotDrawing& drawing, const std::vector<Place>& places);
 
 struct TraceWords {

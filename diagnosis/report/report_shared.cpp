@@ -123,8 +123,8 @@ Belief beliefOf(const Diagnosis& d) {
   if (d.partial) return Belief::cannot_tell;
   if (d.verdict == Verdict::no_gap) return Belief::no_gap;
   if (d.verdict != Verdict::effects_found) return Belief::cannot_tell;
-  return isRestLeft(d) || isAmbiguous(d) || !d.numbers_instead.empty() || isNoticeable(d.unsteady) ||
-                 std::max(d.none_of_these, d.remainder.probability) >= rather_none
+  return isRestLeft(d) || isAmbiguous(d) || !d.numbers_instead.empty() || !std::ranges::all_of(shownEffects(d), holdsOnUnseenData) ||
+                 isNoticeable(d.unsteady) || std::max(d.none_of_these, d.remainder.probability) >= rather_none
              ? Belief::partly
              : Belief::explained;
 }

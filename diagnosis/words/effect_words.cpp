@@ -177,16 +177,16 @@ std::string remarkFor(const Estimate& estimate, const EffectParameter& parameter
 }
 
 /// A weak effect is nothing unusual; a strong one, or one of an unusual kind, may stand for something else. So may one whose strength is
-/// nearly a constant of nature, such as a polytropic exponent, but is not that constant.
+/// nearly a constant of nature, such as a polytropic exponent, but is not that constant. Shapes that may lie on either side of 0, such as
+/// the place of a wall, have no usual value (as in Hypothesis::excess).
 bool isBeyond(double value, const EffectParameter& parameter) {
   constexpr double narrow = 2;  // upper over lower end of the usual strengths
-  if (parameter.unit == "unit of the signal") return false;
+  if (parameter.unit == "unit of the signal" || (parameter.shape && !(parameter.usual_low > 0))) return false;
   const bool is_narrow = parameter.usual_low > parameter.neutral &&
                          parameter.usual_high - parameter.neutral < narrow * (parameter.usual_low - parameter.neutral);
-  if (parameter.shape || is_narrow) return value < parameter.usual_low || value > parameter.usual_high;
-  if (std::isinf(parameter.neutral)) return value < parameter.usual_low;
-  const double farthest = std::max(std::abs(parameter.usual_low - parameter.neutral), std::abs(parameter.usual_high - parameter.neutral));
-  return std::abs(value - parameter.neutral) > farthest;
+  const bool both_ends = parameter.shape || is_narrow;
+  return value < (both_ends ? parameter.usual_low : std::min(parameter.usual_low, parameter.neutral)) ||
+         value > (both_ends ? parameter.usual_high : std::max(parameter.usual_high, parameter.neutral));
 }
 
 std::string readingUnit(const FoundEffect& effect, const std::vector<std::string>& signals) {
@@ -271,11 +271,17 @@ std::string claimOf(const FoundEffect& effect) {
 
 }  // namespace
 
+bool holdsOnUnseenData(const FoundEffect& effect) {
+  constexpr double nothing_percent = 1;  // of the gap
+  return effect.removes_percent.value_or(0) > -nothing_percent;
+}
+
 std::vector<std::string> claimSentences(const std::vector<FoundEffect>& effects, const std::vector<std::string>& signals) {
   struct Claim {
     std::string words;
     std::vector<std::string> numbers = {};
     double probability = 1;  ///< the least of its effects
+    bool holds = true;       ///< on the data that were not used for fitting
   };
   std::vector<Claim> claims;
   for (const FoundEffect& effect : effects) {
@@ -284,11 +290,13 @@ std::vector<std::string> claimSentences(const std::vector<FoundEffect>& effects,
     if (same == claims.end()) same = claims.insert(claims.end(), {words});
     if (const std::string numbers = numbersOf(effect, signals); !numbers.empty()) same->numbers.push_back(numbers);
     same->probability = std::min(same->probability, effect.probability);
+    same->holds = same->holds && holdsOnUnseenData(effect);
   }
   std::vector<std::string> sentences;
   for (const Claim& claim : claims)
     sentences.push_back(claim.words + (claim.numbers.empty() ? "" : ": " + listed(claim.numbers)) +
-                        (claim.probability < nearly_sure ? fmt::format(" ({} likely)", probabilityWords(claim.probability)) : "") + ".");
+                        (claim.probability < nearly_sure ? fmt::format(" ({} likely)", probabilityWords(claim.probability)) : "") +
+                        (claim.holds ? "." : ". On the data not used for fitting the gap is larger with it."));
   return sentences;
 }
 

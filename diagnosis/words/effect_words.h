@@ -41,9 +41,12 @@ double usualScale(const EffectParameter& parameter);
 /// Probability below which a cause is not claimed without it.
 inline constexpr double nearly_sure = 0.8;
 
+/// Whether the gap of the held-out data is not larger with the effect than without it, the others present.
+bool holdsOnUnseenData(const FoundEffect& effect);
+
 /// "The pressure of muscle 1 comes late: a dead time of 25 ms and a lag of 40 ms (filling) and 70 ms (venting)." One sentence per
 /// component and claim: effects on one component that claim the same share a sentence. A sentence on an effect whose probability is below
-/// nearly_sure ends with it: "(38 % likely)".
+/// nearly_sure ends with it: "(38 % likely)". One more sentence follows where an effect does not hold on unseen data.
 std::vector<std::string> claimSentences(const std::vector<FoundEffect>& effects, const std::vector<std::string>& signals);
 
 /// "a, b and c".

@@ -93,7 +93,7 @@ const std::vector<EffectWords> effect_words = {
      "Rubber goes on yielding after the fast change: the length drifts while the pressure is constant.",
      {{"amount", "slow change", "by {}", "% of the immediate change"},
       {"time_constant_s", "time constant", "within about {}"},
-      {"spread_decades", "spread of the time constants"}}},
+      {"spread_decades", "spread of the time constants", "with time constants spread over {} decades"}}},
     {"force_drift",
      "drift of the force",
      "The tension of {} drifts",

@@ -104,11 +104,12 @@ bool mayBeAt(const std::vector<Place>& where, const std::string& stage) {
 }
 
 std::string likelihoodOfOthers(const Diagnosis& d) {
-  const auto named = std::ranges::find(d.explanations, d.chosen, &ExplanationProbability::effects);
+  const auto isChosen = [&](const ExplanationProbability& one) { return std::ranges::is_permutation(one.effects, d.chosen); };
+  const auto named = std::ranges::find_if(d.explanations, isChosen);
   const bool is_reached = named != d.explanations.end() && std::ranges::any_of(d.explanations, [&](const ExplanationProbability& other) {
-                            return other.effects != d.chosen && other.probability >= named->probability;
+                            return !isChosen(other) && other.probability >= named->probability;
                           });
-  return is_reached ? "About as likely" : "Less likely, but possible";
+  return is_reached ? "Also possible" : "Less likely, but possible";
 }
 
 bool isFoundAt(const Diagnosis& d, const std::string& stage) {

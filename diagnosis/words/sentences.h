@@ -33,7 +33,7 @@ bool isNoticeable(const Unsteady& unsteady);
 bool isLocated(const std::vector<Place>& where);
 /// Whether the gap is located and this stage is, or may be, the place.
 bool mayBeAt(const std::vector<Place>& where, const std::string& stage);
-/// "Less likely, but possible", or "About as likely" if another explanation is as likely as the one that is named for its effects.
+/// "Less likely, but possible", or "Also possible" if another explanation is as likely as the one that is named for its effects.
 std::string likelihoodOfOthers(const Diagnosis& diagnosis);
 /// Whether a cause that was found acts at a stage.
 bool isFoundAt(const Diagnosis& diagnosis, const std::string& stage);

@@ -38,16 +38,13 @@ class ReadExpressions {
     if (parsers_.size() >= most_kept) parsers_.clear();
     std::unique_ptr<mu::Parser>& parser = parsers_[expression];
     if (parser) return valueOf(*parser);
+    if (assigns(expression)) throw mu::ParserError("\"=\" would change a parameter; to compare is \"==\"");
     auto fresh = std::make_unique<mu::Parser>();
     fresh->EnableOptimizer(false);  // it rearranges sums, which changes the last digits
-    fresh->DefineConst("pi", std::numbers::pi);
+    if (!names.contains("pi")) fresh->DefineConst("pi", std::numbers::pi);
     for (auto& [name, number] : numbers_) fresh->DefineVar(name, &number);
     fresh->SetExpr(expression);
     const std::pair<double, int> result = valueOf(*fresh);
-    if (numbers_ != names) {
-      take(names);
-      throw mu::ParserError("\"=\" would change a parameter");
-    }
     if (result.second == 1) parser = std::move(fresh);
     return result;
   }
@@ -60,6 +57,16 @@ class ReadExpressions {
       numbers_ = names;
     }
     for (auto& [name, number] : numbers_) number = names.at(name);
+  }
+  /// Whether there is a "=" that is no part of a comparison.
+  static bool assigns(const std::string& expression) {
+    for (std::size_t at = expression.find('='); at != std::string::npos; at = expression.find('=', at + 1)) {
+      if (at + 1 < expression.size() && expression[at + 1] == '=')
+        ++at;
+      else if (at == 0 || std::string("<>!").find(expression[at - 1]) == std::string::npos)
+        return true;
+    }
+    return false;
   }
   static std::pair<double, int> valueOf(mu::Parser& parser) {
     int value_count = 0;

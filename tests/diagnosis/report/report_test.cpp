@@ -1,6 +1,8 @@
 // The contents of report.html.
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "../sample_diagnosis.h"
 #include "musclesim/diagnosis/diagnosis.h"
 #include "support/support.h"
@@ -138,6 +140,30 @@ TEST(Report, DoesNotPromiseNumbersBeyondWhatIsUsual) {
   EXPECT_TRUE(contains(diagnosisReport(d),
                        "You can believe the place of the cause below. Check the kind and its numbers: polytropic exponent "
                        "(motion changes the pressure) is beyond what is usual."));
+}
+
+TEST(Report, SaysWhereCausesWereFoundThatTheSignalsDoNotShow) {
+  const Diagnosis d = sampleDiagnosis();  // the signals rule out the body, where the payload acts
+  EXPECT_TRUE(contains(diagnosisReport(d), ">cause found</text>"));
+  const auto json = nlohmann::json::parse(diagnosisJson(d));
+  for (const auto& place : json.at("where")) {
+    const std::string stage = place.at("stage");
+    EXPECT_EQ(place.contains("found"), stage == "command" || stage == "pressure" || stage == "body") << stage;
+    EXPECT_EQ(place.at("ruled_out"), stage == "force" || stage == "sensor") << stage;
+  }
+}
+
+TEST(Report, ExplainsInPartWhatAWrongNumberWouldExplain) {
+  Diagnosis d = sampleDiagnosis();
+  d.numbers_instead = {{"elbow.load_kg", "kg", 1, 1.2, {"payload@hand"}}};
+  EXPECT_TRUE(contains(diagnosisReport(d), "<strong>Explained in part</strong>A wrong number of the model would do what a cause does"));
+}
+
+TEST(Report, ExplainsInPartWithACauseThatDoesNotHold) {
+  Diagnosis d = sampleDiagnosis();
+  d.effects[2].removes_percent = -7;
+  const std::string page = diagnosisReport(d);
+  EXPECT_TRUE(contains(page, "<strong>Explained in part</strong>Not every cause below holds on the data not used for fitting"));
 }
 
 TEST(Report, SaysWhereTheSignalsAloneDoNotConfirmACause) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 
 #include "diagnosis/report/effect_sketch.h"
@@ -53,14 +54,26 @@ TEST(EffectWords, SaysOnWhichSideOfTheModelAMachineIs) {
 
 TEST(EffectWords, TellsNumbersBeyondWhatIsUsual) {
   const auto is_beyond = [](const std::string& id, const std::string& parameter, double value) {
-    return parameterLines({id, "all", 1, {{parameter, {value, value, value}}}}, {}).front().is_beyond;
+    const double half = 0.01 * std::abs(value);
+    return parameterLines({id, "all", 1, {{parameter, {value, value - half, value + half}}}}, {}).at(0).is_beyond;
   };
   EXPECT_TRUE(is_beyond("volume_coupling", "polytropic_exponent", 1.6));
   EXPECT_TRUE(is_beyond("volume_coupling", "polytropic_exponent", 0.9)) << "air is at least isothermal";
   EXPECT_TRUE(is_beyond("transport_delay", "delay_s", 0.9));
   EXPECT_FALSE(is_beyond("transport_delay", "delay_s", 0.002)) << "a short dead time is nothing unusual";
+  EXPECT_TRUE(is_beyond("payload", "mass_kg", -0.9));
+  EXPECT_FALSE(is_beyond("joint_stiffness", "rest_deg", 70)) << "a spring may rest anywhere";
   EXPECT_TRUE(is_beyond("flow_limit", "fill_rate_per_s", 0.01)) << "a limit is strong where it is low";
   EXPECT_FALSE(is_beyond("flow_limit", "fill_rate_per_s", 1e4));
+}
+
+TEST(EffectWords, SaysThatACauseDoesNotHoldOnUnseenData) {
+  FoundEffect delay{"transport_delay", "all", 0.9, {{"delay_s", {0.0312, 0.0302, 0.0322}}}};
+  delay.removes_percent = -7.0;
+  EXPECT_EQ(claimSentences({delay}, {}).front(),
+            "The pressure of every muscle comes late: a dead time of 31.2 ms. On the data not used for fitting the gap is larger with it.");
+  delay.removes_percent = -0.2;
+  EXPECT_TRUE(claimSentences({delay}, {}).front().ends_with("31.2 ms."));
 }
 
 TEST(EffectWords, GivesReadingsTheirUnit) {

@@ -204,6 +204,16 @@ TEST(VerdictSentence, NamesOtherSetsInFull) {
       << verdictSentence(d);
 }
 
+TEST(VerdictSentence, DoesNotCallASetLessLikelyThatIsNot) {
+  Diagnosis d = lagFound();
+  d.chosen = {"valve_lag@muscle_1"};
+  d.alternatives = {"valve_lag@muscle_1", "leak@muscle_1"};
+  d.explanations = {{{"valve_lag@muscle_1"}, 0.28}, {{"leak@muscle_1"}, 0.29}};
+  EXPECT_TRUE(contains(verdictSentence(d), "Also possible: leak on muscle 1.")) << verdictSentence(d);
+  d.explanations[1].probability = 0.1;
+  EXPECT_TRUE(contains(verdictSentence(d), "Less likely, but possible: leak on muscle 1.")) << verdictSentence(d);
+}
+
 TEST(VerdictSentence, CountsWhatItDoesNotName) {
   Diagnosis d = lagFound();
   d.chosen = {"creep@muscle_1", "payload@hand", "valve_lag@muscle_1"};
