@@ -342,8 +342,11 @@ std::vector<Hypothesis> Hypothesis::withAndWithoutShares() const {
 }
 
 /// The first strength with and without the shares, which belong to its law, and each further one alone, without shares. A fit of all would
-/// have to tell what they share.
-std::vector<Hypothesis> Hypothesis::eachLaw() const {
+/// have to tell what they share. On a robot that moves in one joint only the first: constant friction of the muscles is nearly friction of
+/// that joint there, and two effects that nothing tells apart lead the search astray.
+std::vector<Hypothesis> Hypothesis::eachLaw(const Plant& plant) const {
+  const Robot& robot = plant.model().robot();
+  const bool moves_in_one = robot.angles().size() + robot.slides().size() < 2;
   std::vector<Hypothesis> result;
   for (const int kept : strengths_) {
     Hypothesis one = *this;
@@ -352,7 +355,7 @@ std::vector<Hypothesis> Hypothesis::eachLaw() const {
     std::vector<Hypothesis> own = one.withAndWithoutShares();
     if (kept == strengths_.front())
       result = std::move(own);
-    else
+    else if (!moves_in_one)
       result.push_back(std::move(own.back()));
   }
   return result;
@@ -431,7 +434,7 @@ std::vector<Hypothesis> Hypothesis::variants(const Plant& plant) const {
     case Variants::shares:
       return withAndWithoutShares();
     case Variants::laws:
-      return eachLaw();
+      return eachLaw(plant);
     case Variants::strengths:
       return togetherAndAlone();
     case Variants::sizes:

@@ -88,7 +88,7 @@ class Hypothesis {
   std::vector<Hypothesis> numbersOfBits() const;
   std::vector<Hypothesis> smallAndLarge() const;
   std::vector<Hypothesis> withAndWithoutShares() const;
-  std::vector<Hypothesis> eachLaw() const;
+  std::vector<Hypothesis> eachLaw(const Plant& plant) const;
   std::vector<Hypothesis> ends(const Plant& plant) const;
   std::vector<Hypothesis> togetherAndAlone() const;
   std::vector<Hypothesis> sides(const Plant& plant) const;

@@ -95,10 +95,30 @@ TEST_F(PlantedRig, ALawWithAShareOfSomethingHasAVariantWithout) {
   const ActiveEffect simple = lags[1].at(lags[1].typical());
   EXPECT_EQ(std::get<double>(simple.parameters.at("next_lag_ratio")), 0);
   EXPECT_EQ(hypothesis("payload", "hand").variants(plant_).size(), 1);
-  std::vector<std::vector<std::string>> strengths;
-  for (const Hypothesis& friction : hypothesis("braid_hysteresis", "muscle_0").variants(plant_))
-    strengths.push_back(friction.strengthNames());
-  EXPECT_EQ(strengths, (std::vector<std::vector<std::string>>{{"relative_width"}, {"relative_width"}, {"constant_friction_N"}}));
+}
+
+/// On a rig, friction of the muscle's braid that is always the same is friction of its only load.
+TEST_F(PlantedRig, ConstantFrictionOfMusclesIsTriedWhereSeveralJointsMove) {
+  const auto strengths = [](const Plant& plant) {
+    std::vector<std::string> names;
+    for (const Hypothesis& friction : Hypothesis(effectInfo("braid_hysteresis"), "muscle_0", plant).variants(plant))
+      for (const std::string& name : friction.strengthNames()) names.push_back(name);
+    return names;
+  };
+  EXPECT_EQ(strengths(plant_), (std::vector<std::string>{"relative_width", "relative_width"}));
+  std::vector<Recording> of_two_joints;
+  for (const char* file : {"one.csv", "two.csv"}) {
+    Recording plan;
+    plan.file = file;
+    plan.info.robot = "pulley_arm";
+    for (int row = 0; row < 30; ++row) plan.time_s.push_back(0.01 * row);
+    for (int muscle = 0; muscle < 6; ++muscle)
+      plan.signals.push_back({"command_" + std::to_string(muscle), std::vector<double>(30, *file == 'o' ? 0.4 : 0.3)});
+    of_two_joints.push_back(replayRecording(plan, {}).simulated);
+    of_two_joints.back().file = file;
+  }
+  EXPECT_EQ(strengths(Plant(of_two_joints, options_)),
+            (std::vector<std::string>{"relative_width", "relative_width", "constant_friction_N"}));
 }
 
 TEST_F(PlantedRig, HeldSamplesAreCountedNotFitted) {
