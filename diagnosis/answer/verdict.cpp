@@ -8,6 +8,7 @@
 #include "../../base/parallel.h"
 #include "../isolation/substitution.h"
 #include "../search/gap_reduction.h"
+#include "../words/sentences.h"
 
 namespace musclesim {
 
@@ -103,7 +104,7 @@ std::map<std::string, double> heldOutRatios(const HeldOut& held_out, const Model
   const Eigen::VectorXd predicted = held_out.comparison.predicted(model);
   if (!predicted.size()) return ratios;
   for (const auto& [signal, gap] : held_out.comparison.gap(held_out.comparison.measured() - predicted).per_signal)
-    ratios[signal] = gap.noise_sigma > 0 ? gap.rmse / gap.noise_sigma : 0;
+    ratios[signal] = overNoise(gap);
   return ratios;
 }
 

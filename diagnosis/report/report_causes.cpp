@@ -25,10 +25,10 @@ std::string drawing(const Diagnosis& d) {
   const auto placeOf = [](const FoundEffect& effect) { return Place{nameOf(effectInfo(effect.id).stage), effect.component, {}}; };
   if (!d.chosen.empty()) {
     for (const FoundEffect& effect : shownEffects(d)) places.push_back(placeOf(effect));
-    words += " In colour, as far as it can be drawn: where the causes found act.";
+    words += " The parts on which the causes found act are in colour.";
   } else if (isLocated(d.where)) {
     places = {d.where.front()};
-    words += fmt::format(" In colour, as far as it can be drawn: where the gap arises ({}).", componentWords(places.front().component));
+    words += fmt::format(" The part where the gap arises is in colour ({}).", componentWords(places.front().component));
   }
   return "<div class=robot>" + robotFigure(d.drawing, places) + small(words) + "</div>\n";
 }
