@@ -125,7 +125,9 @@ TEST(EffectsThatIgnoreMotion, MakeTheSamePressuresInABodyThatStandsStill) {
       const ReplayResult moving = replayWith(commands, effects), standing = replayWith(commands, effects, still);
       ASSERT_FALSE(standing.divergence);
       for (const Signal& signal : moving.simulated.signals)
-        if (signal.name.starts_with("pressure_")) EXPECT_EQ(signal.values, valuesOf(standing, signal.name)) << signal.name;
+        if (signal.name.starts_with("pressure_")) {
+          EXPECT_EQ(signal.values, valuesOf(standing, signal.name)) << signal.name;
+        }
       EXPECT_NE(valuesOf(moving, "length_0_mm"), valuesOf(standing, "length_0_mm"));
       ++compared_count;
     }

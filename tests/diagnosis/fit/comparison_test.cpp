@@ -216,8 +216,12 @@ TEST(SensitiveMotion, CountsAsNoiseWhatSlightlyStrongerMusclesChange) {
     all.goCoarse(all.predicted(Model{}));
     EXPECT_EQ(all.unsteady().signal, jumps ? "angle_elbow_deg" : "");
     EXPECT_EQ(all.blocks().front().sigma > 5 * sigma, jumps);
-    if (!jumps) EXPECT_EQ(all.blocks().front().sigma, sigma);
-    if (jumps) EXPECT_EQ(all.unsteady().by, Unsteady::Change::forces);
+    if (!jumps) {
+      EXPECT_EQ(all.blocks().front().sigma, sigma);
+    }
+    if (jumps) {
+      EXPECT_EQ(all.unsteady().by, Unsteady::Change::forces);
+    }
   }
 }
 

@@ -219,8 +219,12 @@ TEST(Search, FindsALeakOfOneMuscleBesideALagOfAll) {
   const Diagnosis found = diagnose(recordings, planted::few({"valve_lag", "leak", "force_gain", "sensor_gain", "transport_delay"}));
   ASSERT_EQ(std::set(found.chosen.begin(), found.chosen.end()), (Labels{"leak@muscle_1", "valve_lag@all"})) << diagnosisSummary(found);
   for (const FoundEffect& effect : found.effects) {
-    if (effect.label() == "leak@muscle_1") EXPECT_NEAR(effect.parameters.at("leak_per_s").value, 0.8, 0.15);
-    if (effect.label() == "valve_lag@all") EXPECT_NEAR(effect.parameters.at("fill_time_constant_s").value, 0.12, 0.006);
+    if (effect.label() == "leak@muscle_1") {
+      EXPECT_NEAR(effect.parameters.at("leak_per_s").value, 0.8, 0.15);
+    }
+    if (effect.label() == "valve_lag@all") {
+      EXPECT_NEAR(effect.parameters.at("fill_time_constant_s").value, 0.12, 0.006);
+    }
   }
 }
 
