@@ -12,13 +12,30 @@
 
 namespace musclesim {
 
+namespace {
+
+/// Of each `every` rows of a segment the first with a value: a sensor may be read less often than the recording is logged.
+template <typename HasValue>
+std::vector<int> rowsOf(const Segment& segment, int end_row, const HasValue& hasValue) {
+  std::vector<int> rows;
+  for (int begin = segment.first_row; begin < end_row; begin += segment.every)
+    for (int row = begin; row < std::min(begin + segment.every, end_row); ++row)
+      if (hasValue(static_cast<std::size_t>(row))) {
+        rows.push_back(row);
+        break;
+      }
+  return rows;
+}
+
+}  // namespace
+
 Comparison::Comparison(const Plant& plant, std::vector<Segment> segments, Derived derived) : plant_(plant), segments_(std::move(segments)) {
   for (std::size_t k = 0; k < segments_.size(); ++k)
     for (std::size_t s = 0; s < plant.signals().size(); ++s) {
       const std::vector<double>& y = plant.measured(segments_[k].recording, static_cast<int>(s));
       Block block{k, static_cast<int>(s), {}, size_, plant.signals()[s].sigma.value};
-      for (int row = segments_[k].first_row; row < std::min(segments_[k].end_row, static_cast<int>(y.size())); row += segments_[k].every)
-        if (std::isfinite(y[static_cast<std::size_t>(row)])) block.rows.push_back(row);
+      block.rows = rowsOf(segments_[k], std::min(segments_[k].end_row, static_cast<int>(y.size())),
+                          [&](std::size_t row) { return std::isfinite(y[row]); });
       if (block.rows.size() < fewest_compared_rows) continue;
       size_ += static_cast<Eigen::Index>(block.rows.size());
       blocks_.push_back(std::move(block));
@@ -61,12 +78,10 @@ void Comparison::addParity() {
   for (std::size_t k = 0; k < segments_.size(); ++k) {
     const ParityRelations& parity = plant_.parity(segments_[k].recording);
     if (parity.count() == 0) continue;
-    std::vector<int> rows;
-    for (int row = segments_[k].first_row; row < segments_[k].end_row; row += segments_[k].every)
-      if (std::ranges::all_of(parity.signals(), [&](int signal) {
-            return std::isfinite(plant_.measured(segments_[k].recording, signal)[static_cast<std::size_t>(row)]);
-          }))
-        rows.push_back(row);
+    const std::vector<int> rows = rowsOf(segments_[k], segments_[k].end_row, [&](std::size_t row) {
+      return std::ranges::all_of(parity.signals(),
+                                 [&](int signal) { return std::isfinite(plant_.measured(segments_[k].recording, signal)[row]); });
+    });
     if (rows.size() < fewest_compared_rows) continue;
     for (std::size_t s = 0; s < parity.signals().size(); ++s) {
       const auto position = static_cast<Eigen::Index>(s);
@@ -250,11 +265,31 @@ Unsteady Comparison::unsteadiness(const Eigen::VectorXd& change, const Eigen::Ve
   return worst;
 }
 
-Eigen::VectorXd Comparison::predicted(const Model& model) const {
-  if (fidelity_ == Fidelity::fine) return predicted(model, Fidelity::fine);
-  const Eigen::VectorXd coarse = predicted(model, fidelity_);
-  if (!coarse.size() || !coarse.allFinite()) return predicted(model, Fidelity::fine);
+/// A prediction with fidelity(), corrected where that is not fine; in fine steps where it diverges in coarse ones.
+Eigen::VectorXd Comparison::corrected(const std::function<Eigen::VectorXd(Fidelity)>& predictedIn) const {
+  if (fidelity_ == Fidelity::fine) return predictedIn(Fidelity::fine);
+  const Eigen::VectorXd coarse = predictedIn(fidelity_);
+  if (!coarse.size() || !coarse.allFinite()) return predictedIn(Fidelity::fine);
   return withNominal(coarse + correction_);
+}
+
+Eigen::VectorXd Comparison::predicted(const Model& model) const {
+  return corrected([&](Fidelity fidelity) { return predicted(model, fidelity); });
+}
+
+Eigen::VectorXd Comparison::predictedInOne(int signal, const Model& faulty, const Model& base) const {
+  return corrected([&](Fidelity fidelity) {
+    std::vector<Prediction> predictions;
+    for (const Segment& segment : segments_) {
+      const auto predict = [&](const Model& model) { return plant_.predict(segment.recording, model, segment.end_row, fidelity, focus_); };
+      Prediction all = predict(base), one = predict(faulty);
+      const auto index = static_cast<std::size_t>(signal);
+      all.diverged |= one.diverged;
+      all.values[index] = std::move(one.values[index]);
+      predictions.push_back(std::move(all));
+    }
+    return withNominal(gathered(predictions));
+  });
 }
 
 Eigen::VectorXd Comparison::predicted(const Model& model, Fidelity fidelity) const {
@@ -302,26 +337,56 @@ double Comparison::meanSquare(const Block& block, const Eigen::VectorXd& residua
   return residual.segment(block.first, block.count()).squaredNorm() / static_cast<double>(block.count());
 }
 
-void Comparison::setGap(const Eigen::VectorXd& nominal_residual) {
-  for (Block& block : blocks_) block.gap = std::sqrt(meanSquare(block, nominal_residual));
-}
-
 namespace {
 
+/// s^2 = sigma^2 + (f rho C)^2.
+double scaleSquare(const Comparison::Block& block, const Tolerance& tolerance, double law_error_scale) {
+  const double left = law_error_scale * tolerance.share_of_gap * block.gap;
+  return block.sigma * block.sigma + left * left;
+}
+
 /// power / 2 ln((s^2 + ms) / (s^2 + sigma^2)) of one tolerance.
-double misfitBeyond(const Tolerance& tolerance, const Comparison::Block& block, double mean_square) {
-  const double left = tolerance.share_of_gap * block.gap, noise_square = block.sigma * block.sigma,
-               scale_square = noise_square + left * left;
-  return 0.5 * block.power * std::log((scale_square + mean_square) / (scale_square + noise_square));
+double misfitBeyond(const Tolerance& tolerance, const Comparison::Block& block, double mean_square, double law_error_scale = 1) {
+  const double scale_square = scaleSquare(block, tolerance, law_error_scale);
+  return 0.5 * block.power * std::log((scale_square + mean_square) / (scale_square + block.sigma * block.sigma));
+}
+
+/// ln of the sum of exponentials.
+double lnSum(const std::vector<double>& logarithms) {
+  const double most = std::ranges::max(logarithms);
+  return most + std::log(std::transform_reduce(logarithms.begin(), logarithms.end(), 0.0, std::plus<>{},
+                                               [&](double value) { return std::exp(value - most); }));
 }
 
 }  // namespace
 
-double Comparison::misfitOf(const Block& block, double mean_square) const {
-  if (!isTempered()) return 0.5 * block.power * (mean_square / (block.sigma * block.sigma) - 1);
-  double sum = 0;
-  for (const Tolerance& tolerance : tolerances) sum += tolerance.nats * misfitBeyond(tolerance, block, mean_square);
-  return sum;
+void Comparison::setGap(const Eigen::VectorXd& nominal_residual, LawError law_error) {
+  for (Block& block : blocks_) block.gap = std::sqrt(meanSquare(block, nominal_residual));
+  ln_prior_ = {0};
+  if (law_error == LawError::tolerated || !isTempered()) return;
+  ln_prior_.assign(law_error_scales.size(), 0);
+  for (std::size_t f = 0; f < law_error_scales.size(); ++f)
+    for (const Block& block : blocks_)
+      for (const Tolerance& tolerance : tolerances)
+        ln_prior_[f] -= 0.5 * block.power * tolerance.nats / tolerance_nats * std::log(scaleSquare(block, tolerance, law_error_scales[f]));
+  const double sum = lnSum(ln_prior_);
+  for (double& ln_prior : ln_prior_) ln_prior -= sum;
+}
+
+/// ln(p_f exp(-M_f)) of the scales f that are possible.
+std::vector<double> Comparison::lnOfScales(const std::vector<double>& mean_squares) const {
+  std::vector<double> result = ln_prior_;
+  for (std::size_t f = 0; f < result.size(); ++f)
+    for (std::size_t b = 0; b < blocks_.size(); ++b)
+      for (const Tolerance& tolerance : tolerances)
+        result[f] -= tolerance.nats * misfitBeyond(tolerance, blocks_[b], mean_squares[b], law_error_scales[f]);
+  return result;
+}
+
+std::vector<double> Comparison::meanSquares(const Eigen::VectorXd& residual) const {
+  std::vector<double> result;
+  for (const Block& block : blocks_) result.push_back(meanSquare(block, residual));
+  return result;
 }
 
 std::array<double, tolerances.size()> Comparison::misfits(const Eigen::VectorXd& residual) const {
@@ -331,36 +396,60 @@ std::array<double, tolerances.size()> Comparison::misfits(const Eigen::VectorXd&
   return sums;
 }
 
-double Comparison::misfit(const Eigen::VectorXd& residual) const {
-  if (residual.size() != size_ || !residual.allFinite()) return std::numeric_limits<double>::infinity();
+double Comparison::misfitOf(const std::vector<double>& mean_squares) const {
+  if (isTempered()) return -lnSum(lnOfScales(mean_squares));
   double sum = 0;
-  for (const Block& block : blocks_) sum += misfitOf(block, meanSquare(block, residual));
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    sum += 0.5 * blocks_[b].power * (mean_squares[b] / (blocks_[b].sigma * blocks_[b].sigma) - 1);
   return sum;
 }
 
-double Comparison::weightSquare(const Block& block, double mean_square) const {
-  if (!isTempered()) return block.power / (block.sigma * block.sigma);
+double Comparison::misfit(const Eigen::VectorXd& residual) const {
+  if (residual.size() != size_ || !residual.allFinite()) return std::numeric_limits<double>::infinity();
+  return misfitOf(meanSquares(residual));
+}
+
+double Comparison::toleratedMisfit(const Eigen::VectorXd& residual) const {
+  if (ln_prior_.size() == 1 || residual.size() != size_ || !residual.allFinite()) return misfit(residual);
+  const auto by_tolerance = misfits(residual);
   double sum = 0;
-  for (const Tolerance& tolerance : tolerances) {
-    const double left = tolerance.share_of_gap * block.gap;
-    sum += tolerance.nats / (block.sigma * block.sigma + left * left + mean_square);
+  for (std::size_t i = 0; i < tolerances.size(); ++i) sum += tolerances[i].nats * by_tolerance[i];
+  return sum;
+}
+
+/// The weights of each scale, in proportion to its share of the likelihood.
+std::vector<double> Comparison::weightSquares(const std::vector<double>& mean_squares) const {
+  std::vector<double> result(blocks_.size(), 0);
+  if (!isTempered()) {
+    for (std::size_t b = 0; b < blocks_.size(); ++b) result[b] = blocks_[b].power / (blocks_[b].sigma * blocks_[b].sigma);
+    return result;
   }
-  return block.power * sum;
+  const std::vector<double> ln_of_scales = lnOfScales(mean_squares);
+  const double ln_sum = lnSum(ln_of_scales);
+  for (std::size_t f = 0; f < ln_of_scales.size(); ++f) {
+    const double share = std::exp(ln_of_scales[f] - ln_sum);
+    for (std::size_t b = 0; b < blocks_.size(); ++b)
+      for (const Tolerance& tolerance : tolerances)
+        result[b] +=
+            share * blocks_[b].power * tolerance.nats / (scaleSquare(blocks_[b], tolerance, law_error_scales[f]) + mean_squares[b]);
+  }
+  return result;
 }
 
 Eigen::VectorXd Comparison::weights(const Eigen::VectorXd& residual) const {
   Eigen::VectorXd result(size_);
-  for (const Block& block : blocks_)
-    result.segment(block.first, block.count())
-        .setConstant(std::sqrt(weightSquare(block, meanSquare(block, residual)) / static_cast<double>(block.count())));
+  const std::vector<double> squares = weightSquares(meanSquares(residual));
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    const Block& block = blocks_[b];
+    result.segment(block.first, block.count()).setConstant(std::sqrt(squares[b] / static_cast<double>(block.count())));
+  }
   return result;
 }
 
 double Comparison::scale() const {
-  double power = 0, nats = 0;
+  double power = 0;
   for (const Block& block : blocks_) power += block.power;
-  for (const Tolerance& tolerance : tolerances) nats += tolerance.nats;
-  return power * nats;
+  return power * tolerance_nats;
 }
 
 Gap Comparison::gap(const Eigen::VectorXd& residual) const {

@@ -17,6 +17,7 @@ using Json = nlohmann::ordered_json;
 
 Json toJson(double value) {
   if (std::isfinite(value)) return value;
+  if (std::isnan(value)) return nullptr;
   return value > 0 ? "inf" : "-inf";
 }
 
@@ -128,6 +129,7 @@ Json fittedJson(const Diagnosis& d) {
     json["trials"].push_back({{"effects", trial.effects},
                               {"parameters", trial.parameter_count},
                               {"rms", trial.rms},
+                              {"misfit", trial.misfit},
                               {"misfits", trial.misfits},
                               {"complexity", trial.complexity},
                               {"numbers_cost", trial.numbers_cost},

@@ -134,10 +134,10 @@ void Search::screen() {
   screening_residual_ = screening_.measured() - nominal;
   const Eigen::VectorXd everywhere = fit_.predicted(Model{});
   nominal_residual_ = fit_.measured() - everywhere;
-  screening_.setGap(screening_residual_);
-  fit_.setGap(nominal_residual_);
   screening_.goCoarse(nominal, Comparison::Purpose::screening);
   fit_.goCoarse(everywhere);
+  screening_.setGap(screening_residual_);
+  fit_.setGap(nominal_residual_, Comparison::LawError::estimated);
   causes_.hypotheses = musclesim::hypotheses(plant_, DiagnosisOptions{});
   keepNearestVariants();
   for (const Hypothesis& hypothesis : causes_.hypotheses) catalogue_.allowed.push_back(allows(options_, hypothesis.info().id));

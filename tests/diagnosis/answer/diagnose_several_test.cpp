@@ -50,14 +50,27 @@ TEST(DiagnoseSeveral, TakesNoSecondCauseThatOnlyMendsTheLawOfTheFirst) {
   EXPECT_EQ(found.chosen, std::vector<std::string>{"valve_lag@muscle_0"}) << diagnosisSummary(found);
 }
 
-/// Something that no effect knows moves the load by much more than the noise, but the pressures are those of a dead time.
-TEST(DiagnoseSeveral, NamesWhatExplainsThePressuresBesideAnUnknownMotion) {
-  std::vector<Recording> recordings = plant({{"transport_delay", "muscle_0", {{"delay_s", 0.06}}}}, planted::Pressure::measured);
+/// Recordings of a plant with pressures whose load something that no effect knows moves by much more than the noise.
+std::vector<Recording> withUnknownMotion(const std::vector<ActiveEffect>& effects) {
+  std::vector<Recording> recordings = plant(effects, planted::Pressure::measured);
   for (Recording& recording : recordings)
     for (Signal& signal : recording.signals)
       if (signal.name == "length_0_mm")
         for (std::size_t row = 0; row < recording.time_s.size(); ++row)
           signal.values[row] += 20 * std::sin(11 * recording.time_s[row]) * std::sin(0.9 * recording.time_s[row] * recording.time_s[row]);
+  return recordings;
+}
+
+TEST(DiagnoseSeveral, NamesNothingForAnUnknownMotion) {
+  const Diagnosis found = diagnose(withUnknownMotion({}), few({"transport_delay", "valve_lag", "payload", "sensor_gain"}));
+  EXPECT_EQ(found.verdict, Verdict::unexplained) << diagnosisSummary(found);
+  EXPECT_TRUE(found.chosen.empty());
+  for (const FoundEffect& effect : found.effects) EXPECT_LT(effect.probability, 0.5) << effect.label();
+}
+
+/// The pressures are those of a dead time.
+TEST(DiagnoseSeveral, NamesWhatExplainsThePressuresBesideAnUnknownMotion) {
+  const std::vector<Recording> recordings = withUnknownMotion({{"transport_delay", "muscle_0", {{"delay_s", 0.06}}}});
   const Diagnosis found = diagnose(recordings, few({"transport_delay", "valve_lag", "payload", "sensor_gain"}));
   EXPECT_EQ(found.verdict, Verdict::effects_found) << diagnosisSummary(found);
   EXPECT_EQ(found.chosen, std::vector<std::string>{"transport_delay@muscle_0"}) << diagnosisSummary(found);
