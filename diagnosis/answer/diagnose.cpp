@@ -315,6 +315,10 @@ Diagnosis diagnose(std::vector<Recording> recordings, const DiagnosisOptions& op
     throw BadParameter("max_effects", std::to_string(options.max_effects), fmt::format("lie in 1..{}", most_effects));
   if (!(options.smallest_gap_percent >= 0))
     throw BadParameter("smallest_gap_percent", fmt::format("{:g}", options.smallest_gap_percent), "be 0 or more");
+  for (const std::string& name : options.tune)
+    if (std::ranges::count(options.tune, name) > 1) throw BadParameter("--tune", name + "," + name, "name each number once");
+  if (options.skip_start_s && !(*options.skip_start_s >= 0))
+    throw BadParameter("skip_start_s", fmt::format("{:g}", *options.skip_start_s), "be 0 s or more");
   if (options.tune.empty()) return run(std::move(recordings), options);
   const auto start = std::chrono::steady_clock::now();
   DiagnosisOptions with_tuned = options;

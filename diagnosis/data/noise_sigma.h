@@ -16,8 +16,7 @@ namespace musclesim {
 ///                most rows repeat the value before (a sensor that is read less often than it is logged), only rows count that differ
 ///                from it
 ///   range        a thousandth of the range of all values: for fewer than 21 readings per recording, or readings without noise (quiet rows
-///   give less
-///                than 1e-5 of the range, finer than a converter of 16 bits: the recording of a simulation)
+///                give less than 1e-5 of the range, finer than a converter of 16 bits: the recording of a simulation)
 /// but never less than the step of the lattice on which the values lie / sqrt(12). Never the residual of a fit.
 struct NoiseSigma {
   double value = 0;

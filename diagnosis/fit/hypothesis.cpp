@@ -26,9 +26,10 @@ Quantiles quantiles(const Plant& plant, const std::string& signal, double share)
   return quantiles(measuredValues(plant, signal), share);
 }
 
-double spanOf(const Plant& plant, const std::string& signal) {
-  const auto ends = quantiles(plant, signal, 0.02);
-  return ends ? ends->second - ends->first : 0;
+/// A twentieth of the span of a signal's readings; of a signal that hardly ever moves its noise.
+double typicalChange(const Plant& plant, const ComparedSignal& signal) {
+  const auto ends = quantiles(plant, signal.name, 0.02);
+  return ends && ends->second > ends->first ? 0.05 * (ends->second - ends->first) : signal.sigma.value;
 }
 
 }  // namespace
@@ -36,9 +37,8 @@ double spanOf(const Plant& plant, const std::string& signal) {
 Hypothesis::Hypothesis(EffectInfo info, std::string component, const Plant& plant)
     : info_(std::move(info)), component_(std::move(component)) {
   for (const EffectParameter& parameter : info_.parameters) base_.push_back(parameter.neutral);
-  std::string signal;
-  for (const ComparedSignal& compared : plant.signals())
-    if (Plant::isComponentOf(component_, compared.name)) signal = compared.name;
+  const auto signal = std::ranges::find_if(
+      plant.signals(), [this](const ComparedSignal& compared) { return Plant::isComponentOf(component_, compared.name); });
   for (const std::size_t i : relevantParameters(info_, component_)) {
     const EffectParameter& p = info_.parameters[i];
     if (!p.choices.empty()) continue;
@@ -57,7 +57,7 @@ Hypothesis::Hypothesis(EffectInfo info, std::string component, const Plant& plan
     } else {
       c.typical = p.neutral + std::sqrt(std::abs(p.usual_low - p.neutral) * std::abs(p.usual_high - p.neutral));
     }
-    if (p.unit == "unit of the signal") c.typical = p.neutral + 0.05 * spanOf(plant, signal);
+    if (p.unit == "unit of the signal" && signal != plant.signals().end()) c.typical = p.neutral + typicalChange(plant, *signal);
     const double extent = std::max(std::abs(p.usual_low - p.neutral), std::abs(p.usual_high - p.neutral));
     if (c.scale == Scale::inverse)
       c.farthest = p.usual_low / strongest;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <tuple>
 
 #include "../../base/parallel.h"
 
@@ -22,7 +23,7 @@ struct Probe {
   Model model;
   struct Target {
     std::size_t hypothesis, strength;
-    int signal;         ///< the only affected signal; -1: all
+    int signal;         ///< the only one whose sensor is faulty, see Comparison::predictedInOne; -1: all effects of the model act
     double amount = 1;  ///< of the strength: the change is divided by it
   };
   std::vector<Target> targets;
@@ -37,7 +38,8 @@ int signalOf(const Comparison& comparison, const Hypothesis& hypothesis) {
 
 std::vector<Probe> probes(const Comparison& comparison, const std::vector<Hypothesis>& hypotheses) {
   std::vector<Probe> result;
-  std::map<std::pair<std::string, std::size_t>, std::size_t> shared;  // sensor effects by id and strength
+  std::map<std::tuple<std::string, std::size_t, int>, std::size_t> shared;  // sensor effects by id, strength and variant
+  std::map<std::pair<std::string, std::size_t>, int> variants;              // of a label and strength, until now
   for (std::size_t s = 0; s < hypotheses.size(); ++s)
     for (std::size_t k = 0; k < hypotheses[s].strengths().size() || (k == 0 && hypotheses[s].strengths().empty()); ++k) {
       const Hypothesis& hypothesis = hypotheses[s];
@@ -47,22 +49,11 @@ std::vector<Probe> probes(const Comparison& comparison, const std::vector<Hypoth
       const bool sensor = hypothesis.info().stage == Stage::sensor && hypothesis.component() != "all";
       const int signal = sensor ? signalOf(comparison, hypothesis) : -1;
       std::size_t index = result.size();
-      if (sensor) index = shared.try_emplace({hypothesis.info().id, k}, index).first->second;
+      if (sensor) index = shared.try_emplace({hypothesis.info().id, k, variants[{hypothesis.label(), k}]++}, index).first->second;
       if (index == result.size()) result.push_back({});
       Probe& probe = result[index];
       probe.model.effects.push_back(effect);
       probe.targets.push_back({s, k, signal});
-    }
-  return result;
-}
-
-/// The part of a vector that belongs to one signal; all of it for -1.
-Eigen::VectorXd only(const Comparison& comparison, const Eigen::VectorXd& values, int signal) {
-  if (signal < 0) return values;
-  Eigen::VectorXd result = Eigen::VectorXd::Zero(values.size());
-  for (const Comparison::Block& block : comparison.blocks())
-    if (block.signal == signal) {
-      result.segment(block.first, block.count()) = values.segment(block.first, block.count());
     }
   return result;
 }
@@ -121,22 +112,6 @@ void fitLinearly(const Comparison& comparison, const Hypothesis& hypothesis, con
 
 namespace {
 
-/// Changes of the prediction by the probes; empty if the model diverged.
-std::vector<Eigen::VectorXd> changesBy(const Comparison& comparison, const std::vector<Probe>& probes, const Eigen::VectorXd& nominal,
-                                       const Model& base, int job_count, const OnSimulation& on_simulation) {
-  std::vector<Eigen::VectorXd> changes(probes.size());
-  parallelFor(static_cast<int>(probes.size()), job_count, [&](int i) {
-    if (comparison.plant().interrupted()) return;
-    const auto index = static_cast<std::size_t>(i);
-    Model model = base;
-    model.effects.insert(model.effects.end(), probes[index].model.effects.begin(), probes[index].model.effects.end());
-    const Eigen::VectorXd predicted = comparison.predicted(model);
-    if (predicted.size() == nominal.size() && predicted.allFinite()) changes[index] = predicted - nominal;
-    on_simulation();
-  });
-  return changes;
-}
-
 /// Whether a strength at its typical value changes the prediction visibly.
 bool shows(const Comparison& comparison, const Hypothesis& hypothesis, std::size_t strength, const Sensitivity& sensitivity) {
   const double least = hypothesis.isSigned(hypothesis.strengths()[strength]) ? nothing : 1;
@@ -164,6 +139,7 @@ std::vector<Probe> strongerProbes(const Comparison& comparison, const std::vecto
     if (hypotheses[s].info().stage == Stage::sensor) continue;
     for (std::size_t k = 0; k < hypotheses[s].strengths().size(); ++k) {
       const int coordinate = hypotheses[s].strengths()[k];
+      if (!sensitivities[s].per_strength[k]) continue;  // the model diverges with it: weakerProbes
       if ((direction < 0 && !hypotheses[s].isSigned(coordinate)) || shows(comparison, hypotheses[s], k, sensitivities[s])) continue;
       addProbe(result, hypotheses[s], s, k, direction * strong);
     }
@@ -185,8 +161,8 @@ double sizeOver(const Comparison& comparison, const Eigen::VectorXd& residual, c
 }
 
 /// Weakens strengths whose change is much larger than the residual, or with which the model diverges. Returns their probes.
-std::vector<Probe> weakerProbes(const Comparison& comparison, std::vector<Hypothesis>& hypotheses,
-                                const std::vector<Sensitivity>& sensitivities, const Eigen::VectorXd& residual) {
+std::vector<Probe> weakerProbes(const Comparison& comparison, std::vector<Hypothesis>& hypotheses, std::vector<Sensitivity>& sensitivities,
+                                const Eigen::VectorXd& residual) {
   constexpr double too_much = 3, after_divergence = 0.1;
   std::vector<Probe> result;
   for (std::size_t s = 0; s < hypotheses.size(); ++s) {
@@ -197,6 +173,7 @@ std::vector<Probe> weakerProbes(const Comparison& comparison, std::vector<Hypoth
       if (size < too_much) continue;
       const int coordinate = hypotheses[s].strengths()[k];
       hypotheses[s].rescale(coordinate, 1 / size);
+      sensitivities[s].per_strength[k] = nullptr;  // it was the change of the strength before
       Eigen::VectorXd z = Eigen::VectorXd::Zero(hypotheses[s].coordinateCount());
       z[coordinate] = 1;
       result.push_back({{{hypotheses[s].at(z)}, {}}, {{s, k, -1}}});
@@ -352,15 +329,22 @@ std::vector<Probe> lateProbes(const std::vector<Hypothesis>& hypotheses, const s
   return result;
 }
 
-/// Probes the hypotheses and adds what they show to their sensitivities, per typical strength.
+/// Probes the hypotheses and adds the changes of the prediction to their sensitivities, per typical strength.
 void probeInto(std::vector<Sensitivity>& sensitivities, const Comparison& comparison, const std::vector<Probe>& probes,
                const Eigen::VectorXd& nominal, const Model& base, int job_count, const OnSimulation& on_simulation) {
-  const std::vector<Eigen::VectorXd> changes = changesBy(comparison, probes, nominal, base, job_count, on_simulation);
-  for (std::size_t i = 0; i < probes.size(); ++i)
-    for (const Probe::Target& target : probes[i].targets)
-      if (changes[i].size())
-        sensitivities[target.hypothesis].per_strength[target.strength] =
-            shared(only(comparison, changes[i] / target.amount, target.signal));
+  parallelFor(static_cast<int>(probes.size()), job_count, [&](int i) {
+    if (comparison.plant().interrupted()) return;
+    const Probe& probe = probes[static_cast<std::size_t>(i)];
+    Model model = base;
+    model.effects.insert(model.effects.end(), probe.model.effects.begin(), probe.model.effects.end());
+    for (const Probe::Target& target : probe.targets) {
+      const Eigen::VectorXd predicted =
+          target.signal < 0 ? comparison.predicted(model) : comparison.predictedInOne(target.signal, model, base);
+      if (predicted.size() == nominal.size() && predicted.allFinite())
+        sensitivities[target.hypothesis].per_strength[target.strength] = shared((predicted - nominal) / target.amount);
+    }
+    on_simulation();
+  });
 }
 
 }  // namespace

@@ -253,6 +253,18 @@ const ParityRelations& Plant::parity(int recording) const {
   return parity_.emplace(recording, std::move(relations)).first->second;
 }
 
+/// The first row of a segment with a value that is compared; its end if there is none. Readings are left out where they depend on what the
+/// machine did before.
+int Plant::firstReading(const Segment& segment) const {
+  int first = segment.end_row;
+  for (const std::vector<double>& values : measured_[static_cast<std::size_t>(segment.recording)]) {
+    const auto end = values.begin() + std::min(first, static_cast<int>(values.size()));
+    const auto found = std::find_if(values.begin(), end, [](double value) { return std::isfinite(value); });
+    first = found == end ? first : static_cast<int>(found - values.begin());
+  }
+  return first;
+}
+
 std::vector<Segment> Plant::screeningSegments() const {
   constexpr std::size_t most_recordings = 3;
   constexpr int row_count = 1200;
@@ -267,7 +279,7 @@ std::vector<Segment> Plant::screeningSegments() const {
   const auto count = static_cast<int>(result.size());
   for (Segment& segment : result) {
     const std::vector<double>& time_s = recordingOf(segment).time_s;
-    const int from = firstChange(recordingOf(segment));
+    const int from = std::max(firstChange(recordingOf(segment)), firstReading(segment));
     const double until_s = time_s[static_cast<std::size_t>(from)] + duration_s / count - rounding_s;
     const auto in_time = static_cast<int>(std::ranges::lower_bound(time_s, until_s) - time_s.begin());
     segment.end_row = std::min(segment.end_row, std::max(from + row_count / count, in_time));
@@ -385,6 +397,7 @@ Eigen::MatrixX3d Plant::nominalHandMm(int recording) const {
   Eigen::MatrixX3d places(static_cast<Eigen::Index>(recorded.time_s.size()), 3);
   Eigen::Index row = 0;
   ReplayOptions options = options_.model;
+  if (hasOwnSubsteps()) options.substeps = substeps_;
   options.watch = [&](Simulation& simulation) -> ReplayOptions::Watcher {
     if (!simulation.robot().hand()) return {};
     return [&](const State&) {

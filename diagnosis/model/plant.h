@@ -149,10 +149,10 @@ class Plant {
   /// Where the model without effects has the hand in the rows of a recording, mm. No rows if nothing is the hand, or if the model diverges.
   Eigen::MatrixX3d nominalHandMm(int recording) const;
 
-  /// Number of distinct simulations under recorded or changed commands and of all under proposed schedules, and the seconds simulated;
-  /// those of pressures alone do not count.
   /// The fidelity itself if coarser steps save time on this robot, otherwise fine.
   Fidelity possible(Fidelity fidelity) const;
+  /// Number of distinct simulations under recorded or changed commands and of all under proposed schedules, and the seconds simulated;
+  /// those of pressures alone do not count.
   long simulationCount() const { return simulation_count_; }
   double simulatedS() const { return static_cast<double>(simulated_ms_) / ms_per_s; }
   /// Threads to use; 0: one per core.
@@ -166,6 +166,7 @@ class Plant {
   void dropStarts();
   void compareSignals();
   void requireNumbers(const std::vector<Segment>& part) const;
+  int firstReading(const Segment& segment) const;
   Parameter numberNamed(const std::string& option, const std::string& name) const;
   std::map<std::string, double> declaredTolerances() const;
   void findNumbers(const std::map<std::string, double>& given);

@@ -168,6 +168,7 @@ bool Search::improveBy(Explanation& one, std::vector<Explanation> others) const 
 
 /// Replaces the best explanations by other variants of themselves that are better, one effect's variant after the other.
 void Search::tryVariants() {
+  std::ranges::stable_sort(explanations_, std::greater<>{}, &Explanation::score);
   const double least = explanations_.empty() ? 0 : explanations_.front().score - near_best;
   for (std::size_t rank = 0; rank < std::min(explanations_.size(), varied_count); ++rank) {
     Explanation& one = explanations_[rank];

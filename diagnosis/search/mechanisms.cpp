@@ -50,6 +50,7 @@ std::vector<Explanation> Search::alongFurtherMechanisms(const Explanation& expla
 
 /// Fits the best explanations again from other shares of their laws' further mechanisms, also without them, and keeps what is better.
 void Search::tryFurtherMechanisms() {
+  std::ranges::stable_sort(explanations_, std::greater<>{}, &Explanation::score);
   const double least = explanations_.empty() ? 0 : explanations_.front().score - near_best;
   for (std::size_t rank = 0; rank < std::min(explanations_.size(), varied_count); ++rank) {
     Explanation& one = explanations_[rank];

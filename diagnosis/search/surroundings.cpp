@@ -102,8 +102,8 @@ Search::Surroundings Search::surroundingsOf(const Explanation& base, std::vector
   return completed(std::move(around), std::move(columns), std::move(sensitivities));
 }
 
-/// Makes about_nothing_. A fit of numbers without effects explains by them what effects make: for a forearm whose joint has a spring it
-/// finds nearly twice the mass. Therefore the search begins at the values that the user gave, too.
+/// The surroundings of the model without effects. A fit of numbers without effects explains by them what effects make: for a forearm whose
+/// joint has a spring it finds nearly twice the mass. Therefore the search begins at the values that the user gave, too.
 std::vector<Search::Surroundings> Search::surroundingsOfNothing() const {
   std::vector<Surroundings> result;
   result.push_back(surroundingsOf(nothing_, catalogue_.sensitivities));
