@@ -11,6 +11,7 @@
 #include "../tempered_misfit.h"
 #include "diagnosis/isolation/actuation_phases.h"
 #include "diagnosis/model/drawing.h"
+#include "effect/components.h"
 
 namespace musclesim {
 namespace {
@@ -248,6 +249,57 @@ TEST(SensitiveMotion, CountsAsNoiseWhatSlightlyStrongerMusclesChange) {
     if (jumps) {
       EXPECT_EQ(all.unsteady().by, Unsteady::Change::forces);
     }
+  }
+}
+
+/// A sensor that is read in every tenth row, but not in the first of ten.
+TEST_F(Rig, OfThinnedRowsTheFirstWithAReadingIsCompared) {
+  Recording sparse = planted::recorded({}, 0.1, 1);
+  for (Signal& signal : sparse.signals)
+    if (signal.name == "length_0_mm")
+      for (std::size_t row = 0; row < signal.values.size(); ++row)
+        if (row % 10 != 7) signal.values[row] = NAN;
+  const Plant of_sparse({sparse, planted::recorded({}, 0.1, 2)}, options);
+  const Comparison thinned(of_sparse, {{0, 0, 200, 10}});
+  ASSERT_EQ(thinned.blocks().size(), 1u);
+  EXPECT_EQ(thinned.blocks()[0].rows.front(), 7);
+  EXPECT_EQ(thinned.blocks()[0].rows.size(), 20u);
+  EXPECT_EQ(Comparison(of_sparse, {{1, 0, 200, 10}}).blocks()[0].rows[1], 10);
+}
+
+/// One simulation in which all sensors are late tells what each late sensor alone changes, also in what the others contradict it by.
+TEST(PredictedInOne, IsThePredictionOfOneFaultySensor) {
+  std::vector<Recording> recordings;
+  for (const int speed : {1, 2}) {
+    Recording plan;
+    plan.info.robot = "elbow";
+    plan.info.robot_parameters = {{"muscle.model", std::string("line")}};
+    plan.signals = {{"command_0", {}}, {"command_1", {}}};
+    for (int row = 0; row < 300; ++row) {
+      plan.time_s.push_back(0.01 * row);
+      const double wave = 0.1 * std::sin(0.05 * speed * row);
+      plan.signals[0].values.push_back(0.5 + wave);
+      plan.signals[1].values.push_back(0.3 - wave);
+    }
+    recordings.push_back(replayRecording(plan, {}).simulated);
+    recordings.back().info.noise_std = {{"angle_elbow_deg", 0.05}, {"length_0_mm", 0.05}, {"length_1_mm", 0.05}};
+    std::erase_if(recordings.back().signals, [](const Signal& s) {
+      return s.name.starts_with("pressure_") || s.name.starts_with("force_") || s.name.starts_with("hand_");
+    });
+  }
+  const DiagnosisOptions options;
+  const Plant plant(recordings, options);
+  const Comparison all(plant, {{0, 0, 300}, {1, 0, 300}}, Comparison::Derived::with);
+  ASSERT_TRUE(std::ranges::any_of(all.blocks(), &Comparison::Block::is_parity));
+  const auto late = [](const std::string& name) { return ActiveEffect{"sensor_delay", "signal_" + name, {{"delay_s", 0.05}}}; };
+  const Model base{{{"payload", "hand", {{"mass_kg", 0.2}}}}, {}};
+  Model faulty = base;
+  for (const ComparedSignal& signal : plant.signals()) faulty.effects.push_back(late(stemOf(signal.name)));
+  for (int s = 0; s < static_cast<int>(plant.signals().size()); ++s) {
+    Model one = base;
+    one.effects.push_back(late(stemOf(plant.signals()[static_cast<std::size_t>(s)].name)));
+    EXPECT_EQ(all.predictedInOne(s, faulty, base), all.predicted(one)) << s;
+    EXPECT_NE(all.predictedInOne(s, faulty, base), all.predicted(faulty)) << s;
   }
 }
 

@@ -48,6 +48,17 @@ TEST(ScreeningSegments, LastAFewSecondsFromTheFirstChangeOfACommand) {
   for (const Segment& segment : late) EXPECT_EQ(segment.end_row, 1100);
 }
 
+/// What the machine did before the recording decides the first readings; without them a segment would be empty.
+TEST(ScreeningSegments, LastAFewSecondsFromTheFirstReading) {
+  DiagnosisOptions options;
+  options.skip_start_s = 13;
+  const std::vector<Segment> late = Plant({stepped(0.01, 0, 25, "a.csv"), stepped(0.01, 0, 25, "b.csv")}, options).screeningSegments();
+  ASSERT_EQ(late.size(), 1u);
+  EXPECT_EQ(late.front().end_row, 2500);
+  options.skip_start_s = 3;
+  EXPECT_EQ(Plant({stepped(0.01, 0, 25, "a.csv"), stepped(0.01, 0, 25, "b.csv")}, options).screeningSegments().front().end_row, 1500);
+}
+
 TEST(ScreeningSegments, ComparesOnlySomeOfManyRows) {
   for (const Segment& segment : segmentsOf(0.001, 0.5, 10)) {
     EXPECT_EQ(segment.end_row, 6500);
