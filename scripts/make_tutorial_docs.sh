@@ -34,9 +34,9 @@ text <<'TEXT'
 You have a muscle on a bench, a logger that writes tables, and a simulation that does not do what the machine does. This page leads from the tables to a simulation that moves like the machine:
 
 ```
-musclesim import logger1.csv bench.toml bench1.csv                 # a table becomes a recording
-musclesim diagnose bench1.csv bench2.csv bench3.csv --out answer   # why does the machine differ?
-musclesim replay bench4.csv --effects answer/effects.json          # the better simulation
+musclesim import logger1.csv bench.toml bench1.csv                                                     # a table becomes a recording
+musclesim diagnose bench1.csv bench2.csv bench3.csv --tune spring_bench.spring_N_per_mm --out answer   # why does the machine differ?
+musclesim replay bench4.csv --config answer/nominal.toml --effects answer/effects.json                 # the better simulation
 ```
 
 ![The top of a report](figures/report.png)
@@ -129,6 +129,7 @@ text <<'TEXT'
 
 Read it from the top:
 
+- *tuned*: how many numbers of `--tune` were fitted. `nominal.toml` also holds the numbers of this robot that have a [tolerance](diagnosing.md#numbers-that-nobody-measured): force constant, friction, carriage, load.
 - *where*: the stage at which the gap arises. If the model is given the measured pressures instead of the commands, it reproduces the measured length; so the gap arises before the force. Only the shape of the gap can then tell whether it arises in command or in pressure.
 - *which*: the effects with their probabilities, and their parameters with 95 % intervals. "None of these" is a possible answer. Here two effects act together, and their numbers are those of `machine.json`.
 - *how far*: the gap reduction on `bench3.csv`, which neither fitting nor choosing has seen. "Nominal refit" is the reduction that the model's own numbers achieve without any effect. "Negative control" is the reduction that a meaningless disturbance achieves.
@@ -165,7 +166,7 @@ Real machines have several causes at once, laws that differ from any catalogue's
 - Correct known faults of a sensor in the mapping (`offset`, `factor`).
 - "I cannot explain" with a probability is an answer, too. `attempt.json`, if there is one, holds the nearest explanation.
 
-[Recording data that can be diagnosed](recordings.md#recording-data-that-can-be-diagnosed) saves most of the trouble.
+Read [Recording data that can be diagnosed](recordings.md#recording-data-that-can-be-diagnosed) before you record.
 TEXT
 cp "$page" "$root/docs/user/tutorial_diagnosis.md"
 chmod 644 "$root/docs/user/tutorial_diagnosis.md"
