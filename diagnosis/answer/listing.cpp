@@ -19,7 +19,6 @@ namespace musclesim {
 
 namespace {
 
-constexpr double least_listed = 0.01;  ///< least probability that is listed
 constexpr double as_good = 0.05;  ///< explanations with at least this share of the best one's probability cannot be distinguished from it
 constexpr double excited = 1;     ///< least change of a signal by a typical effect, in sigmas, for it to be excited
 
@@ -119,10 +118,9 @@ std::map<std::string, double> shares(const Search& search, const HeldOut& held_o
   if (diagnosis.chosen.empty()) return result;
   const Explanation& chosen = search.explanations().front();
   for (std::size_t m = 0; m < chosen.members.size(); ++m) {
-    const Eigen::VectorXd predicted = held_out.comparison.predicted(search.modelOf(search.causes().without(chosen, m)));
-    if (!predicted.size()) continue;
-    result[labelOf(search, chosen.members[m])] =
-        diagnosis.reduction_percent - held_out.reductionPercent(held_out.comparison.measured() - predicted);
+    const Eigen::VectorXd residual = held_out.comparison.residualOf(search.modelOf(search.causes().without(chosen, m)));
+    if (!residual.size()) continue;
+    result[labelOf(search, chosen.members[m])] = diagnosis.reduction_percent - held_out.reductionPercent(residual);
   }
   return result;
 }
@@ -131,8 +129,8 @@ std::optional<double> singleReduction(const Search& search, const HeldOut& held_
   if (search.causes().plant().interrupted()) return std::nullopt;
   for (const Explanation& fitted : search.singles()) {
     if (labelOf(search, fitted.members.front()) != label) continue;
-    const Eigen::VectorXd predicted = held_out.comparison.predicted(search.modelOf(fitted));
-    if (predicted.size()) return held_out.reductionPercent(held_out.comparison.measured() - predicted);
+    const Eigen::VectorXd residual = held_out.comparison.residualOf(search.modelOf(fitted));
+    if (residual.size()) return held_out.reductionPercent(residual);
   }
   return std::nullopt;
 }

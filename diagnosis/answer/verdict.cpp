@@ -43,9 +43,9 @@ bool numbersDoAsWell(const Search& search, const Eigen::VectorXd& refitted, doub
 
 /// Offers the model without effects, with its numbers fitted, and its residual on the held-out rows. Offers nothing if it diverges.
 Offer numbersAlone(const Search& search, const HeldOut& held_out) {
-  const Eigen::VectorXd predicted = held_out.comparison.predicted(search.modelOf(search.nothing()));
-  if (!predicted.size()) return {};
-  return {search.nothing(), held_out.comparison.measured() - predicted};
+  const Eigen::VectorXd residual = held_out.comparison.residualOf(search.modelOf(search.nothing()));
+  if (!residual.size()) return {};
+  return {search.nothing(), residual};
 }
 
 /// Measures the controls, the negative one with as many disturbances as the best explanation has coordinates. True if
@@ -101,10 +101,9 @@ void acceptNumbers(const Eigen::VectorXd& after, const HeldOut& held_out, bool a
 /// RMS over the noise floor of each signal of the held-out rows under a model; empty if it diverges.
 std::map<std::string, double> heldOutRatios(const HeldOut& held_out, const Model& model) {
   std::map<std::string, double> ratios;
-  const Eigen::VectorXd predicted = held_out.comparison.predicted(model);
-  if (!predicted.size()) return ratios;
-  for (const auto& [signal, gap] : held_out.comparison.gap(held_out.comparison.measured() - predicted).per_signal)
-    ratios[signal] = overNoise(gap);
+  const Eigen::VectorXd residual = held_out.comparison.residualOf(model);
+  if (!residual.size()) return ratios;
+  for (const auto& [signal, gap] : held_out.comparison.gap(residual).per_signal) ratios[signal] = overNoise(gap);
   return ratios;
 }
 
@@ -150,9 +149,8 @@ Offer judge(const Search& search, const HeldOut& held_out, const DiagnosisOption
     }
   }
   const Model model = search.modelOf(best);
-  const Eigen::VectorXd predicted = held_out.comparison.predicted(model);
-  if (!predicted.size()) return {};
-  const Eigen::VectorXd after = held_out.comparison.measured() - predicted;
+  const Eigen::VectorXd after = held_out.comparison.residualOf(model);
+  if (!after.size()) return {};
   const bool numbers_do_as_well = measureControls(search, held_out, options, on_simulation, diagnosis);
   if (search.causes().plant().interrupted()) return {};
   const Estimate interval = gapReductionInterval({held_out.comparison, held_out.before, after},

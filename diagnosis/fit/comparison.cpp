@@ -277,6 +277,12 @@ Eigen::VectorXd Comparison::predicted(const Model& model) const {
   return corrected([&](Fidelity fidelity) { return predicted(model, fidelity); });
 }
 
+Eigen::VectorXd Comparison::residualOf(const Model& model) const {
+  Eigen::VectorXd residual = predicted(model);
+  if (residual.size()) residual = measured_ - residual;
+  return residual;
+}
+
 Eigen::VectorXd Comparison::predictedInOne(int signal, const Model& faulty, const Model& base) const {
   return corrected([&](Fidelity fidelity) {
     std::vector<Prediction> predictions;

@@ -88,6 +88,8 @@ class Comparison {
   /// Prediction of a model at the compared rows; empty if it diverges on one of the segments.
   Eigen::VectorXd predicted(const Model& model) const;
   Eigen::VectorXd predicted(const Model& model, Fidelity fidelity) const;
+  /// Measured minus predicted; empty if the model diverges.
+  Eigen::VectorXd residualOf(const Model& model) const;
   /// The prediction of a model in which the sensor of one signal only is faulty: of `faulty` for that signal, of `base` for all others.
   /// What is computed from readings is that of both together. So one simulation tells what a fault does to each sensor alone.
   Eigen::VectorXd predictedInOne(int signal, const Model& faulty, const Model& base) const;

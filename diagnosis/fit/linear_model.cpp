@@ -7,13 +7,9 @@
 
 namespace musclesim {
 
-namespace {
-
-/// Minimises x^T N x / 2 - s^T x between bounds by coordinate descent (N positive definite), from x on.
 void descend(const Eigen::MatrixXd& normal, const Eigen::VectorXd& slope, const Eigen::VectorXd& least, const Eigen::VectorXd& most,
-             Eigen::VectorXd& x) {
+             double still, Eigen::VectorXd& x) {
   constexpr int most_sweeps = 200;
-  constexpr double still = 1e-6;
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
     double largest_step = 0;
     for (Eigen::Index i = 0; i < x.size(); ++i) {
@@ -21,11 +17,9 @@ void descend(const Eigen::MatrixXd& normal, const Eigen::VectorXd& slope, const 
       largest_step = std::max(largest_step, std::abs(next - x[i]));
       x[i] = next;
     }
-    if (largest_step < still) return;
+    if (largest_step <= still) return;
   }
 }
-
-}  // namespace
 
 LinearModel::LinearModel(const Comparison& comparison, const Eigen::VectorXd& residual, std::vector<Column> columns)
     : comparison_(comparison), columns_(std::move(columns)) {
@@ -66,6 +60,7 @@ LinearModel::Normal LinearModel::normalOf(const std::vector<std::size_t>& column
 LinearModel::Solution LinearModel::solve(const std::vector<std::size_t>& columns) const {
   constexpr int reweightings = 4;
   constexpr double longest_step = 8;  // over that of the weighted squares
+  constexpr double still = 1e-6;      // of amounts
   const auto count = static_cast<Eigen::Index>(columns.size());
   Eigen::VectorXd x = Eigen::VectorXd::Zero(count), least(count), most(count);
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -97,7 +92,7 @@ LinearModel::Solution LinearModel::solve(const std::vector<std::size_t>& columns
   for (int round = 0; round < reweightings && count > 0; ++round) {
     const Normal normal = normalOf(columns, comparison_.weightSquares(mean_squares));
     const Eigen::VectorXd before = x;
-    descend(normal.matrix, normal.slope, least, most, x);
+    descend(normal.matrix, normal.slope, least, most, still, x);
     double now = cost();
     // Weighted squares are steeper than the misfit they stand for, so that a longer step is often better.
     for (double length = 2; length <= longest_step; length *= 2) {

@@ -8,6 +8,11 @@
 
 namespace musclesim {
 
+/// Minimises x^T N x / 2 - s^T x between bounds by coordinate descent (N positive definite), from x on, until no coordinate moves by
+/// `still`.
+void descend(const Eigen::MatrixXd& normal, const Eigen::VectorXd& slope, const Eigen::VectorXd& least, const Eigen::VectorXd& most,
+             double still, Eigen::VectorXd& x);
+
 class LinearModel {
  public:
   /// A change of the prediction per unit of an amount, and what the amount may be.

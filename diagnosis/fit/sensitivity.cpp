@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "../../base/parallel.h"
+#include "linear_model.h"
 
 namespace musclesim {
 
@@ -58,17 +59,6 @@ std::vector<Probe> probes(const Comparison& comparison, const std::vector<Hypoth
   return result;
 }
 
-/// Minimises x^T N x / 2 - s^T x for least <= x <= largest_amount by coordinate descent (N positive definite), so that strengths with
-/// similar responses do not drive each other against the bounds.
-Eigen::VectorXd boundedSolution(const Eigen::MatrixXd& normal, const Eigen::VectorXd& slope, const Eigen::VectorXd& least) {
-  constexpr int sweep_count = 200;
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(slope.size());
-  for (int sweep = 0; sweep < sweep_count; ++sweep)
-    for (Eigen::Index i = 0; i < x.size(); ++i)
-      x[i] = std::clamp(x[i] + (slope[i] - normal.row(i).dot(x)) / normal(i, i), least[i], largest_amount);
-  return x;
-}
-
 }  // namespace
 
 double excitationRatio(const Comparison& comparison, const Eigen::VectorXd& change) {
@@ -89,6 +79,7 @@ void fitLinearly(const Comparison& comparison, const Hypothesis& hypothesis, con
     columns.col(i) = *change;
   }
   Eigen::VectorXd least = Eigen::VectorXd::Zero(count);
+  const Eigen::VectorXd most = Eigen::VectorXd::Constant(count, largest_amount);
   for (std::size_t k = 0; k < hypothesis.strengths().size(); ++k)
     if (hypothesis.isSigned(hypothesis.strengths()[k])) least[static_cast<Eigen::Index>(k)] = -largest_amount;
   Eigen::VectorXd left = residual;
@@ -98,9 +89,11 @@ void fitLinearly(const Comparison& comparison, const Hypothesis& hypothesis, con
     Eigen::MatrixXd normal = weighted.transpose() * weighted;
     normal.diagonal().array() += 1e-12 + 1e-9 * normal.diagonal().maxCoeff();
     // An effect without parameters is either present or absent.
-    const Eigen::VectorXd amount = hypothesis.strengths().empty()
-                                       ? Eigen::VectorXd(Eigen::VectorXd::Ones(count))
-                                       : boundedSolution(normal, weighted.transpose() * weights.cwiseProduct(residual), least);
+    Eigen::VectorXd amount = Eigen::VectorXd::Ones(count);
+    if (!hypothesis.strengths().empty()) {  // between bounds, so that strengths that act alike do not drive each other against them
+      amount.setZero();
+      descend(normal, weighted.transpose() * weights.cwiseProduct(residual), least, most, 0, amount);
+    }
     left = residual - columns * amount;
     const double misfit = comparison.misfit(left);
     if (misfit < sensitivity.misfit || hypothesis.strengths().empty()) {

@@ -28,6 +28,8 @@ inline constexpr Complexity prices = {
     .parameters = 1.0, .effects = 3.1, .same_place = 1.0, .excess = 2.0, .shared_sensor = 4.0, .places = 1.0};
 /// ln odds of something else per share of the misfit that an explanation leaves, and the share at which it is as likely as not.
 inline constexpr double per_share_left = 12, share_of_unknown = 0.3;
+/// Least probability of what is listed; such explanations are fitted to the end and may be chosen.
+inline constexpr double least_listed = 0.01;
 /// Where something else acts, the probability that a named effect only stands in for it; docs/developer/diagnosis_choices.md says where it
 /// comes from.
 inline constexpr double stand_in_share = 0.6;

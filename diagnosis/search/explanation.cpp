@@ -33,14 +33,32 @@ bool overlap(const std::string& one, const std::string& other) {
   return in_one.find(in_other) != std::string::npos || in_other.find(in_one) != std::string::npos;
 }
 
+std::vector<Causes::Part> Causes::partsOf(const Explanation& explanation) const {
+  std::vector<Part> parts;
+  Eigen::Index first = 0;
+  for (const std::size_t hypothesis : explanation.members) {
+    const Eigen::Index count = hypotheses[hypothesis].coordinateCount();
+    parts.push_back({hypothesis, explanation.z.segment(first, count)});
+    first += count;
+  }
+  return parts;
+}
+
+Explanation Causes::assembled(const std::vector<Part>& parts, const Eigen::VectorXd& numbers) {
+  Explanation result;
+  std::vector<double> z;
+  for (const auto& [hypothesis, own] : parts) {
+    result.members.push_back(hypothesis);
+    z.insert(z.end(), own.begin(), own.end());
+  }
+  result.z = Eigen::Map<const Eigen::VectorXd>(z.data(), static_cast<Eigen::Index>(z.size()));
+  result.numbers = numbers;
+  return result;
+}
+
 Model Causes::modelOf(const Explanation& explanation) const {
   Model model;
-  Eigen::Index first = 0;
-  for (const std::size_t index : explanation.members) {
-    const Hypothesis& hypothesis = hypotheses[index];
-    model.effects.push_back(hypothesis.at(explanation.z.segment(first, hypothesis.coordinateCount())));
-    first += hypothesis.coordinateCount();
-  }
+  for (const auto& [hypothesis, own] : partsOf(explanation)) model.effects.push_back(hypotheses[hypothesis].at(own));
   model.parameters = plant_.numbersAt(explanation.numbers);
   return model;
 }
@@ -62,62 +80,38 @@ Eigen::Index Causes::firstCoordinate(const Explanation& explanation, std::size_t
 }
 
 Explanation Causes::without(const Explanation& explanation, std::size_t member) const {
-  const Eigen::Index first = firstCoordinate(explanation, member), count = hypotheses[explanation.members[member]].coordinateCount();
-  Explanation result;
-  result.members = explanation.members;
-  result.members.erase(result.members.begin() + static_cast<std::ptrdiff_t>(member));
-  result.z.resize(explanation.z.size() - count);
-  result.z << explanation.z.head(first), explanation.z.tail(explanation.z.size() - first - count);
-  result.numbers = explanation.numbers;
-  return result;
+  std::vector<Part> parts = partsOf(explanation);
+  parts.erase(parts.begin() + static_cast<std::ptrdiff_t>(member));
+  return assembled(parts, explanation.numbers);
 }
 
 Explanation Causes::with(const Explanation& explanation, std::size_t hypothesis,
                          const std::map<std::string, Parameter::Value>& values) const {
-  const Eigen::VectorXd own = hypotheses[hypothesis].coordinatesOf(values);
-  Explanation result;
-  result.members = explanation.members;
-  result.members.push_back(hypothesis);
-  result.z.resize(explanation.z.size() + own.size());
-  result.z << explanation.z, own;
-  result.numbers = explanation.numbers;
-  return result;
+  std::vector<Part> parts = partsOf(explanation);
+  parts.push_back({hypothesis, hypotheses[hypothesis].coordinatesOf(values)});
+  return assembled(parts, explanation.numbers);
 }
 
 Explanation Causes::takingOver(const Explanation& explanation, const Explanation& other) const {
-  Explanation result;
-  std::vector<double> z;
-  for (std::size_t m = 0; m < explanation.members.size(); ++m) {
-    const std::string label = hypotheses[explanation.members[m]].label();
-    const auto same = std::ranges::find_if(other.members, [&](std::size_t i) { return hypotheses[i].label() == label; });
-    const bool is_shared = same != other.members.end();
-    const Explanation& from = is_shared ? other : explanation;
-    const std::size_t position = is_shared ? static_cast<std::size_t>(same - other.members.begin()) : m;
-    result.members.push_back(from.members[position]);
-    const Eigen::VectorXd own = from.z.segment(firstCoordinate(from, position), hypotheses[result.members.back()].coordinateCount());
-    z.insert(z.end(), own.begin(), own.end());
-  }
-  result.z = Eigen::Map<const Eigen::VectorXd>(z.data(), static_cast<Eigen::Index>(z.size()));
-  result.numbers = other.numbers;
-  return result;
+  std::vector<Part> parts = partsOf(explanation);
+  for (const Part& of_other : partsOf(other))
+    for (Part& part : parts)
+      if (hypotheses[part.hypothesis].label() == hypotheses[of_other.hypothesis].label()) part = of_other;
+  return assembled(parts, other.numbers);
 }
 
 Explanation Causes::inVariants(const Explanation& explanation,
                                const std::function<bool(const Hypothesis& own, const Hypothesis& other)>& isWanted) const {
   const Model model = modelOf(explanation);
-  Explanation result;
-  std::vector<double> z;
+  std::vector<Part> parts;
   for (std::size_t m = 0; m < explanation.members.size(); ++m) {
     const Hypothesis& own = hypotheses[explanation.members[m]];
     const auto wanted =
         std::ranges::find_if(hypotheses, [&](const Hypothesis& other) { return other.label() == own.label() && isWanted(own, other); });
-    result.members.push_back(wanted == hypotheses.end() ? explanation.members[m] : static_cast<std::size_t>(wanted - hypotheses.begin()));
-    const Eigen::VectorXd part = hypotheses[result.members.back()].coordinatesOf(model.effects[m].parameters);
-    z.insert(z.end(), part.begin(), part.end());
+    const std::size_t variant = wanted == hypotheses.end() ? explanation.members[m] : static_cast<std::size_t>(wanted - hypotheses.begin());
+    parts.push_back({variant, hypotheses[variant].coordinatesOf(model.effects[m].parameters)});
   }
-  result.z = Eigen::Map<const Eigen::VectorXd>(z.data(), static_cast<Eigen::Index>(z.size()));
-  result.numbers = explanation.numbers;
-  return result;
+  return assembled(parts, explanation.numbers);
 }
 
 Explanation Causes::withFurtherMechanisms(const Explanation& explanation) const {

@@ -54,6 +54,14 @@ class Causes {
   bool clash(std::size_t one, std::size_t other) const;
   /// Index of the first coordinate of a member.
   Eigen::Index firstCoordinate(const Explanation& explanation, std::size_t member) const;
+  /// A member of an explanation with its own coordinates.
+  struct Part {
+    std::size_t hypothesis;
+    Eigen::VectorXd z;
+  };
+  std::vector<Part> partsOf(const Explanation& explanation) const;
+  /// An explanation of these parts, not fitted yet.
+  static Explanation assembled(const std::vector<Part>& parts, const Eigen::VectorXd& numbers);
   /// The explanation without one of its members, the others unchanged.
   Explanation without(const Explanation& explanation, std::size_t member) const;
   /// The explanation with one more member, at these values of its parameters (Hypothesis::coordinatesOf); not fitted yet.

@@ -18,7 +18,6 @@ constexpr std::size_t restarted_count = 4;  ///< explanations near the best that
 constexpr std::size_t start_count = 2;      ///< from so many starts each
 constexpr std::size_t enlarged_count = 6;   ///< explanations near the best to which its further effects are added
 constexpr int variant_passes = 3;           ///< changes of one effect's variant each
-constexpr double listed = 0.01;             ///< least probability of explanations that are fitted to the end and may be chosen
 constexpr int coarse_rounds = 6, fine_rounds = 4;
 
 }  // namespace
@@ -40,15 +39,9 @@ std::vector<Explanation> Search::otherVariants(const Explanation& explanation) c
   for (std::size_t m = 0; m < explanation.members.size(); ++m)
     for (std::size_t i = 0; i < causes_.hypotheses.size(); ++i) {
       if (i == explanation.members[m] || causes_.hypotheses[i].label() != causes_.hypotheses[explanation.members[m]].label()) continue;
-      const Eigen::Index first = causes_.firstCoordinate(explanation, m);
-      const Eigen::Index after = first + causes_.hypotheses[explanation.members[m]].coordinateCount();
-      const Eigen::VectorXd own = causes_.hypotheses[i].coordinatesOf(model.effects[m].parameters);
-      Explanation other = explanation;
-      other.members[m] = i;
-      other.z.resize(explanation.z.size() - (after - first) + own.size());
-      other.z << explanation.z.head(first), own, explanation.z.tail(explanation.z.size() - after);
-      setCertainty(other, {});
-      result.push_back(std::move(other));
+      std::vector<Causes::Part> parts = causes_.partsOf(explanation);
+      parts[m] = {i, causes_.hypotheses[i].coordinatesOf(model.effects[m].parameters)};
+      result.push_back(Causes::assembled(parts, explanation.numbers));
     }
   return result;
 }
@@ -105,7 +98,7 @@ void Search::fitFinalists() {
 void Search::polish() {
   std::vector<Explanation*> chosen;
   for (Explanation& explanation : explanations_)
-    if (explanation.probability >= listed || explanation.members.empty()) chosen.push_back(&explanation);
+    if (explanation.probability >= least_listed || explanation.members.empty()) chosen.push_back(&explanation);
   parallelFor(static_cast<int>(chosen.size()), options_.job_count, [&](int i) {
     Explanation& explanation = *chosen[static_cast<std::size_t>(i)];
     if (plant_.interrupted() || explanation.residual.size() != fit_.size()) return;
@@ -359,12 +352,13 @@ void Search::weigh() {
   std::ranges::stable_sort(explanations_, std::greater<>{}, &Explanation::probability);
 }
 
-/// Moves the explanation that namedSet() selects to the front. Only explanations with a probability of `listed` or more can be selected.
+/// Moves the explanation that namedSet() selects to the front. Only explanations with a probability of `least_listed` or more can be
+/// selected.
 void Search::choose() {
   std::vector<std::set<std::string>> sets;
   std::vector<double> probabilities;
   for (const Explanation& explanation : explanations_) {
-    if (explanation.probability < listed && !sets.empty()) break;
+    if (explanation.probability < least_listed && !sets.empty()) break;
     sets.push_back(causes_.labelsOf(explanation.members));
     probabilities.push_back(explanation.probability);
   }

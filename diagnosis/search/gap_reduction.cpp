@@ -174,8 +174,7 @@ ControlResidual nominalRefit(const Comparison& fitted, const Comparison& held_ou
     return fitted.predicted(modelAt(z));
   };
   const FitResult result = fit(fitted, problem, round_count);
-  const Eigen::VectorXd predicted = held_out.predicted(modelAt(result.z));
-  return {result.residual, predicted.size() ? held_out.measured() - predicted : Eigen::VectorXd{}};
+  return {result.residual, held_out.residualOf(modelAt(result.z))};
 }
 
 Eigen::VectorXd negativeControlResidual(const Comparison& fitted, const Comparison& held_out, int parameter_count, std::uint64_t seed,

@@ -47,8 +47,7 @@ void Search::keepNearestVariants(const Comparison& comparison, std::size_t kept,
   parallelFor(static_cast<int>(tried.size()), options_.job_count, [&](int i) {
     const std::size_t index = tried[static_cast<std::size_t>(i)];
     if (plant_.interrupted()) return;
-    const Eigen::VectorXd predicted = comparison.predicted(Model{{all[index].at({})}, {}});
-    misfit[index] = predicted.size() ? comparison.misfit(comparison.measured() - predicted) : std::numeric_limits<double>::infinity();
+    misfit[index] = comparison.misfit(comparison.residualOf(Model{{all[index].at({})}, {}}));
     on_simulation_();
   });
   std::set<std::size_t> dropped;

@@ -83,7 +83,7 @@ std::vector<Search::Proposal> Search::singleEffects(const Surroundings& around) 
   const auto idOf = [this](const Proposal& proposal) { return causes_.hypotheses[proposal.start.members.back()].info().id; };
   std::vector<Proposal> all;
   for (std::size_t i = 0; i < around.of_hypothesis.size(); ++i)
-    if (!around.of_hypothesis[i].empty()) all.push_back(proposed(around, {}, {i}));
+    if (!around.of_hypothesis[i].empty()) all.push_back(proposed(around, {i}));
   std::vector<Proposal> result = nearestOfStages(all, single_count, per_stage_count, 2);
   std::ranges::stable_sort(all, {}, &Proposal::cost);
   std::set<std::string> ids;
@@ -107,11 +107,7 @@ std::vector<Search::Proposal> Search::largerSets(const Surroundings& around) con
         larger.push_back(i);
         if (seen.insert({larger.begin(), larger.end()}).second) sets.push_back(std::move(larger));
       }
-    std::vector<Proposal> proposals(sets.size());
-    parallelFor(static_cast<int>(sets.size()), options_.job_count, [&](int i) {
-      const auto index = static_cast<std::size_t>(i);
-      proposals[index] = proposed(around, {}, sets[index]);
-    });
+    std::vector<Proposal> proposals = proposedEach(around, sets);
     std::ranges::stable_sort(proposals, {}, &Proposal::cost);
     if (proposals.size() > beam_width) proposals.resize(beam_width);
     level.clear();
@@ -127,14 +123,14 @@ std::vector<Search::Proposal> Search::additions(const Surroundings& around) cons
   std::vector<Proposal> result;
   if (static_cast<int>(members.size()) < options_.max_effects)
     for (std::size_t i = 0; i < around.of_hypothesis.size(); ++i)
-      if (!around.of_hypothesis[i].empty()) result.push_back(proposed(around, allBut(members.size(), members.size()), {i}));
+      if (!around.of_hypothesis[i].empty()) result.push_back(proposed(around, {i}));
   return result;
 }
 
 std::vector<Search::Proposal> Search::drops(const Surroundings& around) const {
   const std::vector<std::size_t>& members = around.base.members;
   std::vector<Proposal> result;
-  for (std::size_t m = 0; m < members.size() && members.size() > 1; ++m) result.push_back(proposed(around, allBut(m, members.size()), {}));
+  for (std::size_t m = 0; m < members.size() && members.size() > 1; ++m) result.push_back(proposed(around, {}, m));
   return result;
 }
 
@@ -152,9 +148,9 @@ void Search::nearToOrigin(Proposal& proposal) const {
     for (const int strength : last.strengths()) origin.z.tail(last.coordinateCount())[strength] = 0;
   }
   for (int k = 0; k < most_moves; ++k) {
-    const Eigen::VectorXd predicted = screening_.predicted(causes_.modelOf(start));
+    const double misfit = screening_.misfit(screening_.residualOf(causes_.modelOf(start)));
     on_simulation_();
-    if (predicted.size() == screening_.size() && screening_.misfit(screening_.measured() - predicted) < without) break;
+    if (misfit < without) break;
     start.z = causes_.clamped(start.members, origin.z + share * (start.z - origin.z));
     start.numbers = plant_.clampedNumbers(origin.numbers + share * (start.numbers - origin.numbers));
   }
@@ -241,15 +237,15 @@ std::vector<Explanation> Search::singles() const {
 
 /// Index of the candidate, one of the variants of an effect, that comes nearest to it, and its coordinates there. Throws BadParameter if
 /// there is none.
-std::pair<std::size_t, Eigen::VectorXd> Search::nearestTo(const ActiveEffect& effect) const {
+Causes::Part Search::nearestTo(const ActiveEffect& effect) const {
   const std::string label = effect.id + "@" + effect.component;
-  std::optional<std::pair<std::size_t, Eigen::VectorXd>> nearest;
+  std::optional<Causes::Part> nearest;
   int fewest = 0;
   for (std::size_t i = 0; i < causes_.hypotheses.size(); ++i) {
     if (causes_.hypotheses[i].label() != label || !catalogue_.allowed[i]) continue;
     const auto [z, others] = causes_.hypotheses[i].nearestTo(effect);
     if (nearest && others >= fewest) continue;
-    nearest = {i, z};
+    nearest = Causes::Part{i, z};
     fewest = others;
   }
   if (nearest) return *nearest;
@@ -258,16 +254,9 @@ std::pair<std::size_t, Eigen::VectorXd> Search::nearestTo(const ActiveEffect& ef
 
 /// DiagnosisOptions::earlier as the start of a fit.
 Explanation Search::earlierFinding() const {
-  Explanation result;
-  std::vector<double> z;
-  for (const ActiveEffect& effect : options_.earlier) {
-    const auto [member, own] = nearestTo(effect);
-    result.members.push_back(member);
-    z.insert(z.end(), own.begin(), own.end());
-  }
-  result.z = Eigen::Map<const Eigen::VectorXd>(z.data(), static_cast<Eigen::Index>(z.size()));
-  result.numbers = nothing_.numbers;
-  return result;
+  std::vector<Causes::Part> parts;
+  for (const ActiveEffect& effect : options_.earlier) parts.push_back(nearestTo(effect));
+  return Causes::assembled(parts, nothing_.numbers);
 }
 
 /// Widens and expands the best explanations of each size, from one effect on.

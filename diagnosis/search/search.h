@@ -27,9 +27,6 @@ struct ScreenedCatalogue {
   std::size_t screened_count = 0;          ///< hypotheses that were screened on all screening segments
 };
 
-/// 0, 1, ... count - 1 without one of them; all of them if left_out is count.
-std::vector<std::size_t> allBut(std::size_t left_out, std::size_t count);
-
 /// Screens all hypotheses, searches sets of them, and weighs the sets that are fitted to all recordings. Call screen(), then decide().
 class Search {
  public:
@@ -124,7 +121,8 @@ class Search {
                                                  const Neighbours& neighbours) const;
   std::vector<std::size_t> unscreenedBeside(const Explanation& base, const std::vector<std::string>& places) const;
   std::vector<Sensitivity> changesBeside(const Explanation& base, const std::vector<std::size_t>& indices) const;
-  Proposal proposed(const Surroundings& around, const std::vector<std::size_t>& kept, const std::vector<std::size_t>& added) const;
+  Proposal proposed(const Surroundings& around, const std::vector<std::size_t>& added, std::optional<std::size_t> removed = {}) const;
+  std::vector<Proposal> proposedEach(const Surroundings& around, const std::vector<std::vector<std::size_t>>& added) const;
 
   /// The explanation by the same effects on the same components, in any variant, among others; their end if there is none.
   auto sameAmong(auto& others, const Explanation& one) const {
@@ -150,7 +148,7 @@ class Search {
   void extendBySize();
   bool changesFocus(std::size_t hypothesis) const;
   std::vector<Explanation> explainPressures();
-  std::pair<std::size_t, Eigen::VectorXd> nearestTo(const ActiveEffect& effect) const;
+  Causes::Part nearestTo(const ActiveEffect& effect) const;
   Explanation earlierFinding() const;
   Evidence screeningEvidence() const { return {screening_, screening_residual_, causes_}; }
 

@@ -26,8 +26,7 @@ constexpr std::size_t pair_base_count = 8;     ///< effects that do best alone, 
 /// Two further effects: one often takes in what two make, so that neither lowers the cost alone. Pairs are formed of the effects that cost
 /// least if added alone (pair_base_count) with any other, and of the same effect on two components.
 std::vector<Search::Proposal> Search::pairs(const Surroundings& around) const {
-  const std::size_t count = around.base.members.size();
-  if (static_cast<int>(count) + 2 > options_.max_effects) return {};
+  if (static_cast<int>(around.base.members.size()) + 2 > options_.max_effects) return {};
   std::vector<std::size_t> order;
   std::set<std::string> labels;
   for (const std::size_t index : inOrderOf(costsOfAdding(around)))
@@ -37,12 +36,7 @@ std::vector<Search::Proposal> Search::pairs(const Surroundings& around) const {
     for (std::size_t k = i + 1; k < order.size(); ++k)
       if (!causes_.clash(order[i], order[k])) pairs.push_back({order[i], order[k]});
   std::ranges::move(twins(around), std::back_inserter(pairs));
-  std::vector<Proposal> result(pairs.size());
-  parallelFor(static_cast<int>(pairs.size()), options_.job_count, [&](int i) {
-    const auto index = static_cast<std::size_t>(i);
-    result[index] = proposed(around, allBut(count, count), pairs[index]);
-  });
-  return result;
+  return proposedEach(around, pairs);
 }
 
 /// One effect on a single component put on all of them, in place of all members of its kind: faults of muscles of one build often are

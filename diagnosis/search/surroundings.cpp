@@ -18,13 +18,6 @@ constexpr double largest_change = 3;               ///< of a coordinate or a num
 
 }  // namespace
 
-std::vector<std::size_t> allBut(std::size_t left_out, std::size_t count) {
-  std::vector<std::size_t> result;
-  for (std::size_t i = 0; i < count; ++i)
-    if (i != left_out) result.push_back(i);
-  return result;
-}
-
 /// Columns of the base's own coordinates, of the removal of each effect, and of the numbers.
 void Search::addOwnColumns(Surroundings& around, std::vector<LinearModel::Column>& columns) const {
   const Explanation& base = around.base;
@@ -110,10 +103,9 @@ std::vector<Search::Surroundings> Search::surroundingsOfNothing() const {
   if (nothing_.numbers.isZero(0)) return result;
   Explanation as_given = nothing_;
   as_given.numbers.setZero();
-  const Eigen::VectorXd predicted = screening_.predicted(causes_.modelOf(as_given));
+  as_given.residual = screening_.residualOf(causes_.modelOf(as_given));
   on_simulation_();
-  if (predicted.size() != screening_.size() || plant_.interrupted()) return result;
-  as_given.residual = screening_.measured() - predicted;
+  if (!as_given.residual.size() || plant_.interrupted()) return result;
   result.push_back(surroundingsOf(as_given, changesBeside(as_given, screenedBeside(as_given))));
   return result;
 }
@@ -153,25 +145,19 @@ std::vector<std::vector<std::size_t>> Search::twins(const Surroundings& around) 
 /// infinity if it cannot be added.
 std::vector<double> Search::costsOfAddingWithTwin(const Surroundings& around) const {
   std::vector<double> costs = costsOfAdding(around);
-  const std::vector<std::size_t> all = allBut(around.base.members.size(), around.base.members.size());
   const std::vector<std::vector<std::size_t>> pairs = twins(around);
-  std::vector<double> of_pairs(pairs.size());
-  parallelFor(static_cast<int>(pairs.size()), options_.job_count, [&](int i) {
-    const auto index = static_cast<std::size_t>(i);
-    of_pairs[index] = proposed(around, all, pairs[index]).cost;
-  });
+  const std::vector<Proposal> of_pairs = proposedEach(around, pairs);
   for (std::size_t i = 0; i < pairs.size(); ++i)
-    for (const std::size_t one : pairs[i]) costs[one] = std::min(costs[one], of_pairs[i]);
+    for (const std::size_t one : pairs[i]) costs[one] = std::min(costs[one], of_pairs[i].cost);
   return costs;
 }
 
 /// What every hypothesis costs if it is added to the members of the base; infinity if it cannot be added.
 std::vector<double> Search::costsOfAdding(const Surroundings& around) const {
   std::vector<double> costs(causes_.hypotheses.size(), std::numeric_limits<double>::infinity());
-  const std::vector<std::size_t> all = allBut(around.base.members.size(), around.base.members.size());
   parallelFor(static_cast<int>(costs.size()), options_.job_count, [&](int i) {
     const auto index = static_cast<std::size_t>(i);
-    if (!around.of_hypothesis[index].empty()) costs[index] = proposed(around, all, {index}).cost;
+    if (!around.of_hypothesis[index].empty()) costs[index] = proposed(around, {index}).cost;
   });
   return costs;
 }
@@ -247,13 +233,14 @@ std::vector<Sensitivity> Search::changesBeside(const Explanation& base, const st
   return all;
 }
 
-/// The start of a fit of some members of the base, by their positions, and further hypotheses; its cost by the linear model.
-Search::Proposal Search::proposed(const Surroundings& around, const std::vector<std::size_t>& kept,
-                                  const std::vector<std::size_t>& added) const {
+/// The start of a fit of the members of the base, without one of them if it is to be removed, and of further hypotheses; its cost by the
+/// linear model.
+Search::Proposal Search::proposed(const Surroundings& around, const std::vector<std::size_t>& added,
+                                  std::optional<std::size_t> removed) const {
   const Explanation& base = around.base;
   std::vector<std::size_t> columns = around.of_numbers;
   for (std::size_t m = 0; m < base.members.size(); ++m) {
-    if (std::ranges::find(kept, m) == kept.end())
+    if (m == removed)
       columns.push_back(around.removal_of_member[m]);
     else
       std::ranges::copy(around.of_member[m], std::back_inserter(columns));
@@ -264,7 +251,8 @@ Search::Proposal Search::proposed(const Surroundings& around, const std::vector<
   for (std::size_t i = 0; i < columns.size(); ++i) amounts[columns[i]] = solution.amounts[static_cast<Eigen::Index>(i)];
   Proposal proposal;
   std::vector<double> z, origin;
-  for (const std::size_t m : kept) {
+  for (std::size_t m = 0; m < base.members.size(); ++m) {
+    if (m == removed) continue;
     proposal.start.members.push_back(base.members[m]);
     for (std::size_t k = 0; k < around.of_member[m].size(); ++k) {
       const Eigen::Index coordinate = causes_.firstCoordinate(base, m) + static_cast<Eigen::Index>(k);
@@ -294,6 +282,16 @@ Search::Proposal Search::proposed(const Surroundings& around, const std::vector<
   }
   proposal.cost = solution.cost + screeningEvidence().price(proposal.start);
   return proposal;
+}
+
+/// One proposal for each set of further hypotheses.
+std::vector<Search::Proposal> Search::proposedEach(const Surroundings& around, const std::vector<std::vector<std::size_t>>& added) const {
+  std::vector<Proposal> result(added.size());
+  parallelFor(static_cast<int>(added.size()), options_.job_count, [&](int i) {
+    const auto index = static_cast<std::size_t>(i);
+    result[index] = proposed(around, added[index]);
+  });
+  return result;
 }
 
 }  // namespace musclesim
