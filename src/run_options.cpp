@@ -45,7 +45,7 @@ void addControlOptions(CLI::App& command, RunOptions& options) {
       ->expected(3);
   command
       .add_option("--decision-interval", options.decision_interval_s,
-                  "Time between decisions in s (default: 6 in original physics, 3 in si)")
+                  "Time between decisions in s (default: 3 in si, 6 in original, 0.19 in scaled physics)")
       ->group(run_group);
 }
 

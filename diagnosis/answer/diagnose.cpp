@@ -200,7 +200,7 @@ class Run {
     diagnosis_.where_method = isolation.method;
     monitor_.phase("fitting the likely effects", 0);  // a thousand simulations or twenty thousand
     search_.decide();
-    diagnosis_.none_of_these = search_.noneOfThese();
+    diagnosis_.none_of_these = search_.somethingElse();
     if (!plant_.interrupted()) {
       monitor_.phase("measuring what the controls gain", 60);
       offer_ = judge(

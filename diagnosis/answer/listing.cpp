@@ -323,7 +323,7 @@ void describeRemainder(const Search& search, const HeldOut& held_out, const Eige
   remainder.is_within_steps = stands_out && isWithinSteps(left, diagnosis.unsteady);
   remainder.is_significant = stands_out && !remainder.is_within_steps;
   remainder.percent_of_gap = 100 * left.normalised / diagnosis.before.normalised;
-  remainder.probability = search.noneOfThese();
+  remainder.probability = search.somethingElse();
   for (const auto& [signal, gap] : left.per_signal)
     if (const double in_sigmas = overNoise(gap); in_sigmas > remainder.in_sigmas) {
       remainder.in_sigmas = in_sigmas;

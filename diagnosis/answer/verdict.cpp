@@ -159,7 +159,7 @@ Offer judge(const Search& search, const HeldOut& held_out, const DiagnosisOption
   const Attempt attempt{labelsOf(model), model.effects, gap_after, held_out.reductionPercent(after), interval.low, interval.high};
   const double left_of_rms = std::sqrt(std::max(0.0, 1 - attempt.reduction_percent / 100));
   // An explanation that removes most of the RMS on unseen data is of use, whatever its causes really are.
-  const bool is_of_use = std::min(left_of_rms, search.noneOfThese()) <= named;
+  const bool is_of_use = std::min(left_of_rms, search.somethingElse()) <= named;
   // Numbers that are off may make most of a gap. What an unlikely explanation removes beside them must be more than theirs alone.
   const bool beats_numbers = likeliest > named ? attempt.reduction_percent > diagnosis.nominal_refit_percent
                                                : clearlyBeats(attempt.reduction_percent, diagnosis.nominal_refit_percent);
@@ -169,7 +169,7 @@ Offer judge(const Search& search, const HeldOut& held_out, const DiagnosisOption
                      ((is_of_use && beats_controls) || (attempt.reduction_percent > 0 && eachExplainsASignal(search, held_out, best)));
   if (found) {
     const double on_held_out = probabilityOfUnknown(shareOfMisfitLeft(held_out.comparison, held_out.before, after));
-    diagnosis.none_of_these = stand_in_share * std::min(named, std::max(search.noneOfThese(), on_held_out));
+    diagnosis.none_of_these = stand_in_share * std::min(named, std::max(search.somethingElse(), on_held_out));
   }
   // Not offered, because it does not hold on the held-out data or gains no more than a control.
   if (!found && attempt.reduction_percent <= std::max({0.0, diagnosis.nominal_refit_percent, diagnosis.negative_control_percent}))

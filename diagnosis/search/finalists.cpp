@@ -138,22 +138,30 @@ void Search::tryOtherStrengths() {
   for (std::size_t rank = 0; rank < std::min(explanations_.size(), restarted_count); ++rank) {
     Explanation& one = explanations_[rank];
     if (one.score < least || plant_.interrupted()) break;
-    std::vector<Explanation> others = otherStrengths(one);
-    fitAll(others, [this](Explanation& other) {
-      causes_.refit(other, fit_, 0, Fidelity::coarse, Accuracy::ranking);
-      if (other.residual.size() == fit_.size()) other.score = evidence().score(other);
-    });
-    if (others.size() > start_count) others.resize(start_count);
-    improveBy(one, std::move(others));
+    improveBy(one, bestStarts(otherStrengths(one), start_count));
   }
+}
+
+/// The best of several starts, as they are.
+std::vector<Explanation> Search::bestStarts(std::vector<Explanation> starts, std::size_t most) const {
+  fitAll(starts, [this](Explanation& start) {
+    causes_.refit(start, fit_, 0, Fidelity::coarse, Accuracy::ranking);
+    if (start.residual.size() == fit_.size()) start.score = evidence().score(start);
+  });
+  if (starts.size() > most) starts.resize(most);
+  return starts;
+}
+
+/// Fits explanations from their starts, to the end those that reach a score; the others are left out.
+void Search::fitIfPromising(std::vector<Explanation>& explanations, double least_score) const {
+  fitAll(explanations, [&](Explanation& one) { fitRoughly(one, least_score); });
+  std::erase_if(explanations, [&](const Explanation& one) { return one.score < least_score; });
+  fitAll(explanations, [this](Explanation& one) { fitFinely(one); });
 }
 
 /// Fits others from their starts and puts the best of them in the place of `one` if it is better. Returns whether it is.
 bool Search::improveBy(Explanation& one, std::vector<Explanation> others) const {
-  const double least_score = one.score - worth_polishing;
-  fitAll(others, [&](Explanation& other) { fitRoughly(other, least_score); });
-  std::erase_if(others, [&](const Explanation& other) { return other.score < least_score; });
-  fitAll(others, [this](Explanation& other) { fitFinely(other); });
+  fitIfPromising(others, one.score - worth_polishing);
   if (others.empty() || others.front().score <= one.score) return false;
   one = std::move(others.front());
   return true;
@@ -244,9 +252,7 @@ void Search::tryEffectsOfTheBest() {
       if (sameAmong(explanations_, one) == explanations_.end() && sameAmong(larger, one) == larger.end()) larger.push_back(std::move(one));
     }
   }
-  fitAll(larger, [&](Explanation& one) { fitRoughly(one, least_score); });
-  std::erase_if(larger, [&](const Explanation& one) { return one.score < least_score; });
-  fitAll(larger, [this](Explanation& one) { fitFinely(one); });
+  fitIfPromising(larger, least_score);
   std::ranges::move(larger, std::back_inserter(explanations_));
   std::ranges::stable_sort(explanations_, std::greater<>{}, &Explanation::score);
 }
@@ -348,7 +354,7 @@ void Search::weigh() {
   double sum = 0;
   for (Explanation& explanation : explanations_) sum += explanation.probability = std::exp(explanation.score - largest);
   for (Explanation& explanation : explanations_) explanation.probability /= sum;
-  none_of_these_ = evidence().ofSomethingElse(explanations_);
+  something_else_ = evidence().ofSomethingElse(explanations_);
   std::ranges::stable_sort(explanations_, std::greater<>{}, &Explanation::probability);
 }
 

@@ -60,12 +60,7 @@ void Search::tryFurtherMechanisms() {
       Explanation simple = causes_.withoutFurtherMechanisms(place);
       if (causes_.modelOf(simple).effects == causes_.modelOf(place).effects) place = std::move(simple);
     }
-    fitAll(places, [this](Explanation& place) {
-      causes_.refit(place, fit_, 0, Fidelity::coarse, Accuracy::ranking);
-      if (place.residual.size() == fit_.size()) place.score = evidence().score(place);
-    });
-    if (places.size() > freed_count) places.resize(freed_count);
-    improveBy(one, std::move(places));
+    improveBy(one, bestStarts(std::move(places), freed_count));
   }
 }
 

@@ -49,7 +49,7 @@ class Search {
   /// The most probable one; there must be one.
   const Explanation& likeliest() const { return *std::ranges::max_element(explanations_, {}, &Explanation::probability); }
   /// Probability that something acts beside what the explanations hold (Evidence::ofSomethingElse).
-  double noneOfThese() const { return none_of_these_; }
+  double somethingElse() const { return something_else_; }
   /// Single effects as fitted to the screening segments.
   std::vector<Explanation> singles() const;
   /// No effect, but the numbers of the model fitted.
@@ -176,6 +176,8 @@ class Search {
   void dropHopeless();
   void fitRoughly(Explanation& explanation, double least_score = -std::numeric_limits<double>::infinity()) const;
   void fitFinely(Explanation& explanation) const;
+  std::vector<Explanation> bestStarts(std::vector<Explanation> starts, std::size_t most) const;
+  void fitIfPromising(std::vector<Explanation>& explanations, double least_score) const;
   bool improveBy(Explanation& one, std::vector<Explanation> others) const;
   void goOn(Explanation& explanation, Accuracy accuracy) const;
   void takeFromCounterparts(Explanation& explanation) const;
@@ -209,7 +211,7 @@ class Search {
   std::set<std::pair<std::set<std::string>, std::string>> places_tried_;  ///< beside these effects, for another one of this place
   std::vector<Explanation> explanations_;
   Explanation nothing_;
-  double none_of_these_ = 0;
+  double something_else_ = 0;
 };
 
 }  // namespace musclesim

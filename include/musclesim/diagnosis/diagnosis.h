@@ -282,9 +282,9 @@ struct Diagnosis {
   long simulation_count = 0;
 };
 
-/// Diagnoses recordings of one plant. Throws BadParameter for recordings that cannot be diagnosed together (different robots, no commands,
-/// fewer than 20 rows, no signal that the model also has) and for unknown effects; Diverged if the model without further effects cannot
-/// follow the recordings.
+/// Diagnoses recordings of one plant. Throws BadFile for recordings that cannot be diagnosed together (different robots, no commands, fewer
+/// than ten numbers of each signal, no signal that the model also has), BadParameter for options out of range and unknown effects, and
+/// Diverged if the model without further effects cannot follow the recordings.
 Diagnosis diagnose(std::vector<Recording> recordings, const DiagnosisOptions& options = {});
 
 /// diagnosis.json, format musclesim-diagnosis-1.

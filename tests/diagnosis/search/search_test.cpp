@@ -60,7 +60,7 @@ TEST(Search, FindsTwoCausesThatLookAlike) {
   EXPECT_NEAR(two.valueOf("transport_delay", "delay_s"), 0.03, 0.003);
   EXPECT_NEAR(two.valueOf("valve_lag", "fill_time_constant_s"), 0.05, 0.005);
   EXPECT_NEAR(two.valueOf("valve_lag", "vent_time_constant_s"), 0.08, 0.008);
-  EXPECT_LT(two.search.noneOfThese(), 0.1);
+  EXPECT_LT(two.search.somethingElse(), 0.1);
   const std::vector<Explanation> singles = two.search.singles();
   ASSERT_FALSE(singles.empty());
   for (const Explanation& single : singles) EXPECT_EQ(single.members.size(), 1U);
@@ -86,7 +86,7 @@ TEST(Search, OfOneCauseFindsOne) {
   ASSERT_EQ(one.best(), Labels{"valve_lag@muscle_0"}) << one.words();
   EXPECT_NEAR(one.valueOf("valve_lag", "fill_time_constant_s"), 0.05, 0.003);
   EXPECT_GT(one.search.explanations().front().probability, 0.8) << one.words();
-  EXPECT_LT(one.search.noneOfThese(), 0.1);
+  EXPECT_LT(one.search.somethingElse(), 0.1);
 }
 
 /// The load is 3 % off; the robot's file says that it may be off by 2 %, and its force law by 5 %.
@@ -132,7 +132,7 @@ TEST(Search, GivesTheSameBitsWithOneAndTwoThreads) {
     EXPECT_EQ(of_one[i].numbers, of_two[i].numbers);
     EXPECT_EQ(of_one[i].probability, of_two[i].probability);
   }
-  EXPECT_EQ(one.search.noneOfThese(), two.search.noneOfThese());
+  EXPECT_EQ(one.search.somethingElse(), two.search.somethingElse());
 }
 
 /// Recordings of the length of one muscle of a robot of lines, 0.6 s each.
