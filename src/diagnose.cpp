@@ -114,6 +114,12 @@ void requirePlaces(const std::filesystem::path& folder, const ModelOptions& mode
   requireWritable(folder);
 }
 
+void requireDifferent(std::vector<std::string> tuned) {
+  std::ranges::sort(tuned);
+  if (const auto twice = std::ranges::adjacent_find(tuned); twice != tuned.end())
+    throw BadParameter("--tune", fmt::format("{},{}", *twice, *twice), "name each number once");
+}
+
 /// Begins to keep the simulations in the folder, or goes on from those of an unfinished diagnosis. Throws BadParameter if that is another.
 void beginOrResume(RecordFile& kept, const std::string& origin, const std::filesystem::path& folder, const ModelOptions& model,
                    bool resume) {
@@ -164,6 +170,7 @@ void endKeeping(RecordFile& kept, bool finished, const ModelOptions& model) {
 
 int diagnoseCommand(const ModelOptions& model, const DiagnoseArguments& arguments) {
   const std::filesystem::path folder = folderFor(arguments);
+  requireDifferent(arguments.tune);
   std::vector<Recording> recordings;
   std::set<std::string> said;  // what holds for all recordings is said once
   for (const std::string& file : arguments.recordings) {

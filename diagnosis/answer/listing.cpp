@@ -272,7 +272,6 @@ void listTrials(const Search& search, Diagnosis& diagnosis) {
     Trial trial{{},
                 static_cast<int>(fitted.z.size()),
                 rmsOf(fitted.residual),
-                comparison.misfit(fitted.residual),
                 {misfits.begin(), misfits.end()},
                 {complexity.begin(), complexity.end()},
                 costOfNumbers(fitted.numbers),

@@ -343,56 +343,26 @@ double Comparison::meanSquare(const Block& block, const Eigen::VectorXd& residua
   return residual.segment(block.first, block.count()).squaredNorm() / static_cast<double>(block.count());
 }
 
+void Comparison::setGap(const Eigen::VectorXd& nominal_residual) {
+  for (Block& block : blocks_) block.gap = std::sqrt(meanSquare(block, nominal_residual));
+}
+
 namespace {
 
-/// s^2 = sigma^2 + (f rho C)^2.
-double scaleSquare(const Comparison::Block& block, const Tolerance& tolerance, double law_error_scale) {
-  const double left = law_error_scale * tolerance.share_of_gap * block.gap;
-  return block.sigma * block.sigma + left * left;
-}
-
 /// power / 2 ln((s^2 + ms) / (s^2 + sigma^2)) of one tolerance.
-double misfitBeyond(const Tolerance& tolerance, const Comparison::Block& block, double mean_square, double law_error_scale = 1) {
-  const double scale_square = scaleSquare(block, tolerance, law_error_scale);
-  return 0.5 * block.power * std::log((scale_square + mean_square) / (scale_square + block.sigma * block.sigma));
-}
-
-/// ln of the sum of exponentials.
-double lnSum(const std::vector<double>& logarithms) {
-  const double most = std::ranges::max(logarithms);
-  return most + std::log(std::transform_reduce(logarithms.begin(), logarithms.end(), 0.0, std::plus<>{},
-                                               [&](double value) { return std::exp(value - most); }));
+double misfitBeyond(const Tolerance& tolerance, const Comparison::Block& block, double mean_square) {
+  const double left = tolerance.share_of_gap * block.gap, noise_square = block.sigma * block.sigma,
+               scale_square = noise_square + left * left;
+  return 0.5 * block.power * std::log((scale_square + mean_square) / (scale_square + noise_square));
 }
 
 }  // namespace
 
-void Comparison::setGap(const Eigen::VectorXd& nominal_residual, LawError law_error) {
-  for (Block& block : blocks_) block.gap = std::sqrt(meanSquare(block, nominal_residual));
-  ln_prior_ = {0};
-  if (law_error == LawError::tolerated || !isTempered()) return;
-  ln_prior_.assign(law_error_scales.size(), 0);
-  for (std::size_t f = 0; f < law_error_scales.size(); ++f)
-    for (const Block& block : blocks_)
-      for (const Tolerance& tolerance : tolerances)
-        ln_prior_[f] -= 0.5 * block.power * tolerance.nats / tolerance_nats * std::log(scaleSquare(block, tolerance, law_error_scales[f]));
-  const double sum = lnSum(ln_prior_);
-  for (double& ln_prior : ln_prior_) ln_prior -= sum;
-}
-
-/// ln(p_f exp(-M_f)) of the scales f that are possible.
-std::vector<double> Comparison::lnOfScales(const std::vector<double>& mean_squares) const {
-  std::vector<double> result = ln_prior_;
-  for (std::size_t f = 0; f < result.size(); ++f)
-    for (std::size_t b = 0; b < blocks_.size(); ++b)
-      for (const Tolerance& tolerance : tolerances)
-        result[f] -= tolerance.nats * misfitBeyond(tolerance, blocks_[b], mean_squares[b], law_error_scales[f]);
-  return result;
-}
-
-std::vector<double> Comparison::meanSquares(const Eigen::VectorXd& residual) const {
-  std::vector<double> result;
-  for (const Block& block : blocks_) result.push_back(meanSquare(block, residual));
-  return result;
+double Comparison::misfitOf(const Block& block, double mean_square) const {
+  if (!isTempered()) return 0.5 * block.power * (mean_square / (block.sigma * block.sigma) - 1);
+  double sum = 0;
+  for (const Tolerance& tolerance : tolerances) sum += tolerance.nats * misfitBeyond(tolerance, block, mean_square);
+  return sum;
 }
 
 std::array<double, tolerances.size()> Comparison::misfits(const Eigen::VectorXd& residual) const {
@@ -402,60 +372,36 @@ std::array<double, tolerances.size()> Comparison::misfits(const Eigen::VectorXd&
   return sums;
 }
 
-double Comparison::misfitOf(const std::vector<double>& mean_squares) const {
-  if (isTempered()) return -lnSum(lnOfScales(mean_squares));
-  double sum = 0;
-  for (std::size_t b = 0; b < blocks_.size(); ++b)
-    sum += 0.5 * blocks_[b].power * (mean_squares[b] / (blocks_[b].sigma * blocks_[b].sigma) - 1);
-  return sum;
-}
-
 double Comparison::misfit(const Eigen::VectorXd& residual) const {
   if (residual.size() != size_ || !residual.allFinite()) return std::numeric_limits<double>::infinity();
-  return misfitOf(meanSquares(residual));
-}
-
-double Comparison::toleratedMisfit(const Eigen::VectorXd& residual) const {
-  if (ln_prior_.size() == 1 || residual.size() != size_ || !residual.allFinite()) return misfit(residual);
-  const auto by_tolerance = misfits(residual);
   double sum = 0;
-  for (std::size_t i = 0; i < tolerances.size(); ++i) sum += tolerances[i].nats * by_tolerance[i];
+  for (const Block& block : blocks_) sum += misfitOf(block, meanSquare(block, residual));
   return sum;
 }
 
-/// The weights of each scale, in proportion to its share of the likelihood.
-std::vector<double> Comparison::weightSquares(const std::vector<double>& mean_squares) const {
-  std::vector<double> result(blocks_.size(), 0);
-  if (!isTempered()) {
-    for (std::size_t b = 0; b < blocks_.size(); ++b) result[b] = blocks_[b].power / (blocks_[b].sigma * blocks_[b].sigma);
-    return result;
+double Comparison::weightSquare(const Block& block, double mean_square) const {
+  if (!isTempered()) return block.power / (block.sigma * block.sigma);
+  double sum = 0;
+  for (const Tolerance& tolerance : tolerances) {
+    const double left = tolerance.share_of_gap * block.gap;
+    sum += tolerance.nats / (block.sigma * block.sigma + left * left + mean_square);
   }
-  const std::vector<double> ln_of_scales = lnOfScales(mean_squares);
-  const double ln_sum = lnSum(ln_of_scales);
-  for (std::size_t f = 0; f < ln_of_scales.size(); ++f) {
-    const double share = std::exp(ln_of_scales[f] - ln_sum);
-    for (std::size_t b = 0; b < blocks_.size(); ++b)
-      for (const Tolerance& tolerance : tolerances)
-        result[b] +=
-            share * blocks_[b].power * tolerance.nats / (scaleSquare(blocks_[b], tolerance, law_error_scales[f]) + mean_squares[b]);
-  }
-  return result;
+  return block.power * sum;
 }
 
 Eigen::VectorXd Comparison::weights(const Eigen::VectorXd& residual) const {
   Eigen::VectorXd result(size_);
-  const std::vector<double> squares = weightSquares(meanSquares(residual));
-  for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    const Block& block = blocks_[b];
-    result.segment(block.first, block.count()).setConstant(std::sqrt(squares[b] / static_cast<double>(block.count())));
-  }
+  for (const Block& block : blocks_)
+    result.segment(block.first, block.count())
+        .setConstant(std::sqrt(weightSquare(block, meanSquare(block, residual)) / static_cast<double>(block.count())));
   return result;
 }
 
 double Comparison::scale() const {
-  double power = 0;
+  double power = 0, nats = 0;
   for (const Block& block : blocks_) power += block.power;
-  return power * tolerance_nats;
+  for (const Tolerance& tolerance : tolerances) nats += tolerance.nats;
+  return power * nats;
 }
 
 Gap Comparison::gap(const Eigen::VectorXd& residual) const {

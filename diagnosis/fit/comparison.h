@@ -37,10 +37,6 @@ struct Tolerance {
 };
 /// Found by conditional logit on plants with known causes; docs/developer/diagnosis_choices.md says on which.
 inline constexpr std::array<Tolerance, 3> tolerances = {{{0.1, 1.625}, {0.03, 1.125}, {0.01, 1.125}}};
-/// Nats of all tolerances together, for an e-fold of residual beyond the largest one.
-inline constexpr double tolerance_nats = tolerances[0].nats + tolerances[1].nats + tolerances[2].nats;
-/// Scales of all tolerances, as likely as each other beforehand: how exactly the laws of the catalogue hold for a plant is not known.
-inline constexpr std::array<double, 3> law_error_scales = {1, 0.3, 0.1};
 
 /// The compared rows of some segments. A residual block is one signal in one segment, either row by row or averaged over blocks of rows:
 /// averages have less noise, so weak but slow differences stand out. Blocks of parity hold by what signals of motion contradict each other:
@@ -103,29 +99,23 @@ class Comparison {
 
   /// Mean square of the part of a vector that belongs to one block.
   double meanSquare(const Block& block, const Eigen::VectorXd& residual) const;
-  enum class LawError { tolerated, estimated };  ///< tolerated: tolerances as they are, scale 1
   /// Tells how large the gap is: what the right cause may leave if its law differs from ours grows with it (misfit). `nominal_residual`
-  /// is that of the model without effects. Call it after goCoarse, which may raise the noise.
-  void setGap(const Eigen::VectorXd& nominal_residual, LawError law_error = LawError::tolerated);
+  /// is that of the model without effects.
+  void setGap(const Eigen::VectorXd& nominal_residual);
   /// The tempered misfit of a residual, in nats, 0 for noise alone:
-  ///   M_f = sum over blocks b of power_b  sum over tolerances (rho, kappa) of  kappa / 2 ln((s^2 + ms_b) / (s^2 + sigma_b^2)),
-  ///   s^2 = sigma_b^2 + (f rho C_b)^2
-  /// with f = 1, or, where the law error is estimated,
-  ///   -ln sum over scales f of p_f exp(-M_f),   p_f ~ product over b, rho of s^(-power_b kappa / sum of kappas),   sum of p_f = 1:
-  /// the smaller the errors are that a scale expects of a law, the likelier it makes it that there are none. Where tempering is left out
-  /// (MethodPart), the sum over readings of (residual^2 / sigma^2 - 1) / 2.
+  ///   sum over blocks b of power_b  sum over tolerances (rho, kappa) of  kappa / 2 ln((s^2 + ms_b) / (s^2 + sigma_b^2)),
+  ///   s^2 = sigma_b^2 + rho^2 C_b^2
+  /// or, where tempering is left out (MethodPart), the sum over readings of (residual^2 / sigma^2 - 1) / 2.
   /// ms_b: mean square of the residual in the block; C_b: RMS of the gap there (setGap); power_b: see Block. Infinite for an empty vector.
   double misfit(const Eigen::VectorXd& residual) const;
-  /// The same of mean squares, one per block.
-  double misfitOf(const std::vector<double>& mean_squares) const;
-  /// The misfit with f = 1, whether or not the law error is estimated.
-  double toleratedMisfit(const Eigen::VectorXd& residual) const;
-  /// The misfit with f = 1 by tolerance, each without its kappa.
+  /// The misfit by tolerance, each without its kappa.
   std::array<double, tolerances.size()> misfits(const Eigen::VectorXd& residual) const;
+  /// The part of a block.
+  double misfitOf(const Block& block, double mean_square) const;
   /// For each row the root of d(2 misfit) / d(r^2): least squares with these weights follows the misfit.
   Eigen::VectorXd weights(const Eigen::VectorXd& residual) const;
-  /// The same weights squared, times the rows of the block: one per block, of mean squares.
-  std::vector<double> weightSquares(const std::vector<double>& mean_squares) const;
+  /// The same weight squared, times the rows of the block.
+  double weightSquare(const Block& block, double mean_square) const;
   /// The misfit of a residual e times as large as the noise in all blocks, if nothing were tolerated: a scale for misfits.
   double scale() const;
   /// The normalised gap and its parts per signal.
@@ -139,8 +129,6 @@ class Comparison {
   void shareEvidence();
   bool counts(const Block& block) const;
   bool isTempered() const { return !plant_.leavesOut(MethodPart::tempering); }
-  std::vector<double> meanSquares(const Eigen::VectorXd& residual) const;
-  std::vector<double> lnOfScales(const std::vector<double>& mean_squares) const;
   void average(Eigen::VectorXd& values) const;
   bool isSensitive(const Eigen::VectorXd& change) const;
   void countAsNoise(const Eigen::VectorXd& change, const Eigen::VectorXd& residual, Unsteady::Change by);
@@ -153,9 +141,8 @@ class Comparison {
   Fidelity fidelity_ = Fidelity::fine;
   Unsteady unsteady_;
   Focus focus_ = Focus::all_signals;
-  std::vector<double> ln_prior_ = {0};  ///< ln p_f of the law error's scales that are possible, the first ones
-  Eigen::VectorXd nominal_;             ///< prediction of the model without effects, in fine steps; empty before goCoarse
-  Eigen::VectorXd correction_;          ///< fine minus coarse prediction of the model without effects
+  Eigen::VectorXd nominal_;     ///< prediction of the model without effects, in fine steps; empty before goCoarse
+  Eigen::VectorXd correction_;  ///< fine minus coarse prediction of the model without effects
   std::vector<Segment> segments_;
   std::vector<Block> blocks_;
   Eigen::Index size_ = 0;

@@ -69,8 +69,9 @@ LinearModel::Solution LinearModel::solve(const std::vector<std::size_t>& columns
   }
   x = x.cwiseMax(least).cwiseMin(most);
   const Eigen::Index last = grams_.front().rows() - 1;
-  std::vector<double> mean_squares(grams_.size());
+  std::vector<double> mean_squares(grams_.size()), weights(grams_.size());
   const auto cost = [&] {
+    double sum = 0;
     for (std::size_t b = 0; b < grams_.size(); ++b) {
       double square = grams_[b](last, last);
       for (Eigen::Index i = 0; i < count; ++i) {
@@ -80,8 +81,8 @@ LinearModel::Solution LinearModel::solve(const std::vector<std::size_t>& columns
           square += x[i] * x[j] * grams_[b](row, static_cast<Eigen::Index>(columns[static_cast<std::size_t>(j)]));
       }
       mean_squares[b] = std::max(0.0, square);
+      sum += comparison_.misfitOf(comparison_.blocks()[b], mean_squares[b]);
     }
-    double sum = comparison_.misfitOf(mean_squares);
     for (Eigen::Index i = 0; i < count; ++i) {
       const Column& column = columns_[columns[static_cast<std::size_t>(i)]];
       sum += 0.5 * column.precision * (column.start + x[i]) * (column.start + x[i]);
@@ -90,7 +91,8 @@ LinearModel::Solution LinearModel::solve(const std::vector<std::size_t>& columns
   };
   Solution best{cost(), x};
   for (int round = 0; round < reweightings && count > 0; ++round) {
-    const Normal normal = normalOf(columns, comparison_.weightSquares(mean_squares));
+    for (std::size_t b = 0; b < grams_.size(); ++b) weights[b] = comparison_.weightSquare(comparison_.blocks()[b], mean_squares[b]);
+    const Normal normal = normalOf(columns, weights);
     const Eigen::VectorXd before = x;
     descend(normal.matrix, normal.slope, least, most, still, x);
     double now = cost();

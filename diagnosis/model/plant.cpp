@@ -274,7 +274,7 @@ std::vector<Segment> Plant::screeningSegments() const {
   for (const Segment& segment : split_.fit) {
     const bool repeated =
         std::ranges::any_of(result, [&](const Segment& other) { return isRepeat(recordingOf(segment), recordingOf(other)); });
-    if (!repeated && result.size() < most_recordings) result.push_back(segment);
+    if (!repeated && result.size() < most_recordings && firstReading(segment) < segment.end_row) result.push_back(segment);
   }
   const auto count = static_cast<int>(result.size());
   for (Segment& segment : result) {

@@ -129,7 +129,6 @@ Json fittedJson(const Diagnosis& d) {
     json["trials"].push_back({{"effects", trial.effects},
                               {"parameters", trial.parameter_count},
                               {"rms", trial.rms},
-                              {"misfit", trial.misfit},
                               {"misfits", trial.misfits},
                               {"complexity", trial.complexity},
                               {"numbers_cost", trial.numbers_cost},

@@ -67,8 +67,8 @@ double probabilityOfUnknown(double share_left) {
 }
 
 double shareOfMisfitLeft(const Comparison& comparison, const Eigen::VectorXd& before, const Eigen::VectorXd& after) {
-  const double of_gap = comparison.toleratedMisfit(before);
-  return of_gap > 0 ? std::max(0.0, comparison.toleratedMisfit(after)) / of_gap : 0;
+  const double of_gap = comparison.misfit(before);
+  return of_gap > 0 ? std::max(0.0, comparison.misfit(after)) / of_gap : 0;
 }
 
 std::size_t namedSet(const std::vector<std::set<std::string>>& sets, const std::vector<double>& probabilities) {

@@ -136,7 +136,7 @@ void Search::screen() {
   screening_.goCoarse(nominal, Comparison::Purpose::screening);
   fit_.goCoarse(everywhere);
   screening_.setGap(screening_residual_);
-  fit_.setGap(nominal_residual_, Comparison::LawError::estimated);
+  fit_.setGap(nominal_residual_);
   causes_.hypotheses = musclesim::hypotheses(plant_, DiagnosisOptions{});
   keepNearestVariants();
   for (const Hypothesis& hypothesis : causes_.hypotheses) catalogue_.allowed.push_back(allows(options_, hypothesis.info().id));

@@ -26,7 +26,7 @@ Eigen::VectorXd weightsInForce() {
 }
 
 Eigen::VectorXd probabilities(const TriedCase& one, const Eigen::VectorXd& weights) {
-  const Eigen::VectorXd score = -(one.features * weights) - one.other_cost;
+  const Eigen::VectorXd score = -(one.features * weights) - one.numbers_cost;
   const Eigen::ArrayXd odds = (score.array() - score.maxCoeff()).exp();
   return odds / odds.sum();
 }
@@ -84,15 +84,6 @@ bool isFirstRight(const TriedCase& one, const Eigen::VectorXd& p) {
   return one.is_right[static_cast<std::size_t>(first)];
 }
 
-/// What a misfit that estimates the law error costs beyond the one with the tolerances as they are (Comparison); answers of older versions
-/// do not have it.
-double costOfLawError(const json& trial) {
-  const std::vector<double> misfits = trial.at("misfits");
-  double tolerated = 0;
-  for (std::size_t i = 0; i < tolerances.size(); ++i) tolerated += tolerances[i].nats * misfits.at(i);
-  return trial.value("misfit", tolerated) - tolerated;
-}
-
 }  // namespace
 
 bool TriedCase::isUsable() const {
@@ -122,7 +113,7 @@ std::vector<TriedCase> triedCases(const std::filesystem::path& keys, const std::
         features.insert(features.end(), complexity.begin(), complexity.end());
         const auto row = static_cast<Eigen::Index>(i);
         one.features.row(row) = Eigen::Map<const Eigen::VectorXd>(features.data(), static_cast<Eigen::Index>(features.size()));
-        one.other_cost[row] = trials[i].at("numbers_cost").get<double>() + costOfLawError(trials[i]);
+        one.numbers_cost[row] = trials[i].at("numbers_cost");
         one.is_right.push_back(isWholeTruth(key, trials[i].at("effects")));
       }
       result.push_back(std::move(one));

@@ -12,10 +12,10 @@ namespace musclesim::blind {
 /// All explanations that the diagnosis of one case fitted, and which of them are right.
 struct TriedCase {
   std::string name;
-  Eigen::MatrixXd features;    ///< per explanation: misfit beyond each tolerance, then complexity (diagnosis.json: fitted.trials)
-  Eigen::VectorXd other_cost;  ///< nats for numbers of the model that are off, and for the law error
-  std::vector<bool> is_right;  ///< holds every demanded cause and nothing wrong
-  bool isUsable() const;       ///< some, but not all, are right
+  Eigen::MatrixXd features;      ///< per explanation: misfit beyond each tolerance, then complexity (diagnosis.json: fitted.trials)
+  Eigen::VectorXd numbers_cost;  ///< nats for numbers of the model that are off
+  std::vector<bool> is_right;    ///< holds every demanded cause and nothing wrong
+  bool isUsable() const;         ///< some, but not all, are right
 };
 
 struct Calibration {
@@ -34,7 +34,7 @@ std::vector<std::string> weightNames();
 std::vector<TriedCase> triedCases(const std::filesystem::path& keys, const std::filesystem::path& answers);
 
 /// Conditional logit (McFadden 1974): maximises the sum of ln(sum over right explanations of exp(score) / sum over all of exp(score)),
-/// score = -weights . features - other_cost, less a ridge that holds ln(weights) to those in force.
+/// score = -weights . features - numbers_cost, less a ridge that holds ln(weights) to those in force.
 Calibration calibrate(const std::vector<TriedCase>& cases);
 
 }  // namespace musclesim::blind

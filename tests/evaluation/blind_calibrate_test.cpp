@@ -58,7 +58,7 @@ TEST(BlindCalibrate, ReadsKeysAndAnswers) {
   EXPECT_EQ(cases[0].is_right, (std::vector<bool>{true, false}));
   EXPECT_EQ(cases[0].features(0, 2), 3);
   EXPECT_EQ(cases[0].features(0, 6), 0.5);
-  EXPECT_EQ(cases[0].other_cost[1], 0.25);
+  EXPECT_EQ(cases[0].numbers_cost[1], 0.25);
   writeText(folder.file("case01.json"), R"({"fitted": {"trials": [{"effects": []}]}})");
   EXPECT_THROW(triedCases(folder.file("keys.json"), folder.file("")), BadFile);
 }

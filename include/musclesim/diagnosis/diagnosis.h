@@ -142,7 +142,6 @@ struct Trial {
   std::vector<std::string> effects;
   int parameter_count = 0;
   std::vector<double> rms;
-  double misfit = 0;                                  ///< nats, with the law error estimated (Comparison)
   std::vector<double> misfits, complexity;            ///< what its odds are computed from (Evidence), without weights
   double numbers_cost = 0;                            ///< nats for numbers of the model that are off their value
   double score = 0;                                   ///< ln odds up to a constant

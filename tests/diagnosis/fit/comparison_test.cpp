@@ -46,33 +46,7 @@ TEST_F(Rig, MisfitToleratesASmallShareOfTheGap) {
   EXPECT_NEAR(both.misfit(residual), power * (temperedMisfit(3, 40) + temperedMisfit(5, 200)), 1e-9);
   EXPECT_LT(both.misfit(residual), untempered);
   EXPECT_NEAR(both.misfit(Eigen::VectorXd::Constant(300, sigma)), 0, 1e-12);
-}
-
-/// Blocks of 3 and 5 sigmas, gaps of 40 and 200: by hand from the equation in comparison.h.
-TEST_F(Rig, MisfitEstimatesTheLawErrorFromWhatIsLeft) {
-  const double sigma = planted::noise_mm, power = 1.5;
-  Eigen::VectorXd residual = Eigen::VectorXd::Constant(300, 3 * sigma), gap = Eigen::VectorXd::Constant(300, 40 * sigma);
-  residual.tail(150).setConstant(5 * sigma);
-  gap.tail(150).setConstant(-200 * sigma);
-  both.setGap(gap, Comparison::LawError::estimated);
-  double likelihood = 0, priors = 0;
-  for (const double f : law_error_scales) {
-    double misfit = 0, ln_prior = 0;
-    for (const auto& [in_sigmas, gap_in_sigmas] : {std::pair{3.0, 40.0}, {5.0, 200.0}})
-      for (const auto& [share, nats] : tolerances) {
-        const double square = 1 + std::pow(f * share * gap_in_sigmas, 2);
-        misfit += power * nats / 2 * std::log((square + in_sigmas * in_sigmas) / (square + 1));
-        ln_prior -= power * nats / tolerance_nats / 2 * std::log(square);
-      }
-    likelihood += std::exp(ln_prior - misfit);
-    priors += std::exp(ln_prior);
-  }
-  EXPECT_NEAR(both.misfit(residual), -std::log(likelihood / priors), 1e-9);
-  EXPECT_NEAR(both.toleratedMisfit(residual), power * (temperedMisfit(3, 40) + temperedMisfit(5, 200)), 1e-9);
-  EXPECT_NEAR(both.misfit(Eigen::VectorXd::Constant(300, sigma)), 0, 1e-12);
-  // Against what reaches the noise, a fiftieth of the gap speaks more than with the tolerances as they are.
-  const Eigen::VectorXd small_share = gap / 50;
-  EXPECT_GT(both.misfit(small_share), both.toleratedMisfit(small_share) + 2);
+  EXPECT_NEAR(both.misfitOf(both.blocks()[1], 25 * sigma * sigma), power * temperedMisfit(5, 200), 1e-9);
 }
 
 /// Then a reading three noise floors off costs (9 - 1) / 2 nats whatever the gap, and weights are those of plain least squares.
@@ -94,18 +68,18 @@ TEST_F(Rig, WeightsAreTheSlopeOfTheMisfit) {
   Eigen::VectorXd residual(300);
   for (Eigen::Index i = 0; i < 300; ++i) residual[i] = sigma * (2 + std::sin(0.1 * static_cast<double>(i)));
   residual.tail(150) *= 4;
-  for (const auto law_error : {Comparison::LawError::tolerated, Comparison::LawError::estimated}) {
-    both.setGap(20 * residual, law_error);
-    const Eigen::VectorXd weights = both.weights(residual);
-    for (const Eigen::Index row : {0, 70, 149, 150, 299}) {
-      const double step = 0.01 * sigma;
-      Eigen::VectorXd more = residual, less = residual;
-      more[row] += step;
-      less[row] -= step;
-      const double slope = (both.misfit(more) - both.misfit(less)) / (2 * step);
-      EXPECT_NEAR(weights[row] * weights[row] * residual[row] / slope, 1, 1e-6) << row;
-    }
+  both.setGap(20 * residual);
+  const Eigen::VectorXd weights = both.weights(residual);
+  for (const Eigen::Index row : {0, 70, 149, 150, 299}) {
+    const double step = 0.01 * sigma;
+    Eigen::VectorXd more = residual, less = residual;
+    more[row] += step;
+    less[row] -= step;
+    const double slope = (both.misfit(more) - both.misfit(less)) / (2 * step);
+    EXPECT_NEAR(weights[row] * weights[row] * residual[row] / slope, 1, 1e-6) << row;
   }
+  const Comparison::Block& block = both.blocks()[0];
+  EXPECT_NEAR(both.weightSquare(block, both.meanSquare(block, residual)), 150 * weights[0] * weights[0], 1e-9 * weights[0] * weights[0]);
 }
 
 TEST_F(Rig, ScaleIsWhatAResidualOfOneFoldOfTheNoiseCosts) {

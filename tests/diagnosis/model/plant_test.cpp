@@ -59,6 +59,13 @@ TEST(ScreeningSegments, LastAFewSecondsFromTheFirstReading) {
   EXPECT_EQ(Plant({stepped(0.01, 0, 25, "a.csv"), stepped(0.01, 0, 25, "b.csv")}, options).screeningSegments().front().end_row, 1500);
 }
 
+TEST(ScreeningSegments, LeaveOutARecordingWithoutReadings) {
+  const DiagnosisOptions options;
+  std::vector<Recording> recordings = {stepped(0.01, 0, 3, "a.csv"), stepped(0.01, 0, 3, "b.csv"), stepped(0.02, 0, 3, "c.csv")};
+  for (double& value : recordings[1].signals[1].values) value = 240;  // a dead sensor
+  for (const Segment& segment : Plant(recordings, options).screeningSegments()) EXPECT_NE(segment.recording, 1);
+}
+
 TEST(ScreeningSegments, ComparesOnlySomeOfManyRows) {
   for (const Segment& segment : segmentsOf(0.001, 0.5, 10)) {
     EXPECT_EQ(segment.end_row, 6500);
