@@ -43,8 +43,8 @@ struct Split {
 };
 
 /// Time step of a simulation: each level doubles the step of the one before, which costs less. The error is nearly the same for all models
-/// of one plant, so differences between coarse predictions are valid (Comparison corrects for the rest). With
-/// `finer`, half the fine step, a fit asks how large the error of the fine step is.
+/// of one plant, so differences between coarse predictions are valid (Comparison corrects for the rest). `finer` is half the fine step: a
+/// fit simulates with it to learn how large the error of the fine step is.
 enum class Fidelity { finer = -1, fine, medium, coarse, coarsest };
 
 /// Which signals of a prediction are asked for. Pressures alone need no simulation of the body.

@@ -86,8 +86,8 @@ bool Plant::changesNothing(const std::string& name, double value) const {
   return !after.diverged && !after.refused && !after.cut && before.values == after.values;
 }
 
-/// The muscles of a robot file may have force laws and settings of their own; then the program's numbers for these change nothing. The
-/// nominal refit leaves such numbers out, and a note names those that have a tolerance.
+/// The muscles of a robot file may have force laws and settings of their own; then the program's numbers for these change nothing. Takes
+/// such numbers out of the nominal refit, and writes a note about each that has a tolerance.
 void Plant::leaveOutWhatChangesNothing() {
   constexpr double larger = 1.1;
   std::vector<std::pair<std::string, double>> changed;

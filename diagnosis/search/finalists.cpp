@@ -142,7 +142,7 @@ void Search::tryOtherStrengths() {
   }
 }
 
-/// The best of several starts, as they are.
+/// Scores several starts without fitting them, and returns the best.
 std::vector<Explanation> Search::bestStarts(std::vector<Explanation> starts, std::size_t most) const {
   fitAll(starts, [this](Explanation& start) {
     causes_.refit(start, fit_, 0, Fidelity::coarse, Accuracy::ranking);
@@ -152,7 +152,7 @@ std::vector<Explanation> Search::bestStarts(std::vector<Explanation> starts, std
   return starts;
 }
 
-/// Fits explanations from their starts, to the end those that reach a score; the others are left out.
+/// Fits all explanations roughly, drops those that do not reach the score, and fits the rest to the end.
 void Search::fitIfPromising(std::vector<Explanation>& explanations, double least_score) const {
   fitAll(explanations, [&](Explanation& one) { fitRoughly(one, least_score); });
   std::erase_if(explanations, [&](const Explanation& one) { return one.score < least_score; });

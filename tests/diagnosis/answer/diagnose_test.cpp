@@ -171,6 +171,14 @@ TEST(Diagnose, RefusesOptionsOutOfTheirRange) {
   options.max_effects = 1;
   options.smallest_gap_percent = -1;
   EXPECT_THROW(diagnose(plant({}), options), BadParameter);
+  options.smallest_gap_percent = 1;
+  options.skip_start_s = -1;
+  EXPECT_THROW(diagnose(plant({}), options), BadParameter);
+  options.skip_start_s = NAN;
+  EXPECT_THROW(diagnose(plant({}), options), BadParameter);
+  options.skip_start_s = 0;
+  options.tune = {"rig.load_kg", "rig.load_kg"};
+  EXPECT_THROW(diagnose(plant({}), options), BadParameter);
 }
 
 TEST(Diagnose, SaysNoGapWhereTolerancesDoNearlyAsWellAsSeveralEffects) {
